@@ -90,8 +90,8 @@ def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chose
         if out.format == "table" and (study.aspects.faces > 1).any():
             out.say(CLASS_COUNTS_ONCE if chosen["as_published"] else EACH_FACE_COUNTS)
         frame, table = aspects_output.aspects(study), out.format == "table"
-        printed = aspects_output.printed(frame, columns) if columns is not None or table else frame
-        out.write(folder, aspects_output.offers(study, tipping=graph))
+        printed = aspects_output.select_columns(frame, columns) if columns is not None or table else frame
+        out.write(folder, aspects_output.offers(study, with_graph=graph))
         out.say(*aspects_output.remarks(study) if folder and out.pictures else ())
     out.show(printed, aspects_output.document(study))
 

@@ -82,7 +82,7 @@ def compare(
         with out.folder_of(solid, study.inputs) as folder:
             out.say(*study.measured.notes)
             out.write(folder, compare_output.offers(study))
-        frame, document, hidden = compare_output.printed(study, out.format)
+        frame, document, hidden = compare_output.printout(study, out.format)
         out.show(frame, document, hidden=hidden)
     elif len(sources) == 1 and acceptance_sheet.is_sheet(sources[0]):  # filled in at the machine
         lines = acceptance_sheet.sheet(sources[0])
@@ -99,7 +99,7 @@ def compare(
         out.warn(*sets.warnings)
         with out.folder("measured", sets.inputs) as folder:
             out.write(folder, compare_output.sets_offers(sets))
-        for frame in compare_output.sets_printed(sets, out.format):
+        for frame in compare_output.sets_printout(sets, out.format):
             out.show(frame, compare_output.sets_document(sets), spare=compare_output.SPARE_RULES)
 
 

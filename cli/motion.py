@@ -50,7 +50,7 @@ def floor(
         out.say(*floor_output.remarks(study), *(floor_output.map_remarks(study) if folder else ()))
         out.write(folder, floor_output.offers(study))
     document = floor_output.document(study)
-    out.show(floor_output.printed(document, out.format, floor_output.summary), document)
+    out.show(floor_output.printout(document, out.format, floor_output.summary), document)
 
 
 @grouped.command(short_help="Reactions and motion of a part on the track, against the wall.")
@@ -77,7 +77,7 @@ def track(
     """
     from feederscrew.bowl import key_ranges
     from feederscrew.output import track as track_output
-    from feederscrew.output.floor import printed
+    from feederscrew.output.floor import printout
     from feederscrew.studies import track as complete
     from feederscrew.thesis import motion as by_print
 
@@ -93,7 +93,7 @@ def track(
             out.write(folder, track_output.offers(study, grid))
     document = track_output.document(study)
     table = (
-        track_output.cells(grid) if spans and grid else printed(document, out.format, track_output.summary)
+        track_output.cells(grid) if spans and grid else printout(document, out.format, track_output.summary)
     )
     out.show(table, document)
 

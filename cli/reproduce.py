@@ -22,5 +22,7 @@ def reproduce(out: Output) -> None:
         items = reproduction.reproduce().items
     with out.folder("thesis", {}) as folder, out.step("files"):
         files = reproduction.write(folder.write, items) if folder else {}
-    out.warn(*(f"{item.name}: a cell differs without a reason" for item in reproduction.unexplained(items)))
+    out.warn(
+        *(f"{item.name}: a cell differs without a reason" for item in reproduction.unexplained_items(items))
+    )
     out.show(reproduction.overview(items), reproduction.document(items, files))

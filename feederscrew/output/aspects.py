@@ -1,11 +1,12 @@
 """Files of ``feeder aspects``: its tables and documents, its chart and its sheet of views."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Array, Floats, Points, Vector
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
@@ -14,7 +15,9 @@ from feederscrew.output import offers as offer
 from feederscrew.output.columns import UJ
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
-from feederscrew.resting.aspects import names_text, postures
+from feederscrew.resting.aspects import Aspects, names_text, postures
+from feederscrew.resting.exact_tumbling import Transition
+from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import GRAVITY, MM, quantity_text
 
@@ -31,7 +34,7 @@ PRINTED = (  # the table for people, unless they ask for more
 )  # fmt: skip
 
 
-def aspects(study: Any) -> Frame:
+def aspects(study: AspectsStudy) -> Frame:
     """Return the classes of resting aspects of an AspectsStudy, one row each: the columns of ``aspects.csv``.
 
     An open surface is labelled in every row, and tumbling that fails a self-check. A card has no shape and
@@ -60,20 +63,21 @@ def aspects(study: Any) -> Frame:
     return tables.frame(table)
 
 
-def printed(frame: Frame, wanted: str | None = None) -> Frame:
+def select_columns(frame: Frame, choice: str | None = None) -> Frame:
     """Return the columns of a frame of ``aspects`` that are printed for people.
 
-    ``wanted`` are names, or what the table heads them, with commas between, or 'all'; without it those of
-    ``PRINTED`` that there are, the likeliest answer first. Raises ArgumentError if there is no such column.
+    ``choice`` are names, or what the table heads them, with commas between, or 'all'; without it
+    those of ``PRINTED`` that there are, the likeliest answer first. Raises ArgumentError if there is no such
+    column.
     """
-    if wanted is None:
+    if choice is None:
         table = frame.only(name for name in PRINTED if name in frame)
         if RECOMMENDED_COLUMNS[0] not in table:
             return table
         shares = np.nan_to_num(np.asarray(table[RECOMMENDED_COLUMNS[0]], dtype=float), nan=-1.0)
         order = np.argsort(-shares, kind="stable")
         return tables.frame({name: [column[row] for row in order] for name, column in table.items()})
-    names = list(frame) if wanted.strip() == "all" else [name.strip() for name in wanted.split(",")]
+    names = list(frame) if choice.strip() == "all" else [name.strip() for name in choice.split(",")]
     # by what a table heads them, 'height' and 'pmi'; without what heads several, 'low'
     words = [tables.heading(name)[0].casefold() for name in frame]
     headed = {word: name for word, name in zip(words, frame) if words.count(word) == 1}
@@ -85,13 +89,13 @@ def printed(frame: Frame, wanted: str | None = None) -> Frame:
     return frame.only(names)
 
 
-def check_columns(closed: Any, wanted: str) -> None:
-    """Refuse before a part is dropped what ``printed`` will, by the study of the closed form."""
-    frame = aspects(closed)
-    printed(tables.frame(dict(frame) | dict.fromkeys(DROP_COLUMNS, frame["aspect"])), wanted)
+def check_columns(study: AspectsStudy, choice: str) -> None:
+    """Refuse before a part is dropped what ``select_columns`` will, by the study of the closed form."""
+    frame = aspects(study)
+    select_columns(tables.frame(dict(frame) | dict.fromkeys(DROP_COLUMNS, frame["aspect"])), choice)
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: AspectsStudy) -> dict[str, Any]:
     """Return all of a part and its aspects; ``recommended``, the rule of that answer, is None for a card."""
     return columns.part(study.part, study.aspects.warnings) | {
         "recommended": None if study.recommended is None else study.recommended.rule,
@@ -99,7 +103,7 @@ def document(study: Any) -> dict[str, Any]:
     }
 
 
-def remarks(study: Any) -> list[str]:
+def remarks(study: AspectsStudy) -> list[str]:
     """Return what a user should know of pictures that are missing or not whole, a line each."""
     count = len(study.aspects.names)
     if study.part.vertices is None:
@@ -108,8 +112,8 @@ def remarks(study: Any) -> list[str]:
     return [] if whole else [f"aspects.png shows the first {MOST_DRAWN_ASPECTS} of {count} rows"]
 
 
-def offers(study: Any, *, tipping: bool = False) -> list[offer.Offer]:
-    """Offer the table of aspects, its pictures and, with ``tipping``, the tipping graph.
+def offers(study: AspectsStudy, *, with_graph: bool = False) -> list[offer.Offer]:
+    """Offer the table of aspects, its pictures and, with ``with_graph``, the tipping graph.
 
     ``names.yaml``, the aspects by name to be edited and read again, and ``aspects.png`` only of a part that
     has a shape.
@@ -126,25 +130,25 @@ def offers(study: Any, *, tipping: bool = False) -> list[offer.Offer]:
         what = "The part as it rests on each aspect"
         offered.append(offer.text("names.yaml", names_text, study.part, study.aspects))
         offered.append(offer.picture("aspects.png", what, aspect_views, *drawn))
-    if tipping:
-
-        def draw() -> Any:
-            return draw_tipping_graph(study, study.transitions, study.aspects.probabilities["quasistatic"])
-
+    if with_graph:
+        rules = study.aspects.probabilities
         offered += [
             offer.table("graph.csv", transitions, study),
-            offer.picture("graph.png", TIPPING_ALT, draw),
-        ]
+            offer.picture(
+                "graph.png", TIPPING_ALT,
+                lambda: draw_tipping_graph(study, study.transitions, rules["quasistatic"]),
+            ),
+        ]  # fmt: skip
     return offered
 
 
-def _probability_chart(study: Any) -> Any:
+def _probability_chart(study: AspectsStudy) -> "style.Figure":
     """The probability of each of the first stable aspects: the recommended answer first, then every rule."""
-    part, resting, answer = study.part, study.aspects, study.recommended
+    part, aspects, answer = study.part, study.aspects, study.recommended
     title = f"{part.name} (open surface)" if part.open_surface else part.name
-    stable = np.flatnonzero(resting.stable)[:MOST_DRAWN_ASPECTS]
-    names = [resting.names[row] for row in stable]
-    by_rule = {rule: p[stable] for rule, p in resting.probabilities.items()}
+    stable = np.flatnonzero(aspects.stable)[:MOST_DRAWN_ASPECTS]
+    names = [aspects.names[row] for row in stable]
+    by_rule = {rule: p[stable] for rule, p in aspects.probabilities.items()}
     if answer is None:
         return profile_bars(names, by_rule, title=title)
     shares = np.array([answer.p[stable], answer.low[stable], answer.high[stable]])
@@ -156,7 +160,7 @@ NARROW_IN, WIDE_IN = 5.2, 12.0  # [in] limits of the figure's width
 MARKS = "osD^vPX*<>hp"  # of the rules: who does not see their colours tells them apart by shape
 
 
-def profile_bars(names: Sequence[str], profiles: Mapping[str, Any], title: str = "") -> Any:
+def profile_bars(names: Sequence[str], profiles: Mapping[str, Floats], title: str = "") -> "style.Figure":
     """Draw profiles, (A,) shares [1] by rule or experiment, grouped by the A names; NaN draws no bar."""
     width = float(np.clip(len(names) * (len(profiles) + 1.0) * 0.34 + 1.0, NARROW_IN, WIDE_IN))
     room = (width - 1.0) / (len(names) * (len(profiles) + 1.0))  # [in] of paper that a bar has
@@ -176,7 +180,9 @@ def profile_bars(names: Sequence[str], profiles: Mapping[str, Any], title: str =
     return figure
 
 
-def answer_bars(names: Sequence[str], answer: Any, profiles: Mapping[str, Any], title: str = "") -> Any:
+def answer_bars(
+    names: Sequence[str], answer: Floats, profiles: Mapping[str, Floats], title: str = ""
+) -> "style.Figure":
     """Draw the recommended answer with its interval as a bar, and every rule as a small mark beside it.
 
     ``answer`` is (3, A) [1], the probability of each aspect and the ends of its interval; ``profiles`` are
@@ -210,7 +216,9 @@ LINE_PX, SMALL_LINE_PX = 24, 17  # [px] of text, and of the rules' smaller text
 BAR_PX, BARS_PX = 94, 140  # [px] length of a bar for a probability of 1, and where it starts
 
 
-def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = None) -> Any:
+def aspect_views(
+    part: Part, aspects: Aspects, rows: Sequence[int], answer: Recommended | None = None
+) -> "style.Figure":
     """Draw a part with a mesh on those of its aspects whose ``rows`` are given, in this order.
 
     The recommended ``answer``, where there is one, stands first below each, with its interval.
@@ -218,7 +226,7 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
     solid, count = shading.Rays(part.vertices, part.faces, part.centre_of_mass), len(rows)
     points = shading.outer_points(solid.points)
     stances = [
-        shading.stance(points, resting.normals[row], resting.heights[row] / solid.size) for row in rows
+        shading.stance(points, aspects.normals[row], aspects.heights[row] / solid.size) for row in rows
     ]
     # the edge of one pixel [size], the same in every panel, with room about the largest part in it
     columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
@@ -226,7 +234,7 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
     width = PANEL_PX if count > 1 else SINGLE_PANEL_PX
     pixel = max(wide / width, tall / (1.15 * PANEL_PX))
     height = max(int(np.ceil(tall / pixel)), PANEL_PX // 3)
-    caption = LINE_PX * (2 + (answer is not None)) + SMALL_LINE_PX * len(resting.probabilities)
+    caption = LINE_PX * (2 + (answer is not None)) + SMALL_LINE_PX * len(aspects.probabilities)
     sheet = style.Panels(columns, width, [height] * -(-count // columns), caption, head=92, foot=76)
     # head: name, material, mass and a scale bar
     (width, height), colour = sheet.page, style.ACCENT if part.open_surface else style.INK
@@ -243,30 +251,30 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
         (x, y, width, height) = place
         left, bottom = 0.5 * np.sum(standing.shadow_box, axis=0) - 0.5 * pixel * np.array([width, height])
         frame = shading.Shot(left, bottom, pixel, width, height)
-        colour = shading.STEEL_COLOUR if resting.stable[row] else shading.PALE_COLOUR
+        colour = shading.STEEL_COLOUR if aspects.stable[row] else shading.PALE_COLOUR
         axes = style.inset(figure, page, place)
         axes.set_axis_off()
         image = shading.picture(solid, standing, frame, colour)
         axes.imshow(image, extent=frame.extent, interpolation="nearest")
-        shading.contact(axes, solid, standing, resting.polygons[row] / solid.size)
-        shading.rolling_axis(axes, solid, standing, resting.axes[row])
+        shading.contact(axes, solid, standing, aspects.polygons[row] / solid.size)
+        shading.rolling_axis(axes, solid, standing, aspects.axes[row])
         shading.centre_of_mass(axes, 11.0 * pixel)
         below = style.inset(figure, page, (x, y - caption, width, caption))
         below.set_axis_off()
         below.set(xlim=(0, width), ylim=(-caption, 0))
-        _caption(below, resting, row, answer)
-    shading.marks_legend(page, 30, 30, rolling=bool(np.isfinite(resting.axes[list(rows)]).any()))
+        _caption(below, aspects, row, answer)
+    shading.marks_legend(page, 30, 30, rolling=bool(np.isfinite(aspects.axes[list(rows)]).any()))
     return figure
 
 
-def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
+def _caption(axes: "style.Axes", aspects: Aspects, row: int, answer: Recommended | None) -> None:
     """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
-    what = f"{resting.kinds[row]} ×{resting.faces[row]}" if resting.stable[row] else "not stable"
-    look = {"color": style.INK, "va": "center"}
-    name = axes.text(30, -0.6 * LINE_PX, resting.names[row], fontsize=11, fontweight="bold", **look)
-    after_name = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}
+    what = f"{aspects.kinds[row]} ×{aspects.faces[row]}" if aspects.stable[row] else "not stable"
+    look: dict[str, Any] = {"color": style.INK, "va": "center"}
+    name = axes.text(30, -0.6 * LINE_PX, aspects.names[row], fontsize=11, fontweight="bold", **look)
+    after_name: dict[str, Any] = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}
     axes.annotate(what, (1.0, 0.5), fontsize=8, **after_name, **look)
-    if not resting.stable[row]:
+    if not aspects.stable[row]:
         return
     y, bars = -1.55 * LINE_PX, list[Any]()  # label, share, height [px], colour, words and their look
     if answer is not None:
@@ -275,7 +283,7 @@ def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
         bold = {"fontsize": 6.5, "fontweight": "bold"}
         bars.append((y, "recommended", share, 13, style.ANSWER, words, bold))
         y -= LINE_PX
-    for place, (rule, values) in enumerate(resting.probabilities.items()):
+    for place, (rule, values) in enumerate(aspects.probabilities.items()):
         label, colour = style.method(rule, place)
         words, plain = f"{100.0 * values[row]:.1f} %", {"fontsize": 6.0}
         bars.append((y - place * SMALL_LINE_PX, label, values[row], 5, colour, words, plain))
@@ -319,12 +327,15 @@ EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is a
 RING_REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
-def tipping_graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = None) -> Any:
+def tipping_graph(
+    title: str, names: Sequence[str], tips: Sequence[Transition], shares: Floats,
+    draw_aspect: Callable[[int], Array] | None = None,
+) -> "style.Figure":  # fmt: skip
     """Draw the A aspects on a ring, joined by arrows that carry the lift in mm.
 
     ``tips`` are Transitions, ``shares`` (A,) [1] quasi-static probabilities: an aspect where it is NaN is
-    left out. ``drawn`` gives the picture (H, W, C) of an aspect by its row; without it a disc stands for
-    each aspect, whose area grows with its share.
+    left out. ``draw_aspect`` gives the picture (H, W, C) of an aspect by its row; without it a disc stands
+    for each aspect, whose area grows with its share.
     """
     figure = style.figure(6.4, 6.4)
     axes, head = figure.add_subplot(), f"{title}: lift to tip [mm]"
@@ -333,18 +344,18 @@ def tipping_graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = N
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(visible)) / max(len(visible), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(visible, turn)}
     sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
-    sizes = sizes if drawn is None else np.full(len(names), 4200.0)
+    sizes = sizes if draw_aspect is None else np.full(len(names), 4200.0)
     _arrows(axes, tips, places, sizes, names)
     for k, place in places.items():
-        edge = style.INK if drawn is None else style.FAINT
+        edge = style.INK if draw_aspect is None else style.FAINT
         axes.scatter(*place, s=sizes[k], color="white", edgecolor=edge, zorder=3)
         look = {"ha": "center", "color": style.INK}
-        if drawn is None:  # a letter within its disc, a longer name across it
+        if draw_aspect is None:  # a letter within its disc, a longer name across it
             letter = len(names[k]) <= 2
             box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
             axes.annotate(names[k], place, va="center", fontsize=11 if letter else 9, zorder=4, **look, **box)
         else:  # the part as it rests on the aspect, name and share below
-            image = drawn(k)
+            image = draw_aspect(k)
             half = 0.15 * np.array([1.0, image.shape[0] / image.shape[1]])
             (left, low), (right, high) = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
             axes.imshow(image, extent=(left, right, low, high), zorder=4, interpolation="antialiased")
@@ -362,58 +373,62 @@ def tipping_graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = N
     return figure
 
 
-def draw_tipping_graph(study: Any, tips: Any, shares: Any) -> Any:
+def draw_tipping_graph(study: AspectsStudy, tips: Sequence[Transition], shares: Floats) -> "style.Figure":
     """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape."""
-    part, resting = study.part, study.aspects
+    part, aspects = study.part, study.aspects
     if part.vertices is None:
-        return tipping_graph(part.name, resting.names, tips, shares)
+        return tipping_graph(part.name, aspects.names, tips, shares)
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
-    drawn = partial(shading.thumbnail, solid, resting, size=(160, 120))
-    return tipping_graph(part.name, resting.names, tips, shares, drawn)
+    draw_aspect = partial(shading.thumbnail, solid, aspects, size=(160, 120))
+    return tipping_graph(part.name, aspects.names, tips, shares, draw_aspect)
 
 
-def _arrows(axes: Any, tips: Any, places: Any, sizes: Any, names: Any) -> None:
+def _arrows(
+    axes: "style.Axes", tips: Sequence[Transition], places: Mapping[int, Vector], sizes: Floats,
+    names: Sequence[str],
+) -> None:  # fmt: skip
     """The easiest way between every two discs that are shown, bent to leave room for the way back.
 
     The easiest out of each disc stands out. A lift is written where it covers the least.
     """
     lowest: dict[int, float] = {}
-    between: dict[tuple[int, int], float] = {}
+    lifts: dict[tuple[int, int], float] = {}
     for tip in tips:
         lowest[tip.start] = min(tip.lift, lowest.get(tip.start, np.inf))
         pair = (tip.start, tip.end)
-        if set(pair) <= set(places) and tip.lift < between.get(pair, np.inf):
-            between[pair] = tip.lift
+        if set(pair) <= set(places) and tip.lift < lifts.get(pair, np.inf):
+            lifts[pair] = tip.lift
     # boxes of discs and labels: middle, half width, half height
-    taken = [(*place, max(HALF_DISC, _half(names[k])[0]), HALF_DISC) for k, place in places.items()]
-    curves = {pair: _curve(places[pair[0]], places[pair[1]], np.linspace(0.0, 1.0, 60)) for pair in between}
+    boxes = [(*place, max(HALF_DISC, _half(names[k])[0]), HALF_DISC) for k, place in places.items()]
+    curves = {pair: _curve(places[pair[0]], places[pair[1]], np.linspace(0.0, 1.0, 60)) for pair in lifts}
     bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-    look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
-    for pair, lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
+    look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
+    for pair, lift in sorted(lifts.items(), key=lambda item: -item[1]):  # the easy ones on top
         start, end = (places[k] for k in pair)
         easiest, text = lift <= EQUAL_LIFT * lowest[pair[0]], f"{lift / MM:.3g}"
         half, spot = np.array(_half(text)), 1.32 * start
         if not np.allclose(start, end):
             shrunk = {f"shrink{e}": 0.5 * np.sqrt(sizes[k]) + 4.0 for e, k in zip("AB", pair)}
             line = {"color": style.ACCENT if easiest else "#9ba3aa", "linewidth": 1.1}
-            axes.annotate("", end, start, arrowprops={**bent, **shrunk, **line}, zorder=2 if easiest else 1)
+            ends, arrow = (tuple(end), tuple(start)), {**bent, **shrunk, **line}
+            axes.annotate("", *ends, arrowprops=arrow, zorder=2 if easiest else 1)
             # area of discs and labels that are covered, and points of other arrows
             crossed = np.vstack([np.zeros((0, 2)), *(curve for key, curve in curves.items() if key != pair)])
-            spots, hidden = _curve(start, end, np.array(LIFT_SPOTS)), []
+            spots, covers = _curve(start, end, np.array(LIFT_SPOTS)), []
             for place in spots:
                 sides = [
                     [max(half[k] + near[k + 2] - abs(place[k] - near[k]), 0.0) for k in (0, 1)]
-                    for near in taken
+                    for near in boxes
                 ]
                 under = (np.abs(crossed - place) < half).all(axis=1).sum()
-                hidden.append(sum(wide * high for wide, high in sides) + 2e-3 * under)
-            spot = spots[int(np.argmin(hidden))]
-        axes.annotate(text, spot, color=style.ACCENT if easiest else style.INK, **look)
-        taken.append((*spot, *half))
+                covers.append(sum(wide * high for wide, high in sides) + 2e-3 * under)
+            spot = spots[int(np.argmin(covers))]
+        axes.annotate(text, tuple(spot), color=style.ACCENT if easiest else style.INK, **look)
+        boxes.append((*spot, *half))
 
 
-def _curve(start: Any, end: Any, shares: Any) -> Any:
+def _curve(start: Vector, end: Vector, shares: Floats) -> Points:
     """The points (K, 2) of a bent arrow at shares (K,) of its way."""
     along = end - start
     offset = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc

@@ -8,6 +8,7 @@ from typing import Any
 from feederscrew.heavy import heavy
 from feederscrew.output import style
 from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 
 mpl_image = heavy("matplotlib.image")
 shading = heavy("feederscrew.output.shading")
@@ -20,7 +21,7 @@ NAME_LETTERS = 26  # of a line of text
 LINES, BELOW = 8, 3  # of the reason why a part failed, and of what stands below a picture
 
 
-def thumbnail(part: Part, record: Any, aspect: str | None = None) -> bytes:
+def thumbnail(part: Part, record: Aspects, aspect: str | None = None) -> bytes:
     """Draw a part with a mesh on one of its aspects as a PNG; without a name on the likeliest."""
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     row = record.names.index(aspect or record.likeliest)
@@ -38,7 +39,7 @@ def sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> bytes:
     return style.png(_sheet(tiles))
 
 
-def _sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> Any:
+def _sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> "style.Figure":
     columns, rows = min(ACROSS, len(tiles)), -(-len(tiles) // ACROSS)
     panels = style.Panels(columns, WIDTH, [HEIGHT] * rows, TEXT, EDGE, EDGE, EDGE)
     figure, axes = style.sheet(*panels.page)
@@ -46,22 +47,22 @@ def _sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> Any:
         left, bottom, _, _ = panels.place(place)
         middle = left + WIDTH / 2
         look = {"fontsize": 7, "color": style.ACCENT if picture is None else style.INK, "ha": "center"}
-        title = _shortened(name, NAME_LETTERS)
+        title = _shorten(name, NAME_LETTERS)
         axes.text(middle, bottom - 14, title, fontweight="bold", va="center", **look)
         if picture is None:  # the reason has the place of the picture
-            axes.text(middle, bottom + HEIGHT / 2, _wrapped(text, LINES), va="center", **look)
+            axes.text(middle, bottom + HEIGHT / 2, _wrap(text, LINES), va="center", **look)
         else:
             figure.figimage(mpl_image.imread(io.BytesIO(picture)), left, bottom)
-            axes.text(middle, bottom - 24, _wrapped(text, BELOW), va="top", **look)
+            axes.text(middle, bottom - 24, _wrap(text, BELOW), va="top", **look)
     return figure
 
 
-def _wrapped(text: str, most: int) -> str:
+def _wrap(text: str, most: int) -> str:
     lines = textwrap.wrap(text, NAME_LETTERS + 2)
     if len(lines) > most:
-        lines = [*lines[: most - 1], _shortened(lines[most - 1] + " ...", NAME_LETTERS)]
+        lines = [*lines[: most - 1], _shorten(lines[most - 1] + " ...", NAME_LETTERS)]
     return "\n".join(lines)
 
 
-def _shortened(text: str, most: int) -> str:
+def _shorten(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most - 3]}..."

@@ -7,13 +7,14 @@ the stretches of the track and their development in sheet metal.
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
 from feederscrew.arrays import Floats
+from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.verified import Verified
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import solidbowl_views as views
 from feederscrew.output import tooling_drawing
@@ -21,8 +22,11 @@ from feederscrew.output.drafting import FRAME, Drawing, scale_words
 from feederscrew.output.marking import SheetFields, of_trial
 from feederscrew.output.tooling_drawing import EDGES, View
 from feederscrew.solidbowl import facets, segments, track
+from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.measuring import Measures, measures
-from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
+from feederscrew.solidbowl.plan import DOME, BowlPlan, Stretch, TrackPath
+from feederscrew.studies.bowl import MachineSheet, Order
+from feederscrew.tooling.track_sections import Station
 from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
@@ -36,30 +40,34 @@ DEVELOPED_PLACES = 61  # along a piece at which it is developed
 
 
 def draw_sheets(
-    study: Any, tried: Any = None, mark: str | None = None, fields: SheetFields | None = None
-) -> Drawing:
+    study: MachineSheet, trial: Verified | None = None, mark: str | None = None,
+    fields: SheetFields | None = None,
+) -> Drawing:  # fmt: skip
     """Return the drawing of a bowl on its sheets, of a MachineSheet with its order and its solid.
 
-    ``tried`` is what a trial of the bowl has shown, ``mark`` stands across each sheet in place of the
+    ``trial`` is what a trial of the bowl has shown, ``mark`` stands across each sheet in place of the
     trial's, ``fields`` are date and revision of the title block.
     """
-    drawing, solid = Drawing(tooling_drawing.DEVICE_PENS), study.solid.with_lugs
+    order, whole = study.order, study.solid
+    if order is None or whole is None:
+        raise ValueError("the sheet of a bowl shows its order and its solid")
+    drawing, solid = Drawing(tooling_drawing.DEVICE_PENS), whole.with_lugs
     wide, deep, high = (float(x) for x in np.ptp(solid.vertices, axis=0))
-    sizes = replace(measures(study.solid), extent=(wide, deep, high))
+    sizes = replace(measures(whole), extent=(wide, deep, high))
     scale = min(_scale(max(wide, deep) / MM, VIEW_ROOM[0]), _scale(sizes.height / MM, VIEW_ROOM[1]))
     count = 3 if solid.plan.stretch is not None else 2
     drawing.box(*FRAME)
-    _from_above(drawing, solid, sizes, scale)
-    _side_views(drawing, solid, sizes, scale)
-    _springs(drawing, study)
-    _list_parts(drawing, study, (246.0, 134.0))
-    _title_block(drawing, study, sizes, scale, tried, fields, f"1 of {count}")
-    drawing.mark(of_trial(tried, mark))
+    _draw_from_above(drawing, solid, sizes, scale)
+    _draw_side_views(drawing, solid, sizes, scale)
+    _draw_springs(drawing, study.bowl, whole.plan.turned)
+    _draw_list(drawing, study, whole, (246.0, 134.0))
+    _draw_title_block(drawing, study, order, whole, sizes, scale, trial, fields, f"1 of {count}")
+    drawing.mark(of_trial(trial, mark))
     if solid.plan.stretch is not None:
-        _devices(drawing, study, fields, f"2 of {count}")
-        drawing.mark(of_trial(tried, mark))
-    _track(drawing, study, fields, f"{count} of {count}")
-    drawing.mark(of_trial(tried, mark))
+        _draw_devices(drawing, whole.plan, solid.plan.stretch, order.part.name, fields, f"2 of {count}")
+        drawing.mark(of_trial(trial, mark))
+    _draw_track(drawing, whole.plan, order.part.name, fields, f"{count} of {count}")
+    drawing.mark(of_trial(trial, mark))
     return drawing
 
 
@@ -67,7 +75,7 @@ def _scale(size: float, room: float) -> float:
     return next((scale for scale in SCALES if scale * size <= room), SCALES[-1])
 
 
-def _placed(pieces: ArrayLike, at: ArrayLike, scale: float) -> Floats:
+def _to_paper(pieces: ArrayLike, at: ArrayLike, scale: float) -> Floats:
     return np.asarray(pieces, float) / MM * scale + np.asarray(at, float)
 
 
@@ -77,15 +85,15 @@ def _draw_view(drawing: Drawing, pieces: Floats) -> None:
     drawing.lines(shapely.get_coordinates(line) for line in shapely.get_parts(merged))
 
 
-def _head(drawing: Drawing, x: float, y: float, words: str, scale: float | None) -> None:
+def _draw_head(drawing: Drawing, x: float, y: float, words: str, scale: float | None) -> None:
     drawing.text(x, y, words if scale is None else f"{words}  {scale_words(scale)}", 3.0, bold=True)
 
 
-def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
+def _draw_from_above(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale: float) -> None:
     """The bowl from above: its diameter, the track's width, the bolts, and where the tooling begins."""
     at, plan = np.array([95.0, 203.0]), solid.plan
     drawn = views.lines(solid.vertices, solid.faces, views.camera(-90.0, 90.0))
-    _draw_view(drawing, _placed(drawn, at, scale))
+    _draw_view(drawing, _to_paper(drawn, at, scale))
     r = 0.5 * sizes.diameter / MM * scale
     low = at[1] - 0.5 * max(sizes.extent[:2]) / MM * scale - 6.0
     if plan.stairs is None:
@@ -113,7 +121,7 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
     drawing.lines([[at - [r + 6, 0], at + [r + 6, 0]]], "CENTRE")
     for side in (-1, 1):
         drawing.text(at[0] + side * (r + 10.0), at[1] - 5.0, "A", 3.0, "center", bold=True)
-    _head(drawing, 25.0, 281.0, "from above", scale)
+    _draw_head(drawing, 25.0, 281.0, "from above", scale)
 
 
 def _ray(angle: float) -> Floats:
@@ -125,18 +133,18 @@ def _angle_from_outlet(plan: BowlPlan, place: float) -> float:
     return -float(plan.path.angle(plan.first + place)) / DEG
 
 
-def _side_views(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
+def _draw_side_views(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale: float) -> None:
     """Draw the section A-A with the yoke of the inner rail, the view from outside, and the bowl standing."""
     at = np.array([255.0, TOP - solid.vertices[:, 2].max() / MM * scale])
-    rings = [_placed(ring, at, scale) for ring in facets.section(facets.placed(solid), 0.0)]
-    drawing.hatched(rings)
+    rings = [_to_paper(ring, at, scale) for ring in facets.section(facets.placed(solid), 0.0)]
+    drawing.hatch(rings)
     low = at[1] + solid.vertices[:, 2].min() / MM * scale
     left = min(ring[:, 0].min() for ring in rings)
     right = max(ring[:, 0].max() for ring in rings)
     high = low + sizes.height / MM * scale
     drawing.length((left, low), (left, high), (-6.0, 0.0), scale)
     drawing.length((right, at[1]), (right, at[1] + sizes.outlet_height / MM * scale), (6.0, 0.0), scale)
-    _head(drawing, 190.0, 281.0, "A-A", scale)
+    _draw_head(drawing, 190.0, 281.0, "A-A", scale)
     plate, far = solid.plan.material.plate / MM, sizes.outlet_height / MM
     text = f"wall {sizes.wall / MM:.3g}, floor {sizes.floor / MM:.3g} at {DOME / DEG:.3g}°, track {plate:.3g}"
     text += f"; outlet {far:.4g} over the floor's edge"
@@ -144,7 +152,7 @@ def _side_views(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
     plan, rails = solid.plan, _hanging_station(solid.plan)
     angle = (plan.turned if plan.left else -plan.turned) % (2.0 * np.pi)
     s = float(plan.path.at(angle - 2.0 * np.pi if angle > 1e-9 else 0.0))
-    if rails is not None and s >= plan.first + float(rails.hole[:, 0].min()):
+    if rails is not None and rails.hole is not None and s >= plan.first + float(rails.hole[:, 0].min()):
         outer, top = float(plan.path.wall_radius(s)), float(plan.path.height(s)) - plan.material.plate
         deep, foot = top - plan.hanging, top - plan.hanging - track.YOKE
         near, far_edge = (outer - edge for edge in rails.device.span)
@@ -153,14 +161,14 @@ def _side_views(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
             (outer, top), (outer, foot), (inner, foot), (inner, top), (far_edge, top), (far_edge, deep),
             (near, deep), (near, top),
         ]  # fmt: skip
-        drawing.outline(_placed(yoke, at, scale), "HIDDEN")
+        drawing.outline(_to_paper(yoke, at, scale), "HIDDEN")
         text += "; dashed: yoke of the inner rail"
     drawing.text(at[0], low - 8.0, text, 2.2, "center")
     # below it towards the outlet, from outside
     top = TOP - sizes.height / MM * scale - VIEW_DISTANCE_MM
     at = np.array([255.0, top - solid.vertices[:, 2].max() / MM * scale])
     turn = np.degrees(plan.turned) + (-90.0 if plan.left else 90.0)
-    drawn = _placed(views.lines(solid.vertices, solid.faces, views.camera(turn, 0.0)), at, scale)
+    drawn = _to_paper(views.lines(solid.vertices, solid.faces, views.camera(turn, 0.0)), at, scale)
     _draw_view(drawing, drawn)
     low = at[1] + solid.vertices[:, 2].min() / MM * scale
     wide = (0.5 * sizes.diameter + sizes.wall) / MM * scale
@@ -168,7 +176,7 @@ def _side_views(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
     if plan.stairs is not None:
         left, right, text = drawn[..., 0].min(), drawn[..., 0].max(), "<>"
     drawing.length((left, low), (right, low), (0.0, -6.0), scale, text, decimals=1)
-    _head(drawing, 190.0, top + 3.0, "towards the outlet", scale)
+    _draw_head(drawing, 190.0, top + 3.0, "towards the outlet", scale)
     # and as it stands
     pieces = views.lines(solid.vertices, solid.faces, views.camera(np.degrees(plan.turned) - 125.0, 42.0))
     least, most = pieces.reshape(-1, 2).min(axis=0), pieces.reshape(-1, 2).max(axis=0)
@@ -177,19 +185,19 @@ def _side_views(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
     drawing.text(335.0, 281.0, "not to scale", 2.2)
 
 
-def _hanging_station(plan: BowlPlan) -> Any:
+def _hanging_station(plan: BowlPlan) -> Station | None:
     """The station of the rails that parts hang between, or None."""
     stations = plan.stretch.stations if plan.stretch is not None else ()
     return next((station for station in stations if station.device.hangs and station.hole is not None), None)
 
 
-def _springs(drawing: Drawing, study: Any) -> None:
-    """The circle of the springs from above, and one bank from the axis, as it stands."""
-    under, banks = study.bowl.machine, sheets.spring_banks(study.bowl)
+def _draw_springs(drawing: Drawing, bowl: Bowl, outlet: float) -> None:
+    """The circle of the springs from above, the outlet at an angle [rad], and one bank from the axis."""
+    under, banks = bowl.machine, sheets.spring_banks(bowl)
     at, reach = np.array([77.0, 68.0]), (under.spring_radius + under.leaf_width) / MM
     scale = _scale(2.0 * reach, 105.0)
     r = under.spring_radius / MM * scale
-    _head(drawing, 25.0, 127.0, "leaf springs from above", scale)
+    _draw_head(drawing, 25.0, 127.0, "leaf springs from above", scale)
     drawing.circle(at, r, "CENTRE")
     sides = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
     half = 0.5 * np.array([under.leaf_width, under.leaf_thickness]) / MM * scale
@@ -200,7 +208,6 @@ def _springs(drawing: Drawing, study: Any) -> None:
     drawing.round_size(at, r, 200.0, scale, diameter=True)
     if len(banks.angles) > 1:
         drawing.angle(at, 0.6 * r, banks.angles[0] / DEG, banks.angles[1] / DEG)
-    outlet = study.solid.plan.turned
     drawing.lines([[at, at + (r + 8.0) * _ray(outlet)]], "CENTRE")
     x, y = at + (r + 10.0) * _ray(outlet)
     drawing.text(x, y, "outlet", 2.2, "left" if np.cos(outlet) >= 0.0 else "right")
@@ -223,7 +230,7 @@ def _springs(drawing: Drawing, study: Any) -> None:
         left, right = (2.0 * thin * (k - (count - 1)) + x * thin for x in (-1, 1))
         for below, above in ((low, high),) if k % 2 == 0 else ((low, -clamp), (clamp, high)):
             corners = placed([(left, below), (right, below), (right, above), (left, above)])
-            drawing.outline(corners, "EDGE") if k % 2 == 0 else drawing.hatched([corners])
+            drawing.outline(corners, "EDGE") if k % 2 == 0 else drawing.hatch([corners])
     start, end = placed([(outer, -clamp), (outer, clamp)])
     drawing.length(start, end, 8.0 * axes[0], scale)
     top = clamp + 12.0 * scale
@@ -232,7 +239,7 @@ def _springs(drawing: Drawing, study: Any) -> None:
     (foot,) = placed([(-outer, -clamp - 12.0 * scale)])
     drawing.lines([[foot, foot + [0.0, 0.75 * long * scale]]], "CENTRE")
     drawing.angle(foot, 0.62 * long * scale, 90.0 - tilt / DEG, 90.0)
-    _head(drawing, 140.0, 127.0, "one bank from the axis", scale)
+    _draw_head(drawing, 140.0, 127.0, "one bank from the axis", scale)
     words = (
         f"{len(banks.counts)} banks: {', '.join(map(str, banks.counts))} leaves {sheets.leaf_words(under)}",
         f"{banks.spacers} spacers {under.leaf_width / MM:.3g} x {thick:.3g}; {long:.4g} free between clamps",
@@ -241,8 +248,8 @@ def _springs(drawing: Drawing, study: Any) -> None:
         drawing.text(140.0, 19.0 - 4.0 * k, line, 2.2)
 
 
-def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
-    solid, under, banks = study.solid, study.bowl.machine, sheets.spring_banks(study.bowl)
+def _draw_list(drawing: Drawing, study: MachineSheet, solid: BowlSolid, corner: tuple[float, float]) -> None:
+    under, banks = study.bowl.machine, sheets.spring_banks(study.bowl)
     plan, cut, (weight, angle) = solid.plan, solid.segments, solid.balance
     turn = (angle - plan.turned) / DEG % 360.0
     rows = [
@@ -269,18 +276,18 @@ def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
     ]
     numbered = [[str(k), *row] for k, row in enumerate(rows, start=1)]
     line = min(4.6, 54.0 / (len(rows) + 1))
-    drawing.table(*at, [10.0, 18.0, 136.0], [["pos.", "quantity", "what"], *numbered], line=line)
+    drawing.table(*corner, [10.0, 18.0, 136.0], [["pos.", "quantity", "what"], *numbered], line=line)
 
 
-def _title_block(
-    drawing: Drawing, study: Any, sizes: Measures, scale: float, tried: Any, fields: SheetFields | None,
-    sheet: str,
+def _draw_title_block(
+    drawing: Drawing, study: MachineSheet, order: Order, solid: BowlSolid, sizes: Measures, scale: float,
+    trial: Verified | None, fields: SheetFields | None, sheet: str,
 ) -> None:  # fmt: skip
     """The title block in the lower right corner; of a bowl that was tried as it was tried."""
     left, low, right, high = 246.0, 10.0, 410.0, 78.0
     drawing.box(left, low, right, high)
-    solid, order, plan, path = study.solid, study.order, study.solid.plan, study.solid.plan.path
-    drawing.text(left + 2.0, high - 5.5, f"Bowl for {_shortened(order.part.name)}", 4.0, bold=True)
+    plan, path = solid.plan, solid.plan.path
+    drawing.text(left + 2.0, high - 5.5, f"Bowl for {_shorten(order.part.name)}", 4.0, bold=True)
     # what of its drive the springs do not make, at most two lines
     lines = list(filter(None, [sheets.two_axis(study.bowl.drive)]))
     if study.mismatch is not None:
@@ -288,9 +295,9 @@ def _title_block(
     for k, line in enumerate(lines):
         drawing.text(left, high + 5.4 - 3.2 * k, line, 1.85, layer="NOTE")
     wanted, rate = "all that pass", []
-    if tried is not None:
-        wanted = _shortened(tried.wanted, NARROW_LETTERS)
-        rate = [("rate of its trial", _shortened(sheets.rate_of_trial(tried), NARROW_LETTERS))]
+    if trial is not None:
+        wanted = _shorten(trial.wanted, NARROW_LETTERS)
+        rate = [("rate of its trial", _shorten(sheets.rate_of_trial(trial), NARROW_LETTERS))]
     elif order.wanted is not None:
         wanted = f"{order.wanted[0]} at {np.degrees(order.wanted[1]):.3g}°"
     # climbs and banks of the track, one after the other
@@ -300,7 +307,7 @@ def _title_block(
     )
     hand = f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise"
     pairs = [
-        ("drawing of part", _shortened(order.part.source.rpartition("/")[2])),
+        ("drawing of part", _shorten(order.part.source.rpartition("/")[2])),
         ("rate asked for", f"{order.target / PER_MINUTE:.4g} a minute"),
         ("orientation", wanted),
         *rate,
@@ -318,7 +325,7 @@ def _title_block(
         ("centre of mass", f"{', '.join(f'{x / MM:.1f}' for x in solid.centre)} mm"),
         ("size", f"{' x '.join(f'{x / MM:.4g}' for x in sizes.extent)} mm"),
         ("general tolerance", f"{GENERAL}; cuts {CUT_TOLERANCE} mm"),
-        ("drawn by", "feeder bowl" if tried is None else "feeder design, feeder bowl"),
+        ("drawn by", "feeder bowl" if trial is None else "feeder design, feeder bowl"),
         *_sheet_fields(fields, scale, sheet),
     ]
     half = (len(pairs) + 1) // 2
@@ -333,17 +340,17 @@ def _sheet_fields(fields: SheetFields | None, scale: float, sheet: str) -> list[
     return [scales, *tooling_drawing.title_fields(fields)]
 
 
-def _small_title(drawing: Drawing, study: Any, scale: float, fields: SheetFields | None, sheet: str) -> None:
+def _draw_title(drawing: Drawing, part: str, scale: float, fields: SheetFields | None, sheet: str) -> None:
     left, low, right, _ = FRAME
     drawing.box(*FRAME)
     drawing.box(left, low, right, low + 8.0)
-    name = ("bowl for", _shortened(study.order.part.name))
+    name = ("bowl for", _shorten(part))
     for k, (key, value) in enumerate([name, *_sheet_fields(fields, scale, sheet)]):
         x = left + 2.0 + (0.0, 88.0, 190.0, 292.0, 342.0)[k]
         drawing.text(x, low + 2.8, f"{key}: {value}", 2.2)
 
 
-def _shortened(words: str, letters: int = 46) -> str:
+def _shorten(words: str, letters: int = 46) -> str:
     return words if len(words) <= letters else f"{words[: letters - 1]}…"
 
 
@@ -351,44 +358,46 @@ def _climbs(path: TrackPath) -> list[float]:
     return [path.climb, *(climb for _, climb in path.bends)]
 
 
-def _climbing(path: TrackPath) -> Iterator[tuple[tuple[float, float], float]]:
+def _stretches(path: TrackPath) -> Iterator[tuple[tuple[float, float], float]]:
     """Stretches of one climb: from and to along the wall [m], the climb [rad]."""
     stops = itertools.pairwise([0.0, *(at for at, _ in path.bends), path.end])
     return zip(stops, _climbs(path))
 
 
-def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
+def _draw_devices(
+    drawing: Drawing, plan: BowlPlan, stretch: Stretch, part: str, fields: SheetFields | None, sheet: str
+) -> None:
     """Sheet 2: the tooled stretch unrolled, seen from above, with its dimensions and the list of devices."""
-    plan, stretch = study.solid.plan, study.solid.plan.stretch
     length = stretch.length
     if _hanging_station(plan) is not None:  # with the outlet
         to_end = length + plan.path.end - plan.first - length + plan.outlet
         length = min(to_end, 2.0 * length)
     scale = min(_scale(length / MM, 330.0), _scale(plan.width / MM, 45.0))
     drawing.new_sheet()
-    _small_title(drawing, study, scale, fields, sheet)
+    _draw_title(drawing, part, scale, fields, sheet)
     view = View((45.0, 215.0 - plan.width / MM * scale), scale, length)
     drawing.outline(view.placed([(0, 0), (length, 0), (length, plan.width), (0, plan.width)]), "TRACK")
     drawing.outline(view.placed([(0, -2e-3), (length, -2e-3), (length, -1e-9), (0, -1e-9)]), "WALL")
     holes, stations = iter(stretch.cuts), []
     for station in stretch.stations:
-        to_outlet = station.device.hangs and station.hole is not None
         if station.edge is not None:
             drawing.outline(view.placed(station.edge), station.device.layer)
         elif station.hole is not None:
             ring = np.array(next(holes).ring)
-            ring = _up_to(ring, length) if to_outlet else ring
+            ring = _extend_slot(ring, length) if station.device.hangs else ring
             ring[:, 1] = np.clip(ring[:, 1], 0.0, plan.width)
             drawing.outline(view.placed(ring), "CUT")
         if station.blade is not None:
             drawing.outline(view.placed(station.blade), "GATE")
-        stations.append(replace(station, hole=_up_to(station.hole, length)) if to_outlet else station)
+        if station.device.hangs and station.hole is not None:
+            station = replace(station, hole=_extend_slot(station.hole, length))
+        stations.append(station)
     tooling_drawing.dimension_devices(drawing, stations, view, plan.width)
     drawing.length(view.placed([length, 0]), view.placed([length, plan.width]), (27.0, 0.0), scale)
     tooling_drawing.draw_wall_bores(drawing, stations, view, 240.0)
     behind = (plan.path.end - plan.first) / MM
     words = f"track unrolled: wall below, parts move to the right; D lies {behind:.5g} mm along the wall, "
-    _head(drawing, 25.0, 281.0, f"{words}{_angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
+    _draw_head(drawing, 25.0, 281.0, f"{words}{_angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
     rows = tooling_drawing.device_rows(stretch.stations, lambda s: _angle_from_outlet(plan, s))
     rows[0][4:6] = ["from [°] *", "to [°] *"]
     # changes of the track that are no device
@@ -423,7 +432,7 @@ def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: st
         drawing.text(25.0, low - 5.0 - 4.0 * k, note, 2.2)
 
 
-def _up_to(ring: Floats, length: float) -> Floats:
+def _extend_slot(ring: Floats, length: float) -> Floats:
     """A slot (K, 2) [m] that parts hang in, carried on to a length: to the end of the outlet."""
     ring = ring.copy()
     ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = length
@@ -458,12 +467,12 @@ def _develop_track(path: TrackPath, width: float, start: float, end: float) -> t
     return np.array(flat[0::2]), np.array(flat[1::2])
 
 
-def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
+def _draw_track(drawing: Drawing, plan: BowlPlan, part: str, fields: SheetFields | None, sheet: str) -> None:
     """The last sheet: the stretches of the track from the side, and their development in sheet metal."""
-    plan, path = study.solid.plan, study.solid.plan.path
+    path = plan.path
     scale = _scale(path.end / MM, 340.0)
     drawing.new_sheet()
-    _small_title(drawing, study, scale, fields, sheet)
+    _draw_title(drawing, part, scale, fields, sheet)
     # heights over the floor's edge along the wall, from where it rises to the outlet
     stops = sorted({0.0, path.end, *(at for at, _ in (*path.bends, *path.drops))})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
@@ -473,7 +482,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
     def placed(s: float, z: float) -> Floats:
         return np.array([s, z]) / MM * scale + at
 
-    drawing.outline(np.column_stack([places, heights]) / MM * scale + at, "OUTLINE", closed=False)
+    drawing.outline(np.column_stack([places, heights]) / MM * scale + at, "OUTLINE", is_closed=False)
     drawing.lines([[at, at + [path.end / MM * scale, 0.0]]], "CENTRE")
     for s, end in zip(stops, tooling_drawing.spread([s / MM * scale + at[0] for s in stops], 4.2)):
         drawing.ordinate(placed(s, height_at[s]), (end, at[1] - 14.0), at, False, scale)
@@ -482,7 +491,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
     for z, end in zip(levels, tooling_drawing.spread([z / MM * scale + at[1] for z in levels], 4.2)):
         s = next(s for s in stops if abs(height_at[s] - z) < 1e-6)
         drawing.ordinate(placed(s, z), (right + 12.0, end), at, True, scale)
-    for (start, end), climb in _climbing(path):
+    for (start, end), climb in _stretches(path):
         middle = 0.5 * (start + end)
         x, y = placed(middle, float(path.height(middle)))
         drawing.text(x, y + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")
@@ -490,11 +499,11 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
         x, y = placed(plan.first, float(path.height(plan.first)))
         drawing.lines([[(x, y - 3.0), (x, y + 7.0)]], "NOTE")
         drawing.text(x, y + 8.0, "D", 3.0, "center", bold=True)
-    _head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
+    _draw_head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
     flat = []  # the outline of each piece: one climb, half a turn at most
     rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
              "angle", "width"]]  # fmt: skip
-    for (start, end), climb in _climbing(path):
+    for (start, end), climb in _stretches(path):
         count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
         for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
             if b <= a:
@@ -512,10 +521,10 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
                          f"{long / (inner + width) / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
     low = drawing.table(25.0, 212.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
     drawing.text(25.0, low - 5.0, "* before the outlet; radii, angle and width: of the flat sheet", 2.2)
-    _flat_pieces(drawing, flat, low - 14.0)
+    _draw_flat_pieces(drawing, flat, low - 14.0)
 
 
-def _flat_pieces(drawing: Drawing, pieces: Sequence[tuple[Floats, Floats]], top: float) -> None:
+def _draw_flat_pieces(drawing: Drawing, pieces: Sequence[tuple[Floats, Floats]], top: float) -> None:
     """The outlines of the flat pieces beside each other, each upright in the middle."""
     bodies = []
     for outer, inner in pieces:
@@ -540,4 +549,4 @@ def _flat_pieces(drawing: Drawing, pieces: Sequence[tuple[Floats, Floats]], top:
         start, end = flat[[0, DEVELOPED_PLACES - 1]] + shift
         drawing.length(start, end, (0.0, flat[:, 1].min() - flat[0, 1] - 7.0), scale)
         drawing.text(at[0], at[1] + 2.0, f"piece {k + 1}", 2.5, "center", bold=True)
-    _head(drawing, 25.0, top + 3.5, "track in sheet metal, flat", scale)
+    _draw_head(drawing, 25.0, top + 3.5, "track in sheet metal, flat", scale)

@@ -2,19 +2,23 @@
 
 import io
 import re
-from typing import Any
+from typing import Any, BinaryIO
 
-import numpy as np
+from matplotlib.backend_bases import GraphicsContextBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.figure import Figure
-from matplotlib.font_manager import findfont, get_font
+from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.image import imsave
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patheffects import withStroke
+
+from feederscrew.arrays import Array
 
 LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 letters, its middle left out
 HALO = [withStroke(linewidth=2.5, foreground="white")]  # of letters over hatching or colours
 LETTER_RIM = [withStroke(linewidth=1.1, foreground="#22303c")]  # of white letters over light colours
+
+
+Size = tuple[float, float, float]  # of a text: width, height, descent
 
 
 class _Writer(RendererAgg):
@@ -22,18 +26,21 @@ class _Writer(RendererAgg):
 
     def __init__(self, *size: float) -> None:
         super().__init__(*size)
-        self._known: dict[Any, Any] = {}  # texts and fonts: as they can be drawn, and width, height, descent
+        self._texts: dict[Any, tuple[str, Size]] = {}  # by text and font: as it can be drawn
 
-    def draw_text(self, gc: Any, x: Any, y: Any, s: str, prop: Any, *angle: Any, **more: Any) -> None:
+    def draw_text(
+        self, gc: GraphicsContextBase, x: float, y: float, s: str, prop: FontProperties,
+        *angle: Any, **more: Any,
+    ) -> None:  # fmt: skip
         more["ismath"] = False  # a name with a dollar sign is no formula
         super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, *angle, **more)
 
-    def get_text_width_height_descent(self, s: str, prop: Any, ismath: Any) -> Any:
+    def get_text_width_height_descent(self, s: str, prop: FontProperties, ismath: Any) -> Size:
         return self._drawable(s, prop)[1]
 
-    def _drawable(self, text: str, prop: Any) -> tuple[str, tuple[float, float, float]]:
+    def _drawable(self, text: str, prop: FontProperties) -> tuple[str, Size]:
         key = text, hash(prop)
-        if key not in self._known:
+        if key not in self._texts:
             font, measured = get_font(findfont(prop)), super().get_text_width_height_descent
             letters = [
                 letter if font.get_char_index(ord(letter)) else letter.encode("unicode_escape").decode()
@@ -44,14 +51,14 @@ class _Writer(RendererAgg):
             if size[0] > page:  # a text may stand upright
                 sentence = sentence[: int(len(sentence) * page / size[0]) - 1] + "…"
                 size = measured(sentence, prop, False)
-            self._known[key] = sentence, size
-        return self._known[key]
+            self._texts[key] = sentence, size
+        return self._texts[key]
 
 
 class Canvas(FigureCanvasAgg):
     """What figures are drawn on; names of users enter them in many places, and are made harmless here."""
 
-    def get_renderer(self) -> Any:
+    def get_renderer(self) -> RendererAgg:
         """Return the writer of this size, one for all texts of a figure."""
         size = (*self.figure.bbox.size, self.figure.dpi)
         if getattr(self, "_size", None) != size:
@@ -62,9 +69,9 @@ class Canvas(FigureCanvasAgg):
 class PixelCanvas(Canvas):
     """What a picture is that was drawn already: its file has its pixels; axes would take 130 MB for them."""
 
-    image: np.ndarray  # (rows, columns, 3) uint8
+    image: Array  # (rows, columns, 3) uint8
 
-    def print_png(self, filename_or_obj: Any, *, metadata: Any = None, **_: Any) -> None:
+    def print_png(self, filename_or_obj: BinaryIO, *, metadata: Any = None, **_: Any) -> None:
         """Write the pixels of the image."""
         imsave(filename_or_obj, self.image, format="png", dpi=self.figure.dpi, metadata=metadata)
 
@@ -81,8 +88,3 @@ class ShownFigure(Figure):
 
     def _repr_png_(self) -> bytes:
         return self.png()
-
-
-def layout() -> ConstrainedLayoutEngine:
-    """Return what lays out the axes of a figure by itself."""
-    return ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08)

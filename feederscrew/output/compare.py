@@ -2,16 +2,18 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from feederscrew.arrays import Floats
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame, row_of
+from feederscrew.resting.deviation import Comparison
 from feederscrew.resting.rules import registry
-from feederscrew.studies.compare import QUANTITIES, FeedingStudy
+from feederscrew.studies import compare as studies
 from feederscrew.units import MM_S
 
 mpl_patches = heavy("matplotlib.patches")
@@ -19,13 +21,13 @@ mpl_patches = heavy("matplotlib.patches")
 TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, which needs counts
 
 
-def _pairs(compared: Sequence[Any]) -> Frame:
+def _pair_frame(comparisons: Iterable[Comparison]) -> Frame:
     """Pairs of profiles, a row each: ``compare.csv``; the test is empty where neither holds counts."""
     fields = (
         "first=first.name second=second.name deviation total_variation chi_square=chi_square.statistic",
         "degrees_of_freedom=chi_square.degrees_of_freedom p_value=chi_square.p_value",
     )
-    return _without_zero_degrees(tables.table_of(compared, *fields))
+    return _without_zero_degrees(tables.table_of(comparisons, *fields))
 
 
 def _without_zero_degrees(table: Frame) -> Frame:
@@ -33,34 +35,36 @@ def _without_zero_degrees(table: Frame) -> Frame:
     return tables.frame(table | {TESTS[1]: [degrees or None for degrees in table[TESTS[1]]]})
 
 
-def offers(study: Any) -> list[offer.Offer]:
+def offers(study: studies.CompareStudy | studies.FeedingStudy) -> list[offer.Offer]:
     """Offer the table of a CompareStudy and its picture, or the table of a FeedingStudy."""
-    if isinstance(study, FeedingStudy):
+    if isinstance(study, studies.FeedingStudy):
         return [offer.table(FEEDING_FILE, _feedings, [study])]
     alt = "What was measured beside each rule, and how far every two profiles are apart"
     measured, rules = ({p.name: p.fractions for p in some} for some in (study.measured.profiles, study.rules))
     pairs = {(pair.first.name, pair.second.name): pair.deviation for pair in study.comparisons}
     drawn = study.part.name, study.aspects.names, measured, rules, pairs
     return [
-        offer.table("compare.csv", _pairs, study.comparisons),
+        offer.table("compare.csv", _pair_frame, study.comparisons),
         offer.picture("compare.png", alt, comparison, *drawn),
     ]
 
 
-def printed(study: Any, format: str) -> tuple[Frame, dict[str, Any], Sequence[str]]:
+def printout(
+    study: studies.CompareStudy | studies.FeedingStudy, format: str
+) -> tuple[Frame, dict[str, Any], Sequence[str]]:
     """Return what is printed of a CompareStudy or a FeedingStudy: table, document, columns to be hidden.
 
     With the ``format`` 'table' each measured profile stands with the rules, the nearest one first; else all
     pairs stand in the order of the study, as in the document.
     """
-    if isinstance(study, FeedingStudy):  # hidden are the file, and what the rules predict
+    if isinstance(study, studies.FeedingStudy):  # hidden are the file, and what the rules predict
         hidden = ["set", *(f"p_{rule}" for rule in study.answers if rule != "recommended")]
         return _feedings([study]), _feeding_document(study), hidden
     document = {
         **row_of(study, "part=part.name"),
         "aspects": list(study.aspects.names),
         "profiles": [row_of(profile, "name kind values fractions") for profile in study.profiles],
-        "comparisons": _pairs(study.comparisons),
+        "comparisons": _pair_frame(study.comparisons),
     }
     is_tested = any(pair.chi_square.degrees_of_freedom for pair in study.comparisons)
     if format != "table":
@@ -69,7 +73,7 @@ def printed(study: Any, format: str) -> tuple[Frame, dict[str, Any], Sequence[st
     own = [pair for pair in study.comparisons if pair.first.name in order]
     against_rules = [pair for pair in own if pair.second.name not in order]
     against_rules.sort(key=lambda pair: (order.index(pair.first.name), pair.total_variation))
-    pairs = _pairs([*against_rules, *(pair for pair in own if pair.second.name in order)])
+    pairs = _pair_frame([*against_rules, *(pair for pair in own if pair.second.name in order)])
     return pairs, document, () if is_tested else TESTS
 
 
@@ -78,7 +82,7 @@ def printed(study: Any, format: str) -> tuple[Frame, dict[str, Any], Sequence[st
 FEEDING_FILE = "devices.csv"
 
 
-def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
+def _feedings(tests: Iterable[studies.FeedingStudy]) -> Frame:
     """What passed of the parts that came to each device, measured and predicted: ``devices.csv``."""
     rows = [
         {
@@ -94,14 +98,14 @@ def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
             "agrees": bool(study.agrees[k]),
             **{f"p_{rule}": float(p[k]) for rule, p in study.answers.items() if rule != "recommended"},
         }
-        for study in studies
+        for study in tests
         for k, station in enumerate(study.stations)
     ]
     names = dict.fromkeys(name for row in rows for name in row)
     return tables.frame({name: [row.get(name) for row in rows] for name in names})
 
 
-def _feeding_document(study: FeedingStudy) -> dict[str, Any]:
+def _feeding_document(study: studies.FeedingStudy) -> dict[str, Any]:
     return {
         "part": study.part.name,
         "file": study.measured.source,
@@ -116,7 +120,7 @@ def _feeding_document(study: FeedingStudy) -> dict[str, Any]:
 SPARE_RULES = (("QUASISTATIC",), ("CRSA",), ("BARRIER",), ("HOPS",), ("STABILITY",))  # of a wide table
 
 
-def sets_offers(study: Any) -> list[offer.Offer]:
+def sets_offers(study: studies.SetsStudy) -> list[offer.Offer]:
     """Offer the tables of a SetsStudy and its picture."""
     alt = "How far each rule and the recommended answer are from each measured set"
     offered = [
@@ -127,7 +131,7 @@ def sets_offers(study: Any) -> list[offer.Offer]:
     return (offered if study.sets else []) + (tested if study.feedings else [])
 
 
-def sets_printed(study: Any, form: str) -> list[Frame]:
+def sets_printout(study: studies.SetsStudy, form: str) -> list[Frame]:
     """Return what is printed: for people both tables, else that of the sets or of the feeding tests."""
     if form != "table":
         return [_sets_frame(study) if study.sets else _feedings(study.feedings)]
@@ -155,17 +159,19 @@ def sets_printed(study: Any, form: str) -> list[Frame]:
     return frames
 
 
-def _sets_frame(study: Any) -> Frame:
+def _sets_frame(study: studies.SetsStudy) -> Frame:
     """The total variation of every set from every answer, then its mean over each series: ``compare.csv``."""
     series, rows = study.series.items(), []
-    lines = [(_set_label(item), name, [item]) for item in study.sets for name, sets in series if item in sets]
+    lines: list[tuple[str, str, Sequence[studies.SetStudy]]] = [
+        (_set_label(item), name, [item]) for item in study.sets for name, sets in series if item in sets
+    ]
     lines += [(f"{name}, mean of {len(sets)}", name, sets) for name, sets in series if len(sets) > 1]
     for label, group, items in lines:
         inside = [item.inside for item in items if item.inside is not None]
         launches = {item.measured.head.launch or None for item in items}
         parts = [int(item.profile.values.sum()) for item in items if item.profile.has_counts]
         answer = items[0].recommended if len(items) == 1 else None
-        row = {
+        row: dict[str, str | float | None] = {
             "set": label,
             "series": group,
             "launch": launches.pop() if len(launches) == 1 else None,
@@ -182,12 +188,12 @@ def _sets_frame(study: Any) -> Frame:
     return tables.of_rows(rows, names)
 
 
-def _set_label(item: Any) -> str:
+def _set_label(item: studies.SetStudy) -> str:
     stem = Path(item.measured.source).stem
     return stem if len(item.measured.profiles) == 1 else f"{stem}, {item.profile.name}"
 
 
-def sets_document(study: Any) -> dict[str, Any]:
+def sets_document(study: studies.SetsStudy) -> dict[str, Any]:
     """Return many measured sets and every answer for them as one JSON document."""
     sets = [
         {
@@ -206,7 +212,7 @@ def sets_document(study: Any) -> dict[str, Any]:
     return {"sets": sets, "total_variation": _sets_frame(study), "feeding_tests": feedings}
 
 
-def _sets_figure(study: Any) -> Any:
+def _sets_figure(study: studies.SetsStudy) -> "style.Figure":
     answers = study.answers
     values = np.array([[item.distances.get(name, np.nan) for name in answers] for item in study.sets])
     figure = style.figure(0.78 * len(answers) + 2.6, 0.24 * len(study.sets) + 1.4)
@@ -220,7 +226,10 @@ def _sets_figure(study: Any) -> Any:
     return figure
 
 
-def _shades(axes: Any, values: Any, darkest: float, white_from: float, title: str, aspect: str) -> None:
+def _shades(
+    axes: "style.Axes", values: Floats, darkest: float, white_from: float, title: str,
+    aspect: Literal["equal", "auto"],
+) -> None:  # fmt: skip
     axes.imshow(values, cmap="Blues", vmin=0.0, vmax=darkest, aspect=aspect)
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
@@ -262,19 +271,18 @@ def look(name: str, place: int = 0) -> tuple[str, str]:
     if name in FIXED:
         return FIXED[name]
     if name.lower() in registry.RULE_OF:
-        label, colour = style.method(name.lower())
-        return label, colour
+        return style.method(name.lower())
     return name.replace("_", " "), USER_COLOURS[place % len(USER_COLOURS)]
 
 
 def bars(
-    axes: Any, names: Sequence[str], profiles: Mapping[str, Any], printed: Mapping[str, Any] | None = None,
-    room: float = BAR_WIDTH_IN,
+    axes: "style.Axes", names: Sequence[str], profiles: Mapping[str, Floats],
+    printed_shares: Mapping[str, Floats] | None = None, room: float = BAR_WIDTH_IN,
 ) -> None:  # fmt: skip
     """Draw grouped bars on an Axes, with a tick where print has the number.
 
-    ``names`` are the A aspects, ``profiles`` (A,) shares [1] by name, ``printed`` the published ones of some;
-    ``room`` [in] is the width of paper that a bar has.
+    ``names`` are the A aspects, ``profiles`` (A,) shares [1] by name, ``printed_shares`` the published ones
+    of some; ``room`` [in] is the width of paper that a bar has.
     """
     places, width = np.arange(len(names)), 1.0 / (len(profiles) + 0.9)
     for place, (name, values) in enumerate(profiles.items()):
@@ -283,9 +291,9 @@ def bars(
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
         if room >= LEAST_ROOM:
             style.numbers(axes, x, 100.0 * values, 100.0 * values, room < UPRIGHT_BAR_IN)
-        if printed and name in printed:
+        if printed_shares and name in printed_shares:
             ends = x - 0.46 * width, x + 0.46 * width
-            axes.hlines(100.0 * printed[name], *ends, color=style.INK, linewidth=1.1, zorder=3)
+            axes.hlines(100.0 * printed_shares[name], *ends, color=style.INK, linewidth=1.1, zorder=3)
     style.named_ticks(axes, places, names)
     axes.set_xlim(-0.55, len(names) - 0.45)
     above = 132.0 if LEAST_ROOM <= room < UPRIGHT_BAR_IN else 114.0  # upright numbers are kept off the title
@@ -293,22 +301,22 @@ def bars(
 
 
 def comparison(
-    title: str, names: Sequence[str], measured: dict[str, Any], rules: dict[str, Any],
-    compared: Mapping[tuple[str, str], float],
-) -> Any:  # fmt: skip
+    title: str, names: Sequence[str], shares: dict[str, Floats], rules: dict[str, Floats],
+    gaps: Mapping[tuple[str, str], float],
+) -> "style.Figure":  # fmt: skip
     """Draw one chart a rule against everything measured, and how far each profile is from what was measured.
 
-    ``names`` are the A aspects, ``measured`` and ``rules`` (A,) shares [1] by name, ``compared`` the
+    ``names`` are the A aspects, ``shares`` what was measured and ``rules`` (A,) [1] by name, ``gaps`` the
     deviation [1] of each pair of profiles.
     """
-    width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR_WIDTH_IN + 1.0, 4.2, 12.0))
-    side, tall = max(3.1, 0.42 * len(measured) + 1.5), 0.42 * (len(measured) + len(rules)) + 1.3
+    width = float(np.clip(len(names) * (len(shares) + 1.9) * BAR_WIDTH_IN + 1.0, 4.2, 12.0))
+    side, tall = max(3.1, 0.42 * len(shares) + 1.5), 0.42 * (len(shares) + len(rules)) + 1.3
     across = max(1, min(len(rules), int(13.0 / width)))
     rows = -(-max(len(rules), 1) // across)
     figure = style.figure(across * width + side, max(2.2 * rows, tall))
     grid = figure.add_gridspec(rows, across + 1, width_ratios=(*[width] * across, side))
-    charts = {name: {**measured, name: values} for name, values in rules.items()} or {title: measured}
-    room = (width - 1.0) / (len(names) * (len(measured) + 1.9))
+    charts = {name: {**shares, name: values} for name, values in rules.items()} or {title: shares}
+    room = (width - 1.0) / (len(names) * (len(shares) + 1.9))
     for place, (rule, profiles) in enumerate(charts.items()):
         row, column = divmod(place, across)
         axes = figure.add_subplot(grid[row, column])
@@ -317,20 +325,20 @@ def comparison(
         style.tidy(axes, title=heading, x=x, y=y, grid="y")
         bars(axes, names, profiles, room=room)
     # one entry of the legend a profile, whatever chart it stands in
-    looks = [look(name, place) for place, name in enumerate(measured)]
-    looks += [look(name, len(measured)) for name in rules]
+    looks = [look(name, place) for place, name in enumerate(shares)]
+    looks += [look(name, len(shares)) for name in rules]
     handles = [mpl_patches.Patch(color=colour, label=label) for label, colour in looks]
     style.legend(figure, handles=handles, ncols=min(len(handles), 9))
     # deviations of every profile from those that were measured; the first has nothing before it
-    profile_names, deviations = [*measured, *rules], {frozenset(pair): gap for pair, gap in compared.items()}
-    values = np.full((len(profile_names), len(measured)), np.nan)
-    for j, i in zip(*np.tril_indices(len(profile_names), -1, len(measured))):
-        values[j, i] = deviations.get(frozenset((profile_names[j], profile_names[i])), np.nan)
+    profile_names, gap_of = [*shares, *rules], {frozenset(pair): gap for pair, gap in gaps.items()}
+    values = np.full((len(profile_names), len(shares)), np.nan)
+    for j, i in zip(*np.tril_indices(len(profile_names), -1, len(shares))):
+        values[j, i] = gap_of.get(frozenset((profile_names[j], profile_names[i])), np.nan)
     top, side_axes = max(np.nanmax(values, initial=0.0), 0.1), figure.add_subplot(grid[:, across])
     heading = "Deviation from\nwhat was measured"
     _shades(side_axes, values[1:], 1.25 * top, 0.6 * top, heading, "equal")
     labels = [look(name, place)[0] for place, name in enumerate(profile_names)]
-    side_axes.set_xticks(range(len(measured)), labels[: len(measured)], rotation=45, ha="right")
+    side_axes.set_xticks(range(len(shares)), labels[: len(shares)], rotation=45, ha="right")
     side_axes.set_yticks(range(len(profile_names) - 1), labels[1:])
     return figure
 
@@ -338,14 +346,14 @@ def comparison(
 # --- feeder compare --bowl: what explains measured velocities, and what remains of each ---
 
 
-def fit_quantities(study: Any) -> Frame:
+def fit_quantities(study: studies.BowlFit) -> Frame:
     """Return friction, restitution and stroke that explain the velocities of a BowlFit, one a row."""
     columns = row_of(study, "bowl_file=assumed fitted=values low high")
     decided = ["not decided by these velocities" if is_open else "yes" for is_open in study.open_ended]
-    return tables.frame({"quantity": list(QUANTITIES), **columns, "decided": decided})
+    return tables.frame({"quantity": list(studies.QUANTITIES), **columns, "decided": decided})
 
 
-def fit_velocities(study: Any) -> Frame:
+def fit_velocities(study: studies.BowlFit) -> Frame:
     """Return each measured velocity of a BowlFit, ours beside it, and what remains."""
     settings = [setting or "as the bowl file" for setting in study.settings]
     names = "measured_mm_s doubt_mm_s bowl_file_mm_s=file fitted_mm_s"
@@ -353,7 +361,7 @@ def fit_velocities(study: Any) -> Frame:
     return tables.frame({"setting": settings, **row_of(study, names), "remains_mm_s": remains})
 
 
-def fit_document(study: Any) -> dict[str, Any]:
+def fit_document(study: studies.BowlFit) -> dict[str, Any]:
     """Return a BowlFit as the JSON document; its ``remark`` says whether it explains the velocities."""
     before, after = (
         float(np.sqrt(np.mean((velocities - study.measured) ** 2))) / MM_S
@@ -372,7 +380,7 @@ def fit_document(study: Any) -> dict[str, Any]:
     }
 
 
-def fit_offers(study: Any) -> list[offer.Offer]:
+def fit_offers(study: studies.BowlFit) -> list[offer.Offer]:
     """Offer the files of a BowlFit."""
     return [
         offer.table("bowl_fit.csv", fit_quantities, study),
@@ -383,7 +391,7 @@ def fit_offers(study: Any) -> list[offer.Offer]:
 # --- feeder calibrate ---
 
 
-def exponents(study: Any) -> Frame:
+def exponents(study: studies.CalibrateStudy) -> Frame:
     """Return the exponents of a CalibrateStudy, a row for each column of counts, as in ``calibrate.csv``."""
     fields = (
         "counts=name parts exponent=calibration.exponent exponent_low=calibration.low",
@@ -394,13 +402,13 @@ def exponents(study: Any) -> Frame:
     return _without_zero_degrees(tables.table_of(study.fits, *fields))
 
 
-def calibration_document(study: Any) -> dict[str, Any]:
+def calibration_document(study: studies.CalibrateStudy) -> dict[str, Any]:
     """Return a CalibrateStudy as one JSON document."""
     fitted = {fit.name: dict(zip(study.aspects.names, fit.calibration.shares)) for fit in study.fits}
     return {"part": study.part.name, "calibrations": exponents(study), "p_surface": fitted}
 
 
-def calibration_remarks(study: Any) -> list[str]:
+def calibration_remarks(study: studies.CalibrateStudy) -> list[str]:
     """Return what a user must know of a calibration, a line each."""
     lines = []
     for fit in study.fits:
@@ -411,7 +419,7 @@ def calibration_remarks(study: Any) -> list[str]:
     return lines
 
 
-def calibration_offers(study: Any) -> list[offer.Offer]:
+def calibration_offers(study: studies.CalibrateStudy) -> list[offer.Offer]:
     """Offer the table and the document of a calibration."""
     return [
         offer.table("calibrate.csv", exponents, study),

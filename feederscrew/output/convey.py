@@ -1,19 +1,23 @@
 """Files of ``feeder convey``: at one point, along a curve, over the phase, over a map."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.arrays import Array, Bools, Floats
+from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer, steady
-from feederscrew.conveying.answer import throw_of_flight
+from feederscrew.conveying.answer import Neighbours, throw_of_flight
 from feederscrew.conveying.operating_point import PHASES
+from feederscrew.geometry.grids import Grid
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import PHASE_WORDS, Frame, regime_words, row_of
+from feederscrew.studies.convey import ConveyCurve, ConveyMap, ConveyPhase, ConveyStudy
 from feederscrew.units import MM_S, factor
 
 matplotlib = heavy("matplotlib")
@@ -23,11 +27,11 @@ mpl_patches = heavy("matplotlib.patches")
 VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: ConveyStudy) -> dict[str, Any]:
     """Return a ConveyStudy as the JSON document."""
     conveying = study.answer
 
-    def changed(pair: Any, change: float) -> dict[str, Any]:
+    def change_entry(pair: Neighbours, change: float) -> dict[str, Any]:
         return {
             "change_percent": 100.0 * change,
             **row_of(pair, "velocity_less_mm_s=less velocity_more_mm_s=more"),
@@ -44,15 +48,15 @@ def document(study: Any) -> dict[str, Any]:
             "mu_effective_kinetic=setting.kinetic mu_forward mu_backward margins fractions",
             "longest_flight_periods=longest_flight hardest_impact_mm_s flights_per_period=flights",
         ),
-        "sensitivity": {name: changed(pair, answer.SENSITIVITY_CHANGE) for name, pair in nearby},
-        "friction_doubt": changed(study.doubt, answer.FRICTION_DOUBT),
-        "restitution_doubt": rebound(study.bowl, study.rebound),
+        "sensitivity": {name: change_entry(pair, answer.SENSITIVITY_CHANGE) for name, pair in nearby},
+        "friction_doubt": change_entry(study.doubt, answer.FRICTION_DOUBT),
+        "restitution_doubt": restitution_entry(study.bowl, study.rebound),
         "validity": study.validity,
         "bowl": bowls.texts(study.bowl.settings),
     }
 
 
-def rebound(bowl: Any, neighbours: Any) -> dict[str, Any] | None:
+def restitution_entry(bowl: Bowl, neighbours: Neighbours | None) -> dict[str, Any] | None:
     """Return a document's entry on the spread of restitution; None where nothing is thrown up."""
     if neighbours is None:
         return None
@@ -73,7 +77,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
 
     rows = [
         ("velocity [mm/s]", _number(d["velocity_mm_s"])),
-        ("lowest to highest [mm/s]", _between(d["velocity_low_mm_s"], d["velocity_high_mm_s"])),
+        ("lowest to highest [mm/s]", _range_text(d["velocity_low_mm_s"], d["velocity_high_mm_s"])),
     ]
     if d["period"] != 1 and d["status"] != "no steady state":  # single periods are not all alike
         rows.append(("slowest to fastest period [mm/s]", _slowest_to_fastest(d)))
@@ -112,20 +116,20 @@ def remarks(document: Mapping[str, Any]) -> list[str]:
     if document["status"] == "averaged":
         lines.append(
             f"not periodic: an average; means over {steady.AVERAGED_PERIODS} periods span "
-            f"{_between(low, high)} mm/s, single periods {_slowest_to_fastest(document)}"
+            f"{_range_text(low, high)} mm/s, single periods {_slowest_to_fastest(document)}"
         )
     elif high - low > answer.COEXISTING_VELOCITY_GAP * abs(high):
         lines.append(
-            f"several steady velocities, {_between(low, high)} mm/s, depending on how the part arrives"
+            f"several steady velocities, {_range_text(low, high)} mm/s, depending on how the part arrives"
         )
     return lines
 
 
 def _slowest_to_fastest(document: Mapping[str, Any]) -> str:
-    return _between(*(document[f"velocity_{which}_period_mm_s"] for which in ("slowest", "fastest")))
+    return _range_text(*(document[f"velocity_{which}_period_mm_s"] for which in ("slowest", "fastest")))
 
 
-def _between(low: float, high: float) -> str:
+def _range_text(low: float, high: float) -> str:
     return f"{_number(low)} to {_number(high)}"
 
 
@@ -133,7 +137,7 @@ def _number(value: float) -> str:
     return "none" if np.isnan(value) else f"{value:.4g}"
 
 
-def cells(study: Any) -> Frame:
+def cells(study: ConveyMap) -> Frame:
     """Return the cells of a ConveyMap as a frame."""
     columns = _in_mm_s(study.grid.columns()) | {"status": study.statuses.ravel()}
     last = {name: columns.pop(name) for name in ("regime", "throw_number", "status")}
@@ -141,7 +145,7 @@ def cells(study: Any) -> Frame:
     return tables.frame(columns | last)
 
 
-def points(study: Any) -> Frame:
+def points(study: ConveyCurve) -> Frame:
     """Return the points of a ConveyCurve as a frame."""
     columns = _in_mm_s(study.cells)
     return tables.frame(
@@ -155,11 +159,11 @@ def points(study: Any) -> Frame:
     )
 
 
-def _in_mm_s(columns: Mapping[str, Any]) -> dict[str, Any]:
+def _in_mm_s(columns: Mapping[str, Array]) -> dict[str, Array]:
     return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in columns.items()}
 
 
-def cell_remarks(status: Any, several: Any) -> list[str]:
+def cell_remarks(status: Array, several: Bools) -> list[str]:
     """Return how many cells of a map or a curve have no steady velocity, no period, several velocities."""
     counts = {
         "no steady state": (status == "no steady state").sum(),
@@ -169,7 +173,7 @@ def cell_remarks(status: Any, several: Any) -> list[str]:
     return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
 
 
-def phase_document(study: Any) -> dict[str, Any]:
+def phase_document(study: ConveyPhase) -> dict[str, Any]:
     """Return a ConveyPhase as the JSON document."""
     phase = study.best
     over = zip(phase.frictions, phase.best_over_friction, phase.straight_over_friction)
@@ -190,7 +194,7 @@ def phase_document(study: Any) -> dict[str, Any]:
 def phase_summary(document: Mapping[str, Any]) -> Frame:
     """Return the document of the best phase as a frame for people."""
     best = document["best_phase"]
-    tenths = _between(best["nine_tenths_from_deg"], best["nine_tenths_to_deg"])
+    tenths = _range_text(best["nine_tenths_from_deg"], best["nine_tenths_to_deg"])
     rows = [
         ("best drive.phase [deg]", _number(best["phase_deg"])),
         ("velocity there [mm/s]", _number(best["velocity_mm_s"])),
@@ -204,7 +208,7 @@ def phase_summary(document: Mapping[str, Any]) -> Frame:
     return tables.quantities(rows)
 
 
-def offers(study: Any) -> list[offer.Offer]:
+def offers(study: ConveyStudy) -> list[offer.Offer]:
     """Offer the files of a ConveyStudy."""
     return [
         offer.document("convey.json", document, study),
@@ -215,21 +219,18 @@ def offers(study: Any) -> list[offer.Offer]:
     ]  # fmt: skip
 
 
-def curve_offers(study: Any) -> list[offer.Offer]:
+def curve_offers(study: ConveyCurve) -> list[offer.Offer]:
     """Offer the files of a ConveyCurve."""
     name, alt = f"convey_{study.kind}", f"Velocity over {study.over}"
-    return [
-        offer.table(f"{name}.csv", points, study),
-        offer.picture(f"{name}.png", alt, _curve, study, alt),
-    ]
+    return [offer.table(f"{name}.csv", points, study), offer.picture(f"{name}.png", alt, _curve, study, alt)]
 
 
-def phase_offers(study: Any) -> list[offer.Offer]:
+def phase_offers(study: ConveyPhase) -> list[offer.Offer]:
     """Offer the files of a ConveyPhase."""
     return [offer.document("convey_phase.json", phase_document, study), *curve_offers(study.curve)]
 
 
-def map_offers(study: Any) -> list[offer.Offer]:
+def map_offers(study: ConveyMap) -> list[offer.Offer]:
     """Offer the files of a ConveyMap; over angle and stroke a bowl is drawn by its radius."""
     keys, line = [span.key for span in study.ranges], None
     names = (key.name.rpartition(".")[2].replace("_", " ") for key in keys)
@@ -256,11 +257,11 @@ THROW_NAMES = {  # near 3 the velocity per stroke has its first peak, without re
 SEVERAL_HATCH = "////"
 
 
-def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
-    """Draw plate and part over a CycleTrace of an Answer, ``solved``; ``amplitude`` [m] is the plate's."""
+def cycle(trace: steady.CycleTrace, amplitude: float, solution: answer.Answer) -> "style.Figure":
+    """Draw plate and part over the trace of an answer; ``amplitude`` [m] is the plate's."""
     figure = style.figure(6.4, 5.2)
     top, bottom = figure.subplots(2, 1, sharex=True)
-    style.tidy(top, title=cycle_title(trace, solved), y="along the track [mm]")
+    style.tidy(top, title=cycle_title(trace, solution), y="along the track [mm]")
     style.tidy(bottom, x="time [periods of the drive]", y="along its normal [mm]")
     scale = amplitude * 1e3
     for axes, plate, part in (
@@ -277,19 +278,19 @@ def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
     return figure
 
 
-def cycle_title(trace: Any, solved: Any) -> str:
+def cycle_title(trace: steady.CycleTrace, solution: answer.Answer) -> str:
     """Return what of a motion a trace shows, and how fast it is."""
-    periods, velocity = round(trace.time[-1]), f"{solved.velocity * 1e3:.4g} mm/s"
-    if solved.status == "no steady state":
+    periods, velocity = round(trace.time[-1]), f"{solution.velocity * 1e3:.4g} mm/s"
+    if solution.status == "no steady state":
         return f"No steady state: {periods} periods of a slide that does not stop"
-    if solved.status == "averaged":
+    if solution.status == "averaged":
         return f"{periods} periods of a motion that does not repeat: {velocity} on average"
-    if periods < solved.period:
-        return f"{periods} of the {solved.period} periods of a steady cycle: {velocity}"
-    return f"One steady cycle: {velocity}" if periods == solved.period else f"Steady motion: {velocity}"
+    if periods < solution.period:
+        return f"{periods} of the {solution.period} periods of a steady cycle: {velocity}"
+    return f"One steady cycle: {velocity}" if periods == solution.period else f"Steady motion: {velocity}"
 
 
-def velocity_map(grid: Any, curve: Any = None) -> Any:
+def velocity_map(grid: Grid, curve: Sequence[Floats] | None = None) -> "style.Figure":
     """Draw velocity and regimes over two keys of the bowl; hatched where several velocities coexist.
 
     ``grid`` is that of a ConveyMap; ``curve``, two (N,) arrays in the units of the axes, has the operating
@@ -338,13 +339,13 @@ def velocity_map(grid: Any, curve: Any = None) -> Any:
     throw = grid.values["throw_number"].T
     levels = [level for level in sorted(THROW_NAMES) if throw.min() < level < throw.max()]
 
-    def named(level: float) -> str:
+    def throw_label(level: float) -> str:
         return f"k = {level:.2g} ({THROW_NAMES[min(THROW_NAMES, key=lambda k: abs(k - level))]})"
 
     for axes in (left, right):
         if levels:
             look = {"colors": style.INK, "linewidths": 0.8, "linestyles": "--"}
-            for text in axes.clabel(axes.contour(x, y, throw, levels, **look), fmt=named, fontsize=7):
+            for text in axes.clabel(axes.contour(x, y, throw, levels, **look), fmt=throw_label, fontsize=7):
                 text.set_path_effects(style.halo())
         if curve is not None:
             axes.plot(*curve, color=style.ACCENT, linewidth=2.0)
@@ -353,7 +354,7 @@ def velocity_map(grid: Any, curve: Any = None) -> Any:
     return figure
 
 
-def _curve(study: Any, title: str) -> Any:
+def _curve(study: ConveyCurve, title: str) -> "style.Figure":
     frame = points(study)
     column = next(iter(frame))
     figure, axes = style.chart(title=title, x=tables.title(column), y="velocity [mm/s]")

@@ -7,7 +7,11 @@ from itertools import zip_longest
 from typing import Any
 
 from feederscrew import units
+from feederscrew.bowl.reading import Setting
 from feederscrew.designing import record
+from feederscrew.designing.design import Built
+from feederscrew.designing.families import FamilyStudy
+from feederscrew.designing.record import DesignStudy
 from feederscrew.output import designs, machine, marking, solidbowl, solidbowl_views, tables, tooling
 from feederscrew.output import offers as offer
 from feederscrew.output.page.as_html import html
@@ -60,7 +64,7 @@ TOOLING_PICTURES = (
 )
 
 
-def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> str:
+def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.Offer] = ()) -> str:
     """Return the page of a DesignStudy and its Built as HTML that needs no other file.
 
     ``papers`` are the other files of the design: some are shown, and those to build from have a link.
@@ -76,9 +80,9 @@ def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> s
         Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
     )
     chapters = [Chapter(tuple(_answer(study, d)), tiles, study.warnings, "answer", "The answer")]
-    if built is not None and study.delivers:
-        chapters += _to_build(study, built, offer.by_name(papers))
-    tried: list[Block] = [
+    if build is not None and study.delivers:
+        chapters += _to_build(study, build, offer.by_name(papers))
+    loop: list[Block] = [
         Text(
             "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. "
             "What the trial denies is changed in the next. design_trials.csv has the dimensions of each "
@@ -87,8 +91,8 @@ def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> s
     ]
     if study.attempts:
         drawn, alt = png(designs.history_figure(study)), "Each short trial of the loop"
-        tried += [Table(designs.short_attempts(study)), Picture("design_history.png", drawn, alt)]
-    chapters.append(Chapter(tuple(tried), anchor="loop", title="The loop"))
+        loop += [Table(designs.short_attempts(study)), Picture("design_history.png", drawn, alt)]
+    chapters.append(Chapter(tuple(loop), anchor="loop", title="The loop"))
     if study.trials:
         scene, captions = rides.scene(study.part, *study.trials)
         poses = tuple((*caption, ()) for caption in captions)
@@ -101,7 +105,7 @@ def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> s
             "cuts, each tried with parts of its own."
         )
         proof: list[Block] = [lead]
-        if d["long_ride"]:
+        if d["long_ride"] and study.long_ride is not None:
             ridden = Text(
                 "Parts of each orientation that comes often first ride along the bare track to the tooling. "
                 f"They begin a little off and ride {1e3 * study.long_ride.distance:.3g} mm. What turns, "
@@ -125,7 +129,7 @@ def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> s
     return html(Page(study.part.name, f"design of a bowl: {study.status}", tuple(chapters), kind="design"))
 
 
-def _answer(study: Any, d: Mapping[str, Any]) -> Iterator[Block]:
+def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
     """What the status says, what is missing or what all was reached; the machine, the bowl, the risks."""
     if study.status == record.HOLDS:
         least, draws = 60.0 * record.RATE_KEPT * study.request.target, 100.0 * record.DRAWS_HELD
@@ -152,10 +156,10 @@ def _answer(study: Any, d: Mapping[str, Any]) -> Iterator[Block]:
             yield Picture(f"risk_{risk.kind}.png", drawn, risk.text, printed=True)
 
 
-def _to_build(study: Any, built: Any, papers: Mapping[str, offer.Offer]) -> Iterator[Chapter]:
+def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer]) -> Iterator[Chapter]:
     """What a shop builds from: the bowl, its tooling, springs and drive, and the files of them."""
     mark = marking.of_trial(designs.trial_of(study))
-    views = solidbowl_views.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark)
+    views = solidbowl_views.blocks(build.drawn.solid if build.drawn else None, study.part, build.why, mark)
     yield Chapter(tuple(views), anchor="bowl", title="The bowl")
     drawn = [
         Picture(name, tables.file_bytes(papers[name].make()), alt)
@@ -165,8 +169,8 @@ def _to_build(study: Any, built: Any, papers: Mapping[str, offer.Offer]) -> Iter
     if drawn:
         lead = Text("The part over the cut, what each device does, and the drawing of the cuts.")
         yield Chapter((lead, *drawn), anchor="tooling", title="The tooling")
-    if built.sheet is not None:
-        rows = [row for row in machine.summary(built.sheet).rows() if row["quantity"] in SHOP]
+    if build.sheet is not None:
+        rows = [row for row in machine.summary(build.sheet).rows() if row["quantity"] in SHOP]
         blocks: list[Block] = [Table(tables.of_rows(rows, ("quantity", "value")))]
         if drawing := papers.get("bowl.png"):
             blocks.append(Picture(drawing.name, tables.file_bytes(drawing.make()), drawing.alt))
@@ -178,16 +182,16 @@ def _to_build(study: Any, built: Any, papers: Mapping[str, offer.Offer]) -> Iter
         yield Chapter(files, anchor="files", title="Files to build from")
 
 
-def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer.Offer]:
+def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None = None) -> list[offer.Offer]:
     """Offer the files of a DesignStudy.
 
-    ``settings`` (Setting) are as the user gave them; ``built`` has the machine below the bowl, and the
+    ``settings`` (Setting) are as the user gave them; ``build`` has the machine below the bowl, and the
     bowl as a solid. Document, page and acceptance sheet; of a design with a bowl the bowl file, and
     everything of the tooling, of the machine and of the bowl as a solid. Of one that is not proved, or
     that delivers nothing, what was tried only: nothing to build from. Drawings of what falls short bear a
     mark.
     """
-    sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
+    sheet, drawn = (None, None) if build is None else (build.sheet, build.drawn)
     files = [
         offer.document("design.json", designs.document, study),
         offer.table("design_trials.csv", designs.attempts, study),
@@ -206,19 +210,19 @@ def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer
         ),
     ]
     if study.bowl is None or not study.delivers:
-        return [*files, offer.text("design.html", page, study, built)]
-    tried = designs.trial_of(study)
+        return [*files, offer.text("design.html", page, study, build)]
+    trial = designs.trial_of(study)
     files.append(offer.table("acceptance.csv", designs.acceptance, study))
     if sheet is not None:
-        files += machine.offers(sheet, tried)
+        files += machine.offers(sheet, trial)
     if drawn is not None:
-        files += solidbowl.offers(drawn, tried)
+        files += solidbowl.offers(drawn, trial)
         files.append(offer.document("bowl_solid.json", solidbowl.document, drawn.solid))
     if study.tooling is not None:
-        own = tooling.offers(study.tooling, settings, mark=marking.of_trial(tried))
+        own = tooling.offers(study.tooling, settings, mark=marking.of_trial(trial))
         files += [item for item in own if item.name != "tooling.yaml"]  # design.yaml has the devices
     files = [replace(item, make=cache(item.make)) for item in files]  # the page shows some of them
-    return [*files, offer.text("design.html", page, study, built, files)]
+    return [*files, offer.text("design.html", page, study, build, files)]
 
 
 # --- A family: several parts, one bowl or a bowl for each ---
@@ -231,7 +235,7 @@ SET, TAUGHT, SWAPPED = "set", "taught", "swapped"  # at the controller, at the s
 Change = tuple[str, str, tuple[str, ...]]  # what, how it is changed, and a text for each part
 
 
-def family_document(study: Any) -> dict[str, Any]:
+def family_document(study: FamilyStudy) -> dict[str, Any]:
     """Return a FamilyStudy as the JSON document."""
     names = [member.part.name for member in study.members]
     return {
@@ -246,7 +250,7 @@ def family_document(study: Any) -> dict[str, Any]:
     }
 
 
-def _changes(study: Any) -> list[Change]:
+def _changes(study: FamilyStudy) -> list[Change]:
     bowls = [member.bowl for member in study.members]
     if any(bowl is None for bowl in bowls):
         return []
@@ -259,7 +263,7 @@ def _changes(study: Any) -> list[Change]:
     # a row for each place of each kind of device: the first gap of all parts, the second, ...
     rows = values("track", SWAPPED)
     for kind in dict.fromkeys(device.kind for member in study.members for device in member.devices):
-        own = [[device for device in member.devices if device.kind == kind] for member in study.members]
+        own = [[d for d in list[Any](member.devices) if d.kind == kind] for member in study.members]
         for place, row in enumerate(zip_longest(*own), start=1):
             first = row[0]
             views = {device and device.sees for device in row} if first is not None and first.senses else ()
@@ -268,7 +272,7 @@ def _changes(study: Any) -> list[Change]:
     return [row for row in [*rows, *values("drive", SET)] if len(set(row[2])) > 1]
 
 
-def changeover(study: Any) -> dict[str, list[str]]:
+def changeover(study: FamilyStudy) -> dict[str, list[str]]:
     """Return the list for the shop: a row for what is changed, a column for each part."""
     rows = _changes(study)
     columns = {"what": [what for what, _, _ in rows], "how": [how for _, how, _ in rows]}
@@ -276,7 +280,7 @@ def changeover(study: Any) -> dict[str, list[str]]:
     return columns | {name: [values[k] for _, _, values in rows] for k, name in enumerate(names)}
 
 
-def family_summary(study: Any) -> Frame:
+def family_summary(study: FamilyStudy) -> Frame:
     """Return what is printed: a row for each part, then what is changed."""
     rows = [("status", study.status), ("one bowl for all", "yes" if study.shared else "no")]
     for member in study.members:
@@ -288,10 +292,10 @@ def family_summary(study: Any) -> Frame:
         if facts is not None:
             rows.append((f"machine of {member.part.name}", designs.machine_text(facts)))
     rows += [(f"{how}: {what}", "; ".join(values)) for what, how, values in _changes(study)]
-    return tables.quantities(line for row in rows for line in designs.folded(*row))
+    return tables.quantities(line for row in rows for line in designs.wrap_row(*row))
 
 
-def family_page(study: Any) -> str:
+def family_page(study: FamilyStudy) -> str:
     """Return the page of a FamilyStudy as HTML that needs no other file."""
     if study.partial:
         status = "It was stopped before all parts were designed."
@@ -346,7 +350,7 @@ def family_page(study: Any) -> str:
     return html(Page(names, f"one bowl for several parts: {study.status}", chapters, kind="design"))
 
 
-def family_offers(study: Any) -> list[offer.Offer]:
+def family_offers(study: FamilyStudy) -> list[offer.Offer]:
     """Offer the files of a FamilyStudy itself; each part has its own folder."""
     files = [offer.document("family.json", family_document, study)]
     if study.partial:  # nothing to build from

@@ -3,7 +3,7 @@
 import datetime
 import textwrap
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -12,10 +12,13 @@ from feederscrew import bowl as bowls
 from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl import devices, reading, schema
 from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.bowl.reading import Setting
+from feederscrew.bowl.record import Bowl, Drive, Machine, Sizing, Track
 from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
-from feederscrew.designing.record import NOT_PROVED
+from feederscrew.designing.acceptance_sheet import SheetLine
+from feederscrew.designing.record import NOT_PROVED, Alternative, DesignStudy, Pair, Risk
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
@@ -23,6 +26,9 @@ from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS,
 from feederscrew.output import columns, style, tables
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.tooling import settings_lines
+from feederscrew.part.record import Part
+from feederscrew.studies.bowl import MachineSheet
+from feederscrew.tooling.devices.base import Device
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -46,7 +52,7 @@ ATTEMPT_COLUMNS = (
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: DesignStudy) -> dict[str, Any]:
     """Return a DesignStudy as the JSON document."""
     is_proved, proof = study.status != NOT_PROVED, dict.fromkeys(PROOF)
     if is_proved:  # the figures that its queues have shown
@@ -58,13 +64,13 @@ def document(study: Any) -> dict[str, Any]:
     findings = []  # of two parts how the second lies to the first, in the axes of the file
     for risk in study.risks:
         pair: dict[str, Any] | None = None
-        if risk.pair is not None and risk.pair.turn is not None:
+        if risk.pair is not None and risk.pair.turn is not None and risk.pair.place is not None:
             pair = {"turn": risk.pair.turn.tolist(), "place_mm": (risk.pair.place / MM).tolist()}
         elif risk.pair is not None:
             pair = {"walls_mm": risk.pair.walls / MM}
         findings.append({"kind": risk.kind, "text": risk.text, "pair": pair})
     bowl = None
-    if facts is not None:
+    if study.bowl is not None and facts is not None:
         track, other = study.bowl.track, study.drive_mismatch
         bowl = {
             "drive_kind": facts["drive"],
@@ -115,7 +121,7 @@ def document(study: Any) -> dict[str, Any]:
     }
 
 
-def _alternative(option: Any) -> dict[str, Any]:
+def _alternative(option: Alternative) -> dict[str, Any]:
     value, low, _ = (end and end / PER_MINUTE for end in option.delivered or (None, None, None))
     cameras = [CAMERAS[view] for view in option.sees]
     return {
@@ -129,7 +135,7 @@ def _alternative(option: Any) -> dict[str, Any]:
     }
 
 
-def alternatives(study: Any) -> Frame:
+def alternatives(study: DesignStudy) -> Frame:
     """Return the best of each cost class, one a row."""
     rows = []
     for d in map(_alternative, study.alternatives):
@@ -142,16 +148,14 @@ def alternatives(study: Any) -> Frame:
 def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
     """Return the rows of a long ride as a table."""
     becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
-    columns: dict[str, Any] = {
-        name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")
-    }
-    columns |= {"becomes": becomes, "left": [row["left"] for row in rows]}
+    table: dict[str, Any] = {name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")}
+    table |= {"becomes": becomes, "left": [row["left"] for row in rows]}
     for name in ("entering", "arriving"):
-        columns[f"{name} [%]"] = [round(100.0 * row[f"share_{name}"], 1) for row in rows]
-    return tables.frame(columns)
+        table[f"{name} [%]"] = [round(100.0 * row[f"share_{name}"], 1) for row in rows]
+    return tables.frame(table)
 
 
-def nearest(study: Any) -> dict[str, Any] | None:
+def nearest(study: DesignStudy) -> dict[str, Any] | None:
     """Return the nearest that holds as a dict, ``tried`` what was run for it; None of what holds."""
     near = study.nearest
     if near is None:
@@ -170,13 +174,13 @@ def nearest(study: Any) -> dict[str, Any] | None:
     }
 
 
-def machine_facts(study: Any) -> dict[str, Any] | None:
+def machine_facts(study: DesignStudy) -> dict[str, Any] | None:
     """Return the machine that a design asks for as a dict; None where there is no bowl."""
     if study.bowl is None:
         return None
     drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
     velocity, leap = answer(study.bowl).velocity, hop(study.bowl)
-    sensing = [device for device in study.devices if device.senses]
+    sensing = [device for device in list[Any](study.devices) if device.senses]
     one_set = "one set of leaf springs makes it"
     needs = one_set if study.drive_mismatch is None else "the leaf springs that are drawn make another one"
     return {
@@ -228,7 +232,7 @@ def _machine_words(facts: Mapping[str, Any]) -> tuple[str, str, str]:
     )
 
 
-def attempts(study: Any) -> Frame:
+def attempts(study: DesignStudy) -> Frame:
     """Return the history of the loop: one short trial a row."""
     names = (
         "wanted why=step bank_deg velocity_mm_s parts efficiency purity stopped peak_to_peak_mm throw_number",
@@ -241,7 +245,7 @@ def attempts(study: Any) -> Frame:
     return tables.of_rows(rows, ATTEMPT_COLUMNS)
 
 
-def short_attempts(study: Any) -> Frame:
+def short_attempts(study: DesignStudy) -> Frame:
     """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
     chains = []
     for attempt in study.attempts:
@@ -252,7 +256,7 @@ def short_attempts(study: Any) -> Frame:
     return tables.frame(history | {"chain": chains})
 
 
-def summary(study: Any) -> Frame:
+def summary(study: DesignStudy) -> Frame:
     """Return what is printed: the answer first, then what it stands on; long lines go on in the next row."""
     d = document(study)
     first, *rest = outcome(d, study.devices)
@@ -262,7 +266,7 @@ def summary(study: Any) -> Frame:
     rows += [*rest, *dimensions(d), *(("risk", text) for text in d["risks"])]
     for option, entry in zip(study.alternatives, d["alternatives"]):
         words = [option.status]
-        if option.delivered is not None and option.purity is not None:
+        if option.delivered and option.purity is not None and option.efficiency is not None:
             words[0] += f", {option.delivered[0] / PER_MINUTE:.3g}/min, purity {100.0 * option.purity:.3g} %"
             words[0] += f", yield {100.0 * option.efficiency:.3g} %"
         chain = "; ".join(option.chain_words or option.chain)
@@ -271,16 +275,16 @@ def summary(study: Any) -> Frame:
         kind = ("steel alone", "steady air", "a sensor with a valve")[option.cost_class - 1]
         rows.append((f"with {kind}", "; ".join(words)))
     rows.append(("trials, parts", f"{len(study.attempts)}, {d['trial_parts']}"))
-    return tables.quantities(line for row in rows for line in folded(*row))
+    return tables.quantities(line for row in rows for line in wrap_row(*row))
 
 
-def folded(name: str, value: str) -> list[tuple[str, str]]:
+def wrap_row(name: str, value: str) -> list[tuple[str, str]]:
     """Return rows of a name and the lines of a long value."""
     lines = textwrap.wrap(value, 62, break_long_words=False, break_on_hyphens=False) or [""]
     return [(name, lines[0]), *(("", line) for line in lines[1:])]
 
 
-def outcome(d: Mapping[str, Any], devices: Sequence[Any]) -> list[tuple[str, str]]:
+def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, str]]:
     """Return rows of the answer of a design's document, and of its devices as the trade names them."""
     rows = [("status", d["status"])]
     if facts := d.get("machine"):
@@ -328,7 +332,7 @@ def dimensions(d: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def acceptance(study: Any) -> Frame:
+def acceptance(study: DesignStudy) -> Frame:
     """Return the acceptance sheet: what a buyer measures, the computed values beside empty cells."""
     rows: list[tuple[str, str, str, str, str, str]] = []  # quantity, fill, computed, low, high, unit
     for filled in study.queues:
@@ -360,7 +364,7 @@ def acceptance(study: Any) -> Frame:
     return tables.of_cells(names, ((*row, "", "") for row in rows))
 
 
-OWN = {  # keys of the bowl file that a design sets, by section
+SET_KEYS = {  # keys of the bowl file that a design sets, by section
     "drive": ("amplitude", "frequency", "vibration_angle", "phase"),
     "track": ("climb", "bank", "radius", "width"),
     "machine": (
@@ -371,14 +375,14 @@ OWN = {  # keys of the bowl file that a design sets, by section
 }  # fmt: skip
 
 
-def value_text(record: Any, name: str, digits: int) -> str:
+def value_text(record: Drive | Track | Machine | Sizing, name: str, digits: int) -> str:
     """Return a value of a section of the bowl, 'drive.amplitude', in the unit of its key: '0.35 mm'."""
     key = schema.BY_NAME[name]
     scale = units.factor(key.unit, key.dimension) if key.unit else 1.0
     return f"{getattr(record, key.word) / scale:.{digits}g} {key.unit}".rstrip()
 
 
-def unbalance_texts(machine: Any) -> dict[str, str]:
+def unbalance_texts(machine: Machine) -> dict[str, str]:
     """Return what a bowl file says of where a Machine has its mass, by key; nothing of a balanced one."""
     return {
         word: f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
@@ -386,19 +390,20 @@ def unbalance_texts(machine: Any) -> dict[str, str]:
     }
 
 
-def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
+def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineSheet | None = None) -> str:
     """Return a DesignStudy with a bowl as a bowl file; ``settings`` that it does not set are kept as given.
 
     ``sheet`` is the MachineSheet of the machine below the bowl. Raises FeederError if a command that reads it
     back would have another bowl than was tried.
     """
-    own = {"drive": study.bowl.drive, "track": study.bowl.track}
-    own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
+    name, bowl = "design.yaml", cast(Bowl, study.bowl)
+    parts: dict[str, Drive | Track | Machine | Sizing] = {"drive": bowl.drive, "track": bowl.track}
+    parts |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
     own_lines = {
-        section: [f"  {word}: {value_text(own[section], f'{section}.{word}', 9)}" for word in OWN[section]]
-        for section in own
+        section: [f"  {word}: {value_text(part, f'{section}.{word}', 9)}" for word in SET_KEYS[section]]
+        for section, part in parts.items()
     }
-    set_here = {f"{section}.{word}" for section in own for word in OWN[section]} | {"drive.peak_to_peak"}
+    set_here = {"drive.peak_to_peak", *(f"{name}.{word}" for name in parts for word in SET_KEYS[name])}
     if sheet is not None:  # and where the bowl has its mass, unless it is balanced
         set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES}
         texts = unbalance_texts(sheet.bowl.machine)
@@ -408,16 +413,15 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]
     set_here |= {s.key.name for s in settings if s.key.field == DEVICES_SECTION}
     lines += settings_lines([s for s in settings if s.is_own and s.key.name not in set_here], own_lines)
-    if study.bowl.devices:
+    if bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
-        lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in study.bowl.devices]
+        lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in bowl.devices]
     # what commands read from these lines is the bowl that was tried, in every value
-    name, bowl = "design.yaml", study.bowl
     devices.check_written(bowl.devices, name)
     bowl_read = bowls.record(reading.settings_of_text("\n".join(lines) + "\n", name))
     wrong = [
         f"{section}: {text}"
-        for section, part in {"friction": bowl.friction, **own}.items()
+        for section, part in {"friction": bowl.friction, **parts}.items()
         for text in devices.differences(part, getattr(bowl_read, section))
     ]
     sections = ("drive", "friction", "track", "machine", "sizing", "devices")
@@ -447,9 +451,10 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     return "\n".join(lines) + "\n"
 
 
-def trial_of(study: Any) -> Verified | None:
+def trial_of(study: DesignStudy) -> Verified | None:
     """Return what a DesignStudy has shown, as its bowl file says it; None where nothing has left a queue."""
-    if study.bowl is None or study.status == NOT_PROVED or not any(filled.left for filled in study.queues):
+    has_left = study.status != NOT_PROVED and any(filled.left for filled in study.queues)
+    if study.bowl is None or study.wanted is None or not has_left:
         return None
     value, low, high = study.delivered
     return Verified(
@@ -459,7 +464,7 @@ def trial_of(study: Any) -> Verified | None:
     )  # fmt: skip
 
 
-def accepted_summary(lines: Sequence[Any]) -> Frame:
+def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
     """Return one row a line of the sheet."""
     words = {True: "agrees", False: "does not", None: "not measured"}
     names = ("quantity", "fill", "computed", "from", "to", "measured", "unit", "verdict")
@@ -471,7 +476,7 @@ def accepted_summary(lines: Sequence[Any]) -> Frame:
     return tables.of_cells(names, rows)
 
 
-def accepted_document(lines: Sequence[Any]) -> dict[str, Any]:
+def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
     """Return the sheet as the JSON document."""
     listed = [line.agrees for line in lines if line.agrees is not None]
     return {
@@ -489,7 +494,7 @@ def accepted_document(lines: Sequence[Any]) -> dict[str, Any]:
     }
 
 
-def history_figure(study: Any) -> Any:
+def history_figure(study: DesignStudy) -> "style.Figure":
     """Draw every short trial of a DesignStudy: the rate it would deliver, and what it lost."""
     figure, axes = style.chart(7.0, 3.0, x="trial", y="parts per minute", grid="y")
     places = np.arange(1, len(study.attempts) + 1)
@@ -525,9 +530,9 @@ SIDES = np.array(
 Body = tuple[Floats, Ints]  # corners (V, 3) [m] and faces (F, 3)
 
 
-def risk_picture(part: Any, risk: Any) -> Any:
+def risk_picture(part: Part, risk: Risk) -> "style.Figure":
     """Draw the pair of a Risk of a part from a mesh, as a Figure."""
-    first, second = bodies(part, risk.pair)
+    first, second = bodies(part, cast(Pair, risk.pair))
     everything = np.vstack([first[0], second[0]])
     centre = 0.5 * (everything.min(axis=0) + everything.max(axis=0))
     towards_viewer = vectors.unit(np.array(VIEWS.get(risk.kind, (-0.6, -0.7, 0.5))))
@@ -546,17 +551,17 @@ def risk_picture(part: Any, risk: Any) -> Any:
     return figure
 
 
-def bodies(part: Any, pair: Any) -> tuple[Body, Body]:
+def bodies(part: Part, pair: Pair) -> tuple[Body, Body]:
     """Return the part and what it may be caught by, each as ((V, 3) float [m], (F, 3) int), in its axes."""
-    points = part.corners
+    points, faces = part.corners, cast(Ints, part.faces)
     first = vectors.product(points, pair.axes.T)
-    if pair.turn is not None:
+    if pair.turn is not None and pair.place is not None:
         moved = vectors.product(points, pair.turn.T) + pair.place
-        return (first, part.faces), (vectors.product(moved, pair.axes.T), part.faces)
+        return (first, faces), (vectors.product(moved, pair.axes.T), faces)
     least, most = first.min(axis=0), first.max(axis=0)
     size = (most - least).max()
     middle, low = 0.5 * (least + most), least - OVER * size
     long = np.array([most[0] - least[0] + 2.0 * OVER * size, THIN * size, 0.6 * (most[2] - least[2])])
     sides = (middle[1] - 0.5 * pair.walls - THIN * size, middle[1] + 0.5 * pair.walls)
     walls = [BOX * long + np.array([low[0], y, least[2]]) for y in sides]
-    return (first, part.faces), (np.vstack(walls), np.vstack([SIDES, SIDES + len(BOX)]))
+    return (first, faces), (np.vstack(walls), np.vstack([SIDES, SIDES + len(BOX)]))

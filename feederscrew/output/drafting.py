@@ -87,16 +87,17 @@ class Drawing:
 
     # entities
 
-    def outline(self, corners: ArrayLike, layer: str, closed: bool = True) -> None:
+    def outline(self, corners: ArrayLike, layer: str, is_closed: bool = True) -> None:
         """Draw a polyline through corners (K, 2) [mm]."""
         places = np.asarray(corners, float) + self.origin
-        self.space.add_lwpolyline(places.tolist(), close=closed, dxfattribs=self._look(layer))
-        self.sheets[-1].append((layer, "line", np.vstack([places, places[:1]]) if closed else places, False))
+        self.space.add_lwpolyline(places.tolist(), close=is_closed, dxfattribs=self._look(layer))
+        points = np.vstack([places, places[:1]]) if is_closed else places
+        self.sheets[-1].append((layer, "line", points, False))
 
     def lines(self, pieces: Iterable[ArrayLike], layer: str = "EDGE") -> None:
         """Draw open lines (2, 2) or (K, 2) [mm] each."""
         for piece in pieces:
-            self.outline(piece, layer, closed=False)
+            self.outline(piece, layer, is_closed=False)
 
     def box(self, left: float, low: float, right: float, high: float, layer: str = "FRAME") -> None:
         """Draw a rectangle."""
@@ -104,15 +105,15 @@ class Drawing:
 
     def circle(self, middle: ArrayLike, radius: float, layer: str = "EDGE") -> None:
         """Draw a circle [mm]."""
-        self._keep(self.space.add_circle(self._at(middle), radius, dxfattribs=self._look(layer)))
+        self._record(self.space.add_circle(self._in_file(middle), radius, dxfattribs=self._look(layer)))
 
-    def hatched(self, rings: Sequence[ArrayLike]) -> None:
+    def hatch(self, rings: Sequence[ArrayLike]) -> None:
         """Draw the cut face of closed outlines, holes among them."""
         hatch = self.space.add_hatch(dxfattribs=self._look("SECTION"))
         hatch.set_pattern_fill("ANSI31", scale=1.0)
         for ring in rings:
             hatch.paths.add_polyline_path([tuple(place) for place in np.asarray(ring, float) + self.origin])
-        self._keep(hatch)
+        self._record(hatch)
         for ring in rings:
             self.outline(ring, "SECTION")
 
@@ -125,8 +126,8 @@ class Drawing:
             words, height=size, rotation=turn, dxfattribs=self._look(layer) | {"style": "SHEET"}
         )
         entity.dxf.halign = ("left", "center", "right").index(align)
-        entity.dxf.insert = entity.dxf.align_point = self._at((x, y))
-        self._keep(entity, bold)
+        entity.dxf.insert = entity.dxf.align_point = self._in_file((x, y))
+        self._record(entity, bold)
 
     def table(
         self, left: float, top: float, widths: Sequence[float], rows: Sequence[Sequence[str]],
@@ -145,34 +146,34 @@ class Drawing:
     # dimensions
 
     def length(
-        self, start: ArrayLike, end: ArrayLike, off: ArrayLike, scale: float = 1.0, text: str = "<>",
+        self, start: ArrayLike, end: ArrayLike, offset: ArrayLike, scale: float = 1.0, text: str = "<>",
         decimals: int = 2,
     ) -> None:  # fmt: skip
         """Dimension the distance of two places [mm]: its line is moved off by a vector (2,) square to it.
 
         ``text`` has '<>' for the number, which is measured: the distance over the ``scale``.
         """
-        start, end, off = (np.asarray(p, float) for p in (start, end, off))
+        start, end, offset = (np.asarray(p, float) for p in (start, end, offset))
         x, y = end - start
-        if np.abs(off).max() > 1e-9:  # its line is square to the way it is moved off
-            x, y = off[1], -off[0]
+        if np.abs(offset).max() > 1e-9:  # its line is square to the way it is moved off
+            x, y = offset[1], -offset[0]
         turn = (np.degrees(np.arctan2(y, x)) + 89.999) % 180.0 - 89.999
-        places = {"base": self._at(start + off), "p1": self._at(start), "p2": self._at(end)}
-        self._measured(self.space.add_linear_dim, scale, decimals, angle=float(turn), text=text, **places)
+        places = {"base": self._in_file(start + offset), "p1": self._in_file(start), "p2": self._in_file(end)}
+        self._measure(self.space.add_linear_dim, scale, decimals, angle=float(turn), text=text, **places)
 
     def ordinate(
         self, place: ArrayLike, end: ArrayLike, origin: ArrayLike, upright: bool, scale: float = 1.0
     ) -> None:
         """Dimension a place from an origin, along X or ``upright`` along Y; the number stands at ``end``."""
         x, y = np.asarray(end, float) - np.asarray(place, float)
-        places = {"feature_location": self._at(place), "origin": self._at(origin)}
+        places = {"feature_location": self._in_file(place), "origin": self._in_file(origin)}
         add = self.space.add_ordinate_y_dim if upright else self.space.add_ordinate_x_dim
-        self._measured(add, scale, 2, offset=(float(x), float(y)), **places)
+        self._measure(add, scale, 2, offset=(float(x), float(y)), **places)
 
     def angle(self, middle: ArrayLike, radius: float, start: float, end: float) -> None:
         """Dimension an angle [deg] counter-clockwise about a middle, on an arc of a radius [mm]."""
         ends = {"start_angle": start, "end_angle": end, "radius": 0.8 * radius, "distance": 0.2 * radius}
-        self._measured(self.space.add_angular_dim_cra, 1.0, 2, center=self._at(middle), text="<>", **ends)
+        self._measure(self.space.add_angular_dim_cra, 1.0, 2, center=self._in_file(middle), text="<>", **ends)
 
     def round_size(
         self, middle: ArrayLike, radius: float, turn: float, scale: float = 1.0, diameter: bool = False,
@@ -181,7 +182,7 @@ class Drawing:
         """Dimension a radius, or a diameter, of a circle at an angle [deg]."""
         add = self.space.add_diameter_dim if diameter else self.space.add_radius_dim
         size = {"radius": radius, "angle": turn, "text": text}
-        self._measured(add, scale, decimals, center=self._at(middle), **size)
+        self._measure(add, scale, decimals, center=self._in_file(middle), **size)
 
     def mark(self, words: str, low: ArrayLike = (0.0, 0.0), size: tuple[float, float] = A3) -> None:
         """Write a mark from corner to corner of the present sheet, on a layer of its own; '' for none."""
@@ -260,7 +261,7 @@ class Drawing:
 
     # helpers
 
-    def _at(self, place: ArrayLike) -> tuple[float, float]:
+    def _in_file(self, place: ArrayLike) -> tuple[float, float]:
         x, y = np.asarray(place, float) + self.origin
         return float(x), float(y)
 
@@ -271,10 +272,10 @@ class Drawing:
             self.document.layers.add(layer, **look, lineweight=round(100 * pen.width))
         return {"layer": layer}
 
-    def _keep(self, entity: Any, bold: bool = False) -> None:
+    def _record(self, entity: Any, bold: bool = False) -> None:
         self.sheets[-1].append((entity.dxf.layer, "entity", entity, bold))
 
-    def _measured(self, add: Callable[..., Any], scale: float, decimals: int, **sizes: Any) -> None:
+    def _measure(self, add: Callable[..., Any], scale: float, decimals: int, **sizes: Any) -> None:
         """Add a dimension in the style of a scale, which is made where there is none yet."""
         name = f"SCALE_{scale:g}_{NUMBER_HEIGHT_MM:g}_{decimals}".replace(".", "P")
         if name not in self.document.dimstyles:
@@ -286,7 +287,7 @@ class Drawing:
             self.document.dimstyles.new(name, dxfattribs=look)
         dimension = add(**sizes, dimstyle=name, dxfattribs=self._look("DIMENSION"))
         dimension.render()
-        self._keep(dimension.dimension)
+        self._record(dimension.dimension)
 
     def _pen(self, layer: str) -> Pen:
         return self.pens.get(layer) or self.pens[layer.removeprefix("BENT_").partition("_")[0]]  # BENT_CUT_2
@@ -302,13 +303,13 @@ class Drawing:
         }
 
 
-def spread(wanted: ArrayLike, gap: float) -> Floats:
+def spread(targets: ArrayLike, gap: float) -> Floats:
     """Return places (N,) near the wanted ones, in their order, of which no two are nearer than ``gap``."""
-    wanted = np.asarray(wanted, float)
-    order = np.argsort(wanted, kind="stable")
+    targets = np.asarray(targets, float)
+    order = np.argsort(targets, kind="stable")
     steps = np.arange(len(order)) * gap
-    lower = np.maximum.accumulate(wanted[order] - steps)
-    upper = np.minimum.accumulate((wanted[order] - steps)[::-1])[::-1]
+    lower = np.maximum.accumulate(targets[order] - steps)
+    upper = np.minimum.accumulate((targets[order] - steps)[::-1])[::-1]
     places = np.empty(len(order))
     places[order] = 0.5 * (lower + upper) + steps
     return places

@@ -1,11 +1,11 @@
 """Files of ``feeder drop``: counts of the test, traced drops, and the tosses of ``--launches``."""
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrays import Floats, Ints, Points
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
 from feederscrew.dropping.drop_test import DropTrace, chosen
@@ -16,12 +16,9 @@ from feederscrew.output import offers as offer
 from feederscrew.output.aspects import MARKS, PROBABILITIES
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.drop import DropStudy, TossStudy
 from feederscrew.units import MM
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 mpl_ticker = heavy("matplotlib.ticker")
 ndimage = heavy("scipy.ndimage")
@@ -106,7 +103,7 @@ def traces(study: DropStudy) -> Frame:
     return tables.frame({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
 
 
-def _counted_on(aspects: Any, trace: DropTrace) -> str:
+def _counted_on(aspects: Aspects, trace: DropTrace) -> str:
     return aspects.names[trace.row] if trace.row >= 0 else NONE
 
 
@@ -128,7 +125,7 @@ def offers(study: DropStudy) -> list[offer.Offer]:
     return offered
 
 
-def counts_figure(study: DropStudy) -> "Figure":
+def counts_figure(study: DropStudy) -> "style.Figure":
     """Draw the chart of a drop test with its intervals; the shares by every rule are marks."""
     result, names = study.result, study.aspects.names
     tally = result.tally
@@ -154,7 +151,7 @@ def counts_figure(study: DropStudy) -> "Figure":
     return figure
 
 
-def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: Ints) -> None:
+def curve(axes: "style.Axes", trace: DropTrace, aspects: Aspects, rows: Ints) -> None:
     """Draw energy and height of the centre of mass over time; the stills' numbers stand at ``rows`` (S,)."""
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
     style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
@@ -167,7 +164,7 @@ def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: Ints) -> None:
     if trace.row >= 0:
         height, name = aspects.heights[trace.row], aspects.names[trace.row]
         lines.append((height / MM, f"rests on {name}", strong))
-        if np.isfinite(barrier := aspects.barriers[trace.row]):
+        if aspects.barriers is not None and np.isfinite(barrier := aspects.barriers[trace.row]):
             dashed = strong | {"linestyle": (0, (5, 3))}
             lines.append(((height + barrier) / MM, f"tips from {name}", dashed))
     left = (row for row in np.flatnonzero(aspects.stable) if row != trace.row)
@@ -200,7 +197,7 @@ def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: Ints) -> None:
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), fontsize=7, frameon=False, borderpad=0.0)
 
 
-def _badge(axes: "Axes", x: float, y: float, number: int) -> None:
+def _badge(axes: "style.Axes", x: float, y: float, number: int) -> None:
     disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
     look: dict[str, Any] = {"ha": "center", "va": "center", "color": style.INK, "bbox": disc, "zorder": 6}
     axes.text(x, y, str(number), fontsize=6, clip_on=False, **look)
@@ -219,7 +216,7 @@ AHEAD: dict[str, Any] = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (
 FOOT: dict[str, Any] = {"color": style.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 4}
 
 
-def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
+def strip(part: Part, aspects: Aspects, trace: DropTrace, title: str) -> "style.Figure":
     """Draw one drop of a part with a mesh in stills, all in one scale, and its energy below."""
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
@@ -316,14 +313,14 @@ HIDDEN_TOSS_COLUMNS = (
 )  # fmt: skip
 
 
-def tosses(study: Any) -> Frame:
+def tosses(study: TossStudy) -> Frame:
     """Return where each toss leads, one row a toss: the columns of ``tosses.csv``."""
     result, launches, aspects = study.result, study.launches, study.aspects.names
     count, (low, high) = len(result.faces), study.intervals
     labels = list(launches.names[:count])
     whole = all(label.isdecimal() for label in labels)
     measured: dict[str, Any] = {}
-    if launches.ends is not None:
+    if launches.ends is not None and study.off is not None:
         ends = launches.ends[:count] / MM
         measured |= {"x_measured_mm": ends[:, 0], "y_measured_mm": ends[:, 1], "off_mm": study.off / MM}
     if launches.faces is not None:
@@ -343,7 +340,7 @@ def tosses(study: Any) -> Frame:
     )
 
 
-def toss_document(study: Any) -> dict[str, Any]:
+def toss_document(study: TossStudy) -> dict[str, Any]:
     """Return the tosses as one JSON document."""
     agreement, measured = study.agreement, None
     if agreement is not None:
@@ -379,7 +376,7 @@ def toss_remarks(study: TossStudy) -> list[str]:
     return lines
 
 
-def toss_summary(study: Any) -> list[str]:
+def toss_summary(study: TossStudy) -> list[str]:
     """Return how the answers agree with what was measured, a line each; empty where nothing was."""
     agreement = study.agreement
     if agreement is None:
@@ -391,7 +388,7 @@ def toss_summary(study: Any) -> list[str]:
     ]
     if agreement.median_off is not None:
         lines.append(f"half of the places are within {agreement.median_off / MM:.1f} mm of the measured ones")
-    if agreement.sure:
+    if agreement.sure_right_share is not None:
         lines.append(
             f"of the {agreement.sure} answers with p of at least 0.95, "
             f"{100.0 * agreement.sure_right_share:.1f} % are as measured: p considers the surface "
@@ -402,20 +399,17 @@ def toss_summary(study: Any) -> list[str]:
 
 def toss_offers(study: TossStudy) -> list[offer.Offer]:
     """Offer where each toss leads."""
-    offered = [
-        offer.table("tosses.csv", tosses, study),
-        offer.document("tosses.json", toss_document, study),
-    ]
-    if study.launches.ends is not None:
-        offered.append(offer.picture("tosses.png", "Places computed and measured", _toss_plan, study))
+    offered = [offer.table("tosses.csv", tosses, study), offer.document("tosses.json", toss_document, study)]
+    if (ends := study.launches.ends) is not None:
+        alt = "Places computed and measured"
+        offered.append(offer.picture("tosses.png", alt, _toss_plan, study, ends, study.off))
     return offered
 
 
-def _toss_plan(study: Any) -> "Figure":
-    faces, computed = study.result.faces, study.result.places / MM
-    ends, measured_faces = study.launches.ends, study.launches.faces
+def _toss_plan(study: TossStudy, ends: Points, distances: Floats) -> "style.Figure":
+    faces, computed, measured_faces = study.result.faces, study.result.places / MM, study.launches.faces
     measured = ends[: len(computed)] / MM
-    median = np.nanmedian(study.off) / MM
+    median = np.nanmedian(distances) / MM
     title = f"{study.part.name}: {len(computed)} tosses, median distance {median:.3g} mm"
     figure, axes = style.chart(6.4, 5.6, title=title, x="x [mm]", y="y [mm]")
     axes.set_aspect("equal")

@@ -2,24 +2,27 @@
 
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Array, Bools, Floats, Ints, Points, Vector
 from feederscrew.bowl import texts
+from feederscrew.bowl.record import Bowl
+from feederscrew.geometry.grids import Grid
 from feederscrew.geometry.polygons import centroid, turned
 from feederscrew.heavy import heavy
-from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
+from feederscrew.mechanics import floor_balance
+from feederscrew.mechanics.cycle import Cycle
+from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, FloorMotion
+from feederscrew.mechanics.track_balance import TrackMotion
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame, row_of
+from feederscrew.resting.posture import Posture
 from feederscrew.studies.floor import FloorStudy
+from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 mpl_lines = heavy("matplotlib.lines")
 mpl_patches = heavy("matplotlib.patches")
@@ -57,8 +60,10 @@ FLOOR_LABELS = {  # what people read
     "tips": OUTSIDE,
 }
 
+XY = Sequence[float] | Vector  # (2,)
 
-def instant(motion: Any, posture: Any, bowl: Any) -> dict[str, Any]:
+
+def instant(motion: Any, posture: Posture, bowl: Bowl) -> dict[str, Any]:
     """Return the upper reversal under the names of the JSON contract, of a FloorMotion or PrintedFloor."""
     size, friction = np.hypot(*motion.acceleration), {}
     along, across = motion.offset if np.ndim(motion.offset) else (motion.offset, np.nan)
@@ -68,19 +73,19 @@ def instant(motion: Any, posture: Any, bowl: Any) -> dict[str, Any]:
     return {
         **row_of(motion, "normal_force_N"),
         "alignment_acceleration_rad_s2": float(motion.turning) + 0.0,
-        "stable_heading_deg": float(np.degrees(stable_heading(posture, bowl))),
+        "stable_heading_deg": float(np.degrees(floor_balance.stable_heading(posture, bowl))),
         **row_of(motion, "limiting_friction"),
-        "acceleration_y_m_s2": noiseless(motion.acceleration[1], size),
-        "acceleration_z_m_s2": noiseless(motion.acceleration[0], size),
+        "acceleration_y_m_s2": drop_rounding(motion.acceleration[1], size),
+        "acceleration_z_m_s2": drop_rounding(motion.acceleration[0], size),
         "normal_line_offset_mm": float(along) / MM,
         "normal_line_offset_y_mm": float(across) / MM + 0.0,
         **friction,
-        "tips": tips(getattr(motion, "inside", np.nan)),
+        "tips": is_tipping(getattr(motion, "inside", np.nan)),
         "state": MOTION_STATES[int(motion.state)],
     }
 
 
-def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
+def cycle_columns(motion: FloorMotion, course: Cycle) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
     forces = "normal_force_N friction_z_N/friction_y_N=friction limiting_friction"
     columns = {
@@ -92,14 +97,14 @@ def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
     return samples(motion, course, columns)
 
 
-def samples(motion: Any, course: Any, columns: Mapping[str, Any]) -> dict[str, Any]:
+def samples(motion: FloorMotion | TrackMotion, course: Cycle, columns: Mapping[str, Array]) -> dict[str, Any]:
     """Return columns over a cycle, phase and state before and ``tips`` behind them, every few samples."""
-    first = {"phase_deg": phases(course), "state": np.array(MOTION_STATES)[motion.state]}
-    columns = {**first, **columns, "tips": [tips(inside) for inside in motion.inside]}
-    return {name: values[::SAMPLE_STEP] for name, values in columns.items()}
+    first: dict[str, Any] = {"phase_deg": phases(course), "state": np.array(MOTION_STATES)[motion.state]}
+    cells = first | dict(columns) | {"tips": [is_tipping(inside) for inside in motion.inside]}
+    return {name: values[::SAMPLE_STEP] for name, values in cells.items()}
 
 
-def phases(course: Any) -> Floats:
+def phases(course: Cycle) -> Floats:
     """Return the phase [deg] of each sample of a cycle."""
     return np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
 
@@ -118,17 +123,17 @@ def document(study: FloorStudy) -> dict[str, Any]:
         "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
         **row_of(posture, "turning_inertia_g_mm2"),
         "as_published": study.printed is not None,
-        "regime": regime(study.cycle.state),
+        "regime": floor_balance.regime(study.cycle.state),
         "instant": now,
         **values,
         "mean_velocity_m_s": mean_velocity(study),
         "settled": study.course.settled,
-        "cycle": over_cycle(study.cycle, study.course),
+        "cycle": cycle_columns(study.cycle, study.course),
         "bowl": texts(bowl.settings),
     }
 
 
-def printed(document: Mapping[str, Any], format: str, summary: Callable[..., Frame]) -> Frame:
+def printout(document: Mapping[str, Any], format: str, summary: Callable[..., Frame]) -> Frame:
     """Return what is printed: the cycle as CSV; for people its ``summary``, or what print leaves out."""
     if format == "csv":
         return tables.frame(document["cycle"])
@@ -137,10 +142,10 @@ def printed(document: Mapping[str, Any], format: str, summary: Callable[..., Fra
 
 def summary(document: Mapping[str, Any]) -> Frame:
     """Return the upper reversal, a row a quantity, for people."""
-    return for_people(labelled(document, FLOOR_LABELS))
+    return people_table(label_values(document, FLOOR_LABELS))
 
 
-def labelled(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
+def label_values(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
     """Return the instant of a document and its regime by the names that people read, with units."""
     now = document["instant"]
     units = {name: tables.heading(name)[1] for name in labels}
@@ -149,7 +154,7 @@ def labelled(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict[str
     return rows | {name: STATE_WORDS.get(state, state) for name, state in states}
 
 
-def for_people(rows: Mapping[str, Any]) -> Frame:
+def people_table(rows: Mapping[str, Any]) -> Frame:
     """Return numbers, texts and verdicts by name as a table for people."""
 
     def words(value: Any) -> str:
@@ -162,9 +167,9 @@ def for_people(rows: Mapping[str, Any]) -> Frame:
     return tables.quantities((name, words(value)) for name, value in rows.items())
 
 
-def difference(printed: Mapping[str, Any], complete: Mapping[str, Any], terms: Mapping[str, str]) -> Frame:
+def difference(published: Mapping[str, Any], complete: Mapping[str, Any], terms: Mapping[str, str]) -> Frame:
     """Return printed against complete values by quantity, with the omitted term of each."""
-    first, second = ([values[name] for name in terms] for values in (printed, complete))
+    first, second = ([values[name] for name in terms] for values in (published, complete))
     gap = np.array(first, dtype=float) - np.array(second, dtype=float)
     is_equal = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
     omitted = ["-" if same else term for same, term in zip(is_equal, terms.values())]
@@ -174,10 +179,10 @@ def difference(printed: Mapping[str, Any], complete: Mapping[str, Any], terms: M
 
 def remarks(study: FloorStudy) -> list[str]:
     """Return what a reader of a FloorStudy should know, a sentence each."""
-    posture, lines = study.posture, chosen(study)
+    posture, lines = study.posture, aspect_remark(study)
     if len(posture.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
-    if rolls(posture):
+    if floor_balance.rolls(posture):
         lines.append(
             f"rolling aspect, {posture.form}: it rolls, and slips as well where static friction is below"
             f" {float(study.now.limiting_friction):.3g}"
@@ -201,12 +206,12 @@ def map_remarks(study: FloorStudy) -> list[str]:
     return [line for kind, (over, *_) in MAPS.items() for line in _map_notes(kind, over(study, TABLE_CELLS))]
 
 
-def _map_notes(kind: str, grid: Any) -> list[str]:
+def _map_notes(kind: str, grid: Grid) -> list[str]:
     slides = MOTION_STATES.index("slide") in grid.codes
     return [] if slides else [f"{kind.replace('_', ' and ')}: {none_slides(grid)}."]
 
 
-def none_slides(grid: Any) -> str:
+def none_slides(grid: Grid) -> str:
     """Say what a map shows on which nothing slides: of which instant it is, and what happens there."""
     words = {"stick": "is held", "tip": "has its line of action outside the contact", "hop": "is in the air"}
     shares = ((words[name], 100 * share) for name, share in grid.shares().items() if name in words)
@@ -223,24 +228,24 @@ def _alignment(study: FloorStudy) -> dict[str, Any]:
     return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names if name in cells}}
 
 
-def mean_velocity(study: Any) -> float | None:
+def mean_velocity(study: FloorStudy | TrackStudy) -> float | None:
     """Return that of the cycle [m/s]; None where the part hops, or gets faster with every period."""
     return None if HOP in study.cycle.state or not study.course.settled else study.course.mean
 
 
-def chosen(study: Any) -> list[str]:
+def aspect_remark(study: FloorStudy | TrackStudy) -> list[str]:
     """Return which aspect was taken, in one line, where none was asked for."""
     return [f"Aspect {study.posture.name}, {study.why}"] if study.why else []
 
 
-def noiseless(value: Any, scale: Any) -> float:
+def drop_rounding(value: Floats | float, scale: Floats | float) -> float:
     """Return the rounding of an exact zero as zero; ``scale`` is what it came out of."""
-    return 0.0 if abs(value) <= 1e-9 * max(abs(scale), 1e-12) else float(value)
+    return 0.0 if np.abs(value) <= 1e-9 * max(float(np.abs(scale)), 1e-12) else float(value)
 
 
-def tips(inside: Any) -> bool | None:
+def is_tipping(inside: Floats | float) -> bool | None:
     """Return whether it tips; None where the contact polygon or the contact is missing."""
-    return None if np.isnan(inside) else bool(inside < -ON_THE_LINE)
+    return None if np.isnan(inside) else bool(inside < -floor_balance.ON_THE_LINE)
 
 
 def offers(study: FloorStudy) -> list[offer.Offer]:
@@ -249,7 +254,7 @@ def offers(study: FloorStudy) -> list[offer.Offer]:
     title = f"{of}, heading {heading:.4g}°"
     offered = [
         offer.document("floor.json", document, study),
-        offer.table("floor_cycle.csv", over_cycle, study.cycle, study.course),
+        offer.table("floor_cycle.csv", cycle_columns, study.cycle, study.course),
         offer.table("floor_heading.csv", _alignment, study),
         offer.picture(
             "floor_heading.png", "Alignment acceleration over the heading", _alignment_figure, study, of
@@ -265,12 +270,12 @@ def offers(study: FloorStudy) -> list[offer.Offer]:
     return offered
 
 
-def _map(study: FloorStudy, kind: str, title: str) -> "Figure":
+def _map(study: FloorStudy, kind: str, title: str) -> "style.Figure":
     over, labels, _, own_point = MAPS[kind]
     grid = over(study, PICTURE_CELLS)
     return regime_map(
         grid, "acceleration_z_m_s2", title=title, labels=labels, value="acceleration V'_z [m/s²]",
-        own=own_point(study.bowl), note=_map_notes(kind, grid),
+        bowl_point=own_point(study.bowl), note=_map_notes(kind, grid),
     )  # fmt: skip
 
 
@@ -278,7 +283,7 @@ PART, CONTACT = "#dfe6ec", style.ACCENT
 DRIVE, FRICTION, MOTION, NORMAL = "#0072b2", "#b5482a", "#2f7d5b", "#5b3a8e"
 
 
-def plan(posture: Any, heading: float, motion: Any) -> "Figure":
+def plan(posture: Posture, heading: float, motion: FloorMotion) -> "style.Figure":
     """Draw the part from above at the upper reversal, a FloorMotion, at a heading [rad], with its forces."""
     spread = np.ptp(turned(posture.outline, heading), axis=0)
     aspect = f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
@@ -312,7 +317,7 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
         place = turned(motion.offset, heading) / MM
         look: dict[str, Any] = {"marker": "x", "color": NORMAL, "markeredgewidth": 2}
         axes.plot(*place, linestyle="", markersize=8, zorder=7, **look)
-        _note(axes, place, f"N = {newtons(motion.normal_force)}", NORMAL, (8, -12))
+        _note(axes, place, f"N = {newtons(float(motion.normal_force))}", NORMAL, (8, -12))
         handles.append(mpl_lines.Line2D([], [], linestyle="", label="normal force acts here", **look))
     if posture.axis is not None:
         along = turned(posture.axis, heading) * 0.6 * size
@@ -324,14 +329,14 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
     return figure
 
 
-def polygon(axes: "Axes", points: Any, color: str | None = None, **look: Any) -> None:
+def polygon(axes: "style.Axes", points: Points, color: str | None = None, **look: Any) -> None:
     """Draw a polygon [mm] filled, as a part or in a colour of its own."""
     edges = {"facecolor": PART, "edgecolor": style.INK, "linewidth": 1.4, "zorder": 2}
     edges |= {} if color is None else {"facecolor": color, "edgecolor": color}
     axes.add_patch(mpl_patches.Polygon(points, closed=True, **(edges | look)))
 
 
-def _cycle(study: FloorStudy, title: str) -> "Figure":
+def _cycle(study: FloorStudy, title: str) -> "style.Figure":
     motion, course, phase = study.cycle, study.course, phases(study.course)
     figure = style.figure(6.8, 5.6)
     upper, lower = figure.subplots(2, 1, sharex=True)
@@ -348,11 +353,11 @@ def _cycle(study: FloorStudy, title: str) -> "Figure":
     mean = f" mean on a level floor {course.mean / MM:.3g} mm/s"
     look = {"fontsize": 8, "color": MOTION, "va": "bottom", "path_effects": style.halo()}
     lower.text(2, course.mean / MM, mean, **look)
-    over_phase(figure, (upper, lower), phase, motion.state)
+    dress_phases(figure, (upper, lower), phase, motion.state)
     return figure
 
 
-def over_phase(figure: "Figure", panels: Sequence["Axes"], phase: Any, states: Any) -> None:
+def dress_phases(figure: "style.Figure", panels: Sequence["style.Axes"], phase: Floats, states: Ints) -> None:
     """Dress panels over the phase: the reversals, and on the first a band in the colour of each state."""
     for axes in panels:
         axes.set_xlim(0, 360)
@@ -371,7 +376,7 @@ def over_phase(figure: "Figure", panels: Sequence["Axes"], phase: Any, states: A
     style.legend(figure, handles=handles, ncols=len(handles))
 
 
-def _alignment_figure(study: FloorStudy, title: str) -> "Figure":
+def _alignment_figure(study: FloorStudy, title: str) -> "style.Figure":
     """The alignment acceleration over the heading, where known by print, with the stable heading."""
     grid, direction = _alignment(study), float(np.degrees(study.stable_heading))
     labels = {"x": "heading θ [deg]", "y": "alignment acceleration θ'' [rad/s²]"}
@@ -392,22 +397,23 @@ def _alignment_figure(study: FloorStudy, title: str) -> "Figure":
 
 
 def arrow(
-    axes: Any, start: Any, step: Any, text: str, color: str, *, pushing: bool = False, side: int = 0
-) -> None:
-    """Draw a force arrow with its value: from ``start`` on or, ``pushing``, towards it from outside.
+    axes: "style.Axes", start: XY, step: Vector, text: str, color: str, *, is_push: bool = False,
+    side: int = 0,
+) -> None:  # fmt: skip
+    """Draw a force arrow with its value: from ``start`` on or, ``is_push``, towards it from outside.
 
     ``side`` writes the value to the left (-1) or right (1) of the middle instead of beyond the head.
     """
-    tail = np.asarray(start) - step if pushing else np.asarray(start)
-    head, end = tail + step, -9.0 if pushing else 9.0
+    tail = np.asarray(start) - step if is_push else np.asarray(start)
+    head, end = tail + step, -9.0 if is_push else 9.0
     look = {"arrowstyle": "-|>", "color": color, "linewidth": 2.0, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", head, tail, arrowprops=look, zorder=6)
-    axes.plot(*(tail if pushing else head), alpha=0)
+    axes.annotate("", tuple(head), tuple(tail), arrowprops=look, zorder=6)
+    axes.plot(*(tail if is_push else head), alpha=0)
     shift = end * np.asarray(step) / max(float(np.hypot(*step)), 1e-12)
     if side:
         _note(axes, 0.4 * tail + 0.6 * head, text, color, (8.0 * side, 0.0))
     else:
-        _note(axes, tail if pushing else head, text, color, shift, centred=True)
+        _note(axes, tail if is_push else head, text, color, shift, is_centred=True)
 
 
 def newtons(force: float) -> str:
@@ -415,8 +421,9 @@ def newtons(force: float) -> str:
     return f"{force:.3g} N" if force >= 0.1 else f"{1e3 * force:.3g} mN"
 
 
-def _note(axes: Any, place: Any, text: str, color: str, shift: Any, centred: bool = False) -> None:
-    sideways = "center" if centred and abs(shift[0]) < abs(shift[1]) else "left" if shift[0] >= 0 else "right"
+def _note(axes: "style.Axes", place: XY, text: str, color: str, shift: XY, is_centred: bool = False) -> None:
+    x, y = shift
+    sideways = "center" if is_centred and abs(x) < abs(y) else "left" if x >= 0 else "right"
     look = {"color": color, "fontweight": "bold", "ha": sideways, "va": "center", "zorder": 8}
     box = {"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 0.8}
     style.note(axes, text, place, tuple(shift), bbox=box, **look)
@@ -436,12 +443,12 @@ HATCH_COLOUR = "#8d979f"
 
 
 def regime_map(
-    grid: Any, column: str, *, title: str, labels: Sequence[str], value: str, own: Any = None,
-    note: Sequence[str] = (),
-) -> "Figure":  # fmt: skip
+    grid: Grid, column: str, *, title: str, labels: Sequence[str], value: str,
+    bowl_point: Sequence[float] | None = None, note: Sequence[str] = (),
+) -> "style.Figure":  # fmt: skip
     """Draw a column of a Grid in colour with contour lines, and every region where it means something else.
 
-    ``labels`` are those of the two axes, ``value`` that of the colour bar. ``own`` is the bowl's own
+    ``labels`` are those of the two axes, ``value`` that of the colour bar. ``bowl_point`` is the bowl's own
     point in the axes' units. Each ``note`` is a line under the title.
     """
     figure, axes = style.chart(6.8, 4.8, title=title, x=labels[0], y=labels[1], grid="none")
@@ -452,7 +459,7 @@ def regime_map(
     regions = []
     hatching = {"hatch.color": HATCH_COLOUR, "hatch.linewidth": 0.6}
     for name in (name for name in HATCHES if name in grid.names):
-        inside = grid.names.index(name) == grid.codes.T
+        inside = np.equal(grid.codes.T, grid.names.index(name))
         if not inside.any():
             continue
         (hatch, colour, label), cover = HATCHES[name], np.where(inside, 1.0, 0.0)
@@ -466,8 +473,8 @@ def regime_map(
         if not inside.all():
             axes.contour(x, y, cover, [0.5], colors=style.INK, linewidths=0.9, zorder=4)
     _throws(axes, grid)
-    if own is not None:
-        style.own_point(axes, own, "this bowl", (8, 6))
+    if bowl_point is not None:
+        style.own_point(axes, bowl_point, "this bowl", (8, 6))
     if note:  # sentences under the title, each from a line of its own
         listed = [piece for line in note for piece in textwrap.wrap(line, 100)]
         look = {"transform": axes.transAxes, "fontsize": 7.5, "color": style.INK, "va": "bottom"}
@@ -481,7 +488,9 @@ def regime_map(
     return figure
 
 
-def _values(figure: "Figure", axes: "Axes", data: tuple[Any, Any, Any], label: str, covered: Any) -> None:
+def _values(
+    figure: "style.Figure", axes: "style.Axes", data: tuple[Floats, ...], label: str, is_covered: Bools
+) -> None:
     """Colours with their bar, and contour lines where nothing covers them."""
     x, y, values = data
     finite = values[np.isfinite(values)]
@@ -492,18 +501,18 @@ def _values(figure: "Figure", axes: "Axes", data: tuple[Any, Any, Any], label: s
     bar.set_label(label, fontsize=9, color=style.INK)
     bar.ax.tick_params(labelsize=8, colors=style.INK)
     bar.outline.set_visible(False)
-    open_to_view: Any = np.ma.masked_invalid(np.where(covered, np.nan, values))
+    open_to_view: Any = np.ma.masked_invalid(np.where(is_covered, np.nan, values))
     if min(values.shape) > 1 and open_to_view.count() and np.ptp(open_to_view.compressed()) > 0.0:
         lines = axes.contour(x, y, open_to_view, 8, colors="white", linewidths=0.6, zorder=2)
         for text in axes.clabel(lines, fmt="%g", fontsize=6.5):
             text.set_path_effects(style.rim())
 
 
-def _throws(axes: "Axes", grid: Any) -> None:
+def _throws(axes: "style.Axes", grid: Grid) -> None:
     """Lines of equal throw number where the part hops: all that this balance can say there."""
     if "hop" not in grid.names or "throw_number" not in grid.values or min(grid.codes.shape) < 2:
         return
-    hops = grid.names.index("hop") == grid.codes
+    hops = grid.codes == grid.names.index("hop")
     throw = np.ma.masked_invalid(np.where(hops, grid.values["throw_number"], np.nan).T)
     if not throw.count() or throw.min() == throw.max():
         return

@@ -55,13 +55,9 @@ class ResultFolder:
         return name in self._records().get(command, {}).get("files", [])
 
     def keep(
-        self,
-        command: str,
-        *,
-        arguments: Sequence[str] = (),
-        effective: Mapping[str, Any] | None = None,
+        self, command: str, *, arguments: Sequence[str] = (), effective: Mapping[str, Any] | None = None,
         warnings: Sequence[str] = (),
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Put every file in place and record the run; a command's files of an earlier run are replaced.
 
         ``arguments`` are as typed, ``effective`` the parameters that led to the numbers, ``warnings``
@@ -79,8 +75,8 @@ class ResultFolder:
         new_folders = [p for p in (self.path, *self.path.parents) if not p.exists()]  # the innermost first
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            with _locked(self.path):
-                self._put(command, record)
+            with _lock(self.path):
+                self._replace_files(command, record)
         except OSError as error:
             raise FeederError(self.path, f"cannot be written ({error.strerror})", ANOTHER) from error
         finally:
@@ -88,7 +84,7 @@ class ResultFolder:
                 with contextlib.suppress(OSError):
                     folder.rmdir()  # goes only if nothing came into it
 
-    def _put(self, command: str, record: dict[str, Any]) -> None:
+    def _replace_files(self, command: str, record: dict[str, Any]) -> None:
         records = self._records()
         old = records.get(command, {}).get("files", [])
         records[command] = record
@@ -171,7 +167,7 @@ def _write(path: Path, content: bytes) -> None:
 
 
 @contextlib.contextmanager
-def _locked(folder: Path) -> Iterator[None]:
+def _lock(folder: Path) -> Iterator[None]:
     """Two commands on one part take turns at its record."""
     try:
         import fcntl
@@ -186,7 +182,7 @@ def _locked(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def write_rule(path: str | Path, targets: Iterable[Any], inputs: Iterable[Any]) -> None:
+def write_rule(path: str | Path, targets: Iterable[str | Path], inputs: Iterable[str | Path]) -> None:
     """Write one rule, to be included by a Makefile, as a whole file; FeederError if it cannot be written."""
     path = Path(path)
     try:
@@ -200,14 +196,14 @@ def write_rule(path: str | Path, targets: Iterable[Any], inputs: Iterable[Any]) 
         raise FeederError(path, f"cannot be written ({error.strerror})", "give another `depfile`") from error
 
 
-def rule(targets: Iterable[Any], inputs: Iterable[Any]) -> str:
+def rule(targets: Iterable[str | Path], inputs: Iterable[str | Path]) -> str:
     """Return the text of the rule."""
-    target_words, input_words = ([_escaped(path) for path in paths] for paths in (targets, inputs))
+    target_words, input_words = ([_escape(path) for path in paths] for paths in (targets, inputs))
     first = f"{' '.join(target_words)}: " + " \\\n  ".join(input_words)
     return "".join(f"{line.rstrip()}\n" for line in (first, *(f"{path}:" for path in input_words)))
 
 
-def _escaped(path: Any) -> str:
+def _escape(path: str | Path) -> str:
     """A path with what make takes for its own marked."""
     text = Path(path).as_posix().replace("$", "$$")
     return "".join(f"\\{letter}" if letter in " #:%" else letter for letter in text)

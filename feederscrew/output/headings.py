@@ -1,23 +1,23 @@
 """Files of ``feeder headings``."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from feederscrew.bowl import texts
+from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
+from feederscrew.mechanics.headings import Headings
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, polygon
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.track import wall_and_edge
 from feederscrew.part.record import small_part_remarks
+from feederscrew.resting.posture import Posture
 from feederscrew.studies.headings import HeadingsStudy
 from feederscrew.units import MM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 mpl_ticker = heavy("matplotlib.ticker")
 shading = heavy("feederscrew.output.shading")
@@ -26,7 +26,7 @@ HIDDEN_HEADING_COLUMNS = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", 
 SPARE_COLUMNS = (("straight_wall_share",), ("half_turn_of_deg", "mirror_of_deg"))  # of a table too wide
 
 
-def frame(study: Any) -> Frame:
+def frame(study: HeadingsStudy) -> Frame:
     """Return every stable heading of a HeadingsStudy, a row each: the columns of ``headings.csv``."""
     parts = []
     for stable in study.headings:
@@ -41,8 +41,7 @@ def frame(study: Any) -> Frame:
             "half_turn_of_deg": degrees[np.maximum(stable.half_turns, -1)],
             "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
         }
-        contacts = [f"contact_{corner}_{axis}_mm" for corner in (1, 2) for axis in "xy"]
-        parts.append(columns | dict(zip(contacts, stable.touching.reshape(-1, 4).T / MM)))
+        parts.append(columns | dict(zip(HIDDEN_HEADING_COLUMNS, stable.touching.reshape(-1, 4).T / MM)))
     return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
@@ -85,7 +84,7 @@ SIDE = 2.5  # [in] of one picture
 NARROWEST = 0.4  # half a picture's width, over its height above the foot
 
 
-def headings(posture: Any, stable: Any, track: Any, title: str) -> "Figure":
+def headings(posture: Posture, stable: Headings, track: Track, title: str) -> "style.Figure":
     """Draw the part in each stable heading, the wall below, the track's free edge dashed."""
     count = min(len(stable.headings), MAX_PANELS)
     columns, lines = min(PANELS_ACROSS, count), -(-count // PANELS_ACROSS)

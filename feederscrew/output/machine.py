@@ -7,46 +7,50 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl.verified import Verified
 from feederscrew.conveying.hop import hop
 from feederscrew.heavy import heavy
 from feederscrew.machine import drive_sizing
-from feederscrew.machine.springs import mean_pull
+from feederscrew.machine.condition import MeasuredMachine
+from feederscrew.machine.springs import LeafSet, Rocking, mean_pull
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import marking, proof, solidbowl, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import Frame, row_of
+from feederscrew.studies.bowl import MachineSheet, Order
 from feederscrew.units import DEG, LITRE, MM, MM_S, PER_MINUTE
 
 figures = heavy("feederscrew.output.machine_figures")
 
 
 def offers(
-    study: Any, tried: Any = None, mark: str | None = None, fields: Any = None
-) -> tuple[offer.Offer, ...]:
+    study: MachineSheet, trial: Verified | None = None, mark: str | None = None,
+    fields: marking.SheetFields | None = None,
+) -> tuple[offer.Offer, ...]:  # fmt: skip
     """Return the files of a MachineSheet, its drawings with date and revision of ``fields`` (SheetFields).
 
-    ``tried`` is what a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is
+    ``trial`` is what a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is
     marked. ``mark`` stands across every drawing in place of the trial's.
     """
 
-    def whole() -> dict[str, Any]:
-        return document(study) | ({} if tried is None else {"verified": proof.block(tried)})
+    def document_with_trial() -> dict[str, Any]:
+        return document(study) | ({} if trial is None else {"verified": proof.block(trial)})
 
     alt = "The bowl from above and in section, with its sizes, and what it does from full to empty"
-    drawn = offer.picture("bowl.png", alt, lambda: figures.bowl(study, tried))
+    drawn = offer.picture("bowl.png", alt, lambda: figures.bowl(study, trial))
     return (
-        *(() if study.solid is None else solidbowl.offers(study, tried, mark, fields)),
-        offer.document("bowl.json", whole),
-        offer.table("bowl.csv", summary, study, tried),
+        *(() if study.solid is None else solidbowl.offers(study, trial, mark, fields)),
+        offer.document("bowl.json", document_with_trial),
+        offer.table("bowl.csv", summary, study, trial),
         offer.table("bowl_angles.csv", _angles, study),
         offer.table("bowl_leaves.csv", leaf_sets, study.sets),
         offer.table("bowl_leaf_changes.csv", leaf_sets, study.changes),
         offer.table("bowl_emptying.csv", emptying, study),
-        *marking.pictures([drawn], marking.of_trial(tried, mark)),
+        *marking.pictures([drawn], marking.of_trial(trial, mark)),
     )
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: MachineSheet) -> dict[str, Any]:
     """Return everything of a MachineSheet as the JSON document; where springs do not make the drive, both."""
     drive, other = study.bowl.drive, study.mismatch
     machine, sizing, leap = study.bowl.machine, study.bowl.sizing, hop(study.bowl)
@@ -60,7 +64,7 @@ def document(study: Any) -> dict[str, Any]:
         "springs_make_this_drive": other is None,
         "drive_asked_for": None if other is None else row_of(other.wanted, *motion),
         "drive_of_the_springs": None if other is None else row_of(other.machine, *motion),
-        **({} if study.order is None else _order(study)),
+        **({} if study.order is None else _order_entries(study, study.order)),
         **row_of(study, "turns bowl_depth_mm=depth leaf_stiffness_n_per_mm=springs.leaf_stiffness"),
         "leaves": int(machine.leaves),
         **row_of(machine, "leaf_width_mm leaf_thickness_mm leaf_length_mm"),
@@ -107,13 +111,12 @@ def document(study: Any) -> dict[str, Any]:
         "remarks": list(study.remarks),
         "warnings": list(study.remarks),
         **({} if study.solid is None else solidbowl.document(study.solid)),
-        **({} if study.rocking is None else _rocking(study)),
+        **({} if (rocking := study.rocking) is None else _rocking_entries(study, *rocking)),
     }
 
 
-def _rocking(study: Any) -> dict[str, Any]:
+def _rocking_entries(study: MachineSheet, as_is: Rocking, balanced: Rocking) -> dict[str, Any]:
     ends = "stroke_round_least=least stroke_round_greatest=greatest"
-    as_is, balanced = study.rocking
     return {
         **row_of(as_is, ends, "stroke_round_greatest_at_deg=angle"),
         **{f"balanced_{name}": value for name, value in row_of(balanced, ends).items()},
@@ -122,8 +125,8 @@ def _rocking(study: Any) -> dict[str, Any]:
     }
 
 
-def _order(study: Any) -> dict[str, Any]:
-    wish, size = study.order, study.order.size
+def _order_entries(study: MachineSheet, wish: Order) -> dict[str, Any]:
+    size = wish.size
     wanted = (None, None) if wish.wanted is None else (wish.wanted[0], wish.wanted[1] / DEG)
     rates, held = (study.rates(v) / PER_MINUTE for v in (study.velocities, study.controlled))
     return {
@@ -149,12 +152,12 @@ def _order(study: Any) -> dict[str, Any]:
     }
 
 
-def _angles(study: Any) -> Frame:
+def _angles(study: MachineSheet) -> Frame:
     columns = row_of(study, "radius_mm=radii vibration_angle_deg=angles")
     return tables.frame(columns | {"to_the_track_deg": (study.angles - study.bowl.track.climb) / DEG})
 
 
-def leaf_sets(sets: Sequence[Any]) -> Frame:
+def leaf_sets(sets: Sequence[LeafSet]) -> Frame:
     """Return sets of leaves, each a LeafSet, as a frame."""
     table = tables.table_of(
         sets,
@@ -164,7 +167,7 @@ def leaf_sets(sets: Sequence[Any]) -> Frame:
     return table if any(table["change"]) else table.without(("change",))
 
 
-def emptying(study: Any) -> Frame:
+def emptying(study: MachineSheet) -> Frame:
     """Return the bowl from full to empty as a frame, with rates where parts are counted."""
     columns = row_of(
         study.emptying,
@@ -179,12 +182,12 @@ def emptying(study: Any) -> Frame:
     return tables.frame({name: np.asarray(values) for name, values in columns.items()})
 
 
-def summary(study: Any, tried: Any = None) -> Frame:
+def summary(study: MachineSheet, trial: Verified | None = None) -> Frame:
     """Return the record as a frame for people: the quotation sheet, with what was tried, or the machine."""
-    return tables.of_rows(sheets.quotation(study, tried), ("quantity", "value"))
+    return tables.of_rows(sheets.quotation(study, trial), ("quantity", "value"))
 
 
-def measured_summary(condition: Any) -> Frame:
+def measured_summary(condition: MeasuredMachine) -> Frame:
     """Return what was measured beside what should be, and the likely cause, as a table."""
     should, stroke = condition.should, condition.stroke
     pairs = (
@@ -201,7 +204,7 @@ def measured_summary(condition: Any) -> Frame:
     return tables.of_cells(("quantity", "should be", "measured"), rows)
 
 
-def measured_document(condition: Any) -> dict[str, Any]:
+def measured_document(condition: MeasuredMachine) -> dict[str, Any]:
     """Return a MeasuredMachine as the JSON document."""
     names = "stroke_mm acceleration_m_s2 frequency_hz velocity_mm_s"
     should = SimpleNamespace(**condition.should, velocity=condition.velocity_should)

@@ -5,8 +5,11 @@ from typing import Any
 import numpy as np
 from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
+from feederscrew.arrays import Vector
+from feederscrew.bowl.verified import Verified
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import style
+from feederscrew.studies.bowl import MachineSheet
 from feederscrew.units import DEG, MM, PER_MINUTE
 
 MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX = 1760, 1500  # [px] of the page
@@ -14,23 +17,23 @@ SHEET_EDGE, TRACK_RING_FACE, FLOOR, FILL, BASE = "#22303c", "#b9cbd8", "#eef2f5"
 SPRING_FACE = "#7d8b97"
 SIZE_TEXT_PT = 8.5  # [pt]
 PITCH = 2.2  # thicknesses from leaf to leaf: one between them as a spacer
-CENTRED = {"color": style.INK, "ha": "center", "va": "center"}
+CENTRED: dict[str, Any] = {"color": style.INK, "ha": "center", "va": "center"}
 HEAD = {"fontsize": 10, "fontweight": "bold", "color": style.INK, "va": "top"}
 DIMENSION = {"arrowstyle": "<->", "color": style.INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
 LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 0}
 
 
-def bowl(study: Any, tried: Any = None) -> Any:
+def bowl(study: MachineSheet, trial: Verified | None = None) -> "style.Figure":
     """Draw a bowl with its machine, a MachineSheet, and what a trial of it has shown; return a Figure."""
     page = style.page(MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX)
     words, moved = "The machine of this bowl", study.stroke
     if study.order is not None:
         rate = study.order.target / PER_MINUTE
         words = f"{study.order.part.name}: a bowl for {rate:.4g} parts a minute"
-    elif tried is not None:
-        words = f"A bowl for {tried.target / PER_MINUTE:.4g} parts a minute"
-    if tried is not None:
-        words += f", {tried.wanted}: its trial delivers {sheets.rate_of_trial(tried)}"
+    elif trial is not None:
+        words = f"A bowl for {trial.target / PER_MINUTE:.4g} parts a minute"
+    if trial is not None:
+        words += f", {trial.wanted}: its trial delivers {sheets.rate_of_trial(trial)}"
     facts = f"{moved.frequency:.4g} Hz, {moved.peak_to_peak / MM:.3g} mm peak to peak, "
     facts += f"{1e3 * study.answer.velocity:.3g} mm/s; {sheets.angles(study)}"
     page.text(0.02, 0.965, words, fontsize=14, fontweight="bold", color=style.INK, va="center")
@@ -46,8 +49,8 @@ def bowl(study: Any, tried: Any = None) -> Any:
         axes.set_axis_off()
         axes.set(xlim=(-half, half), ylim=(-half * share, half * share))
         axes.text(-half, half * share, words, **HEAD)
-    _from_above(above, study, half * share)
-    _in_section(section, study, half * share)
+    _draw_from_above(above, study, half * share)
+    _draw_section(section, study, half * share)
     # rate or velocity, and natural frequency, from a full bowl to an empty one
     left, right = page.add_axes((0.065, 0.065, 0.41, 0.27)), page.add_axes((0.565, 0.065, 0.41, 0.27))
     fill = 100.0 * study.emptying.levels
@@ -72,7 +75,7 @@ def bowl(study: Any, tried: Any = None) -> Any:
     return page
 
 
-def _from_above(axes: Any, study: Any, half: float) -> None:
+def _draw_from_above(axes: "style.Axes", study: MachineSheet, half: float) -> None:
     track, machine = study.bowl.track, study.bowl.machine
     radius, width, at = track.radius / MM, track.width / MM, machine.spring_radius / MM
     axes.add_patch(Circle((0, 0), radius - width, facecolor=FLOOR, edgecolor=SPRING_FACE, linewidth=0.8))
@@ -117,18 +120,18 @@ def _from_above(axes: Any, study: Any, half: float) -> None:
     axes.annotate("", (-radius, y), (radius, y), arrowprops=DIMENSION)
     white = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
     axes.text(0, y, f"D {2 * radius:.4g}", fontsize=10, bbox=white, **CENTRED)
-    on_track, label = middle * _axes_at(np.radians(-38))[0], (1.17 * radius, -0.72 * radius)
-    look = {"fontsize": SIZE_TEXT_PT, "arrowprops": LEADER, **CENTRED}
+    on_track, label = tuple(middle * _axes_at(np.radians(-38))[0]), (1.17 * radius, -0.72 * radius)
+    look: dict[str, Any] = {"fontsize": SIZE_TEXT_PT, "arrowprops": LEADER, **CENTRED}
     axes.annotate(f"track {width:.3g}", on_track, label, **look)
     axes.text(0, 0, f"springs on\nradius {at:.4g}", fontsize=SIZE_TEXT_PT, **CENTRED)
 
 
-def _axes_at(turn: float) -> tuple[Any, Any]:
+def _axes_at(turn: float) -> tuple[Vector, Vector]:
     """Unit vectors outwards and counter-clockwise at an angle [rad]."""
     return np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
 
 
-def _in_section(axes: Any, study: Any, half: float) -> None:
+def _draw_section(axes: "style.Axes", study: MachineSheet, half: float) -> None:
     track, machine, rules = study.bowl.track, study.bowl.machine, study.bowl.sizing
     radius, width, depth = track.radius / MM, track.width / MM, study.depth / MM
     sheet, leaf = rules.sheet / MM, machine.leaf_length / MM * np.cos(machine.spring_angle)
@@ -170,12 +173,12 @@ def _in_section(axes: Any, study: Any, half: float) -> None:
         (foot + depth, climb, "top"),
     ):
         axes.text(0, y, words, fontsize=SIZE_TEXT_PT, color=style.INK, ha="center", va=align)
-    _upright(axes, 1, radius, foot, foot + depth)
+    _dimension_height(axes, 1, radius, foot, foot + depth)
     if 0.0 < 1.5 * rise <= depth:
-        _upright(axes, -1, radius, foot + 0.5 * rise, foot + 1.5 * rise)
+        _dimension_height(axes, -1, radius, foot + 0.5 * rise, foot + 1.5 * rise)
 
 
-def _upright(axes: Any, side: int, radius: float, low: float, high: float) -> None:
+def _dimension_height(axes: "style.Axes", side: int, radius: float, low: float, high: float) -> None:
     """A height beside the wall, on the right (1) or on the left (-1)."""
     x = side * 1.13 * radius
     for y in (low, high):

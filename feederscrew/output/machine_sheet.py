@@ -3,23 +3,28 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import cast
 
 import numpy as np
 
 from feederscrew import units
+from feederscrew.arrays import Points
+from feederscrew.bowl.record import Bowl, Drive, Machine
+from feederscrew.bowl.verified import Verified
 from feederscrew.conveying.hop import hop
 from feederscrew.machine import drive_sizing
 from feederscrew.machine.springs import MAINS, fewest_leaves, mean_pull
 from feederscrew.output.tables import regime_words
 from feederscrew.part.density import DEFAULT_MATERIAL
+from feederscrew.part.record import Part
+from feederscrew.studies.bowl import MachineSheet, Order
 from feederscrew.units import DEG, GRAM, LITRE, MM, MM_S, MPA, PER_MINUTE
 
 Pairs = Iterator[tuple[str, str]]
 N_MM, GRAM_CM3 = units.factor("N/mm", "stiffness"), units.factor("g/cm3", "density")
 
 
-def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
+def quotation(study: MachineSheet, trial: Verified | None = None) -> list[dict[str, str]]:
     """Return what a maker asks for, 'quantity' and 'value', of a MachineSheet: without an order the machine.
 
     What one set of leaf springs cannot make, and both drives, come first.
@@ -29,23 +34,29 @@ def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
         wanted, made = study.mismatch.wanted.text, study.mismatch.machine.text
         rows += [("drive asked for", wanted), ("these springs make", made)]
     if study.order is not None:
-        rows += [*_ordered(study, tried), *_springs(study)]
+        rows += [*_order_rows(study, study.order, trial), *_spring_rows(study)]
     else:
-        if tried is not None:
-            rows.append(("orientation that leaves", tried.wanted))
-            rows.append(("rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"))
-        rows += [*_tried(tried), *_springs(study), *_readings(study), *_travel(study), *_full(study)]
+        if trial is not None:
+            rows.append(("orientation that leaves", trial.wanted))
+            rows.append(("rate asked for [1/min]", f"{trial.target / PER_MINUTE:.6g}"))
+        rows += [
+            *_trial_rows(trial),
+            *_spring_rows(study),
+            *_reading_rows(study),
+            *_travel_rows(study),
+            *_fill_rows(study),
+        ]
     return [{"quantity": quantity, "value": value} for quantity, value in rows]
 
 
-def two_axis(drive: Any) -> str:
+def two_axis(drive: Drive) -> str:
     """Return what a drive out of phase is and needs, as text; '' of a leaf-spring drive."""
     if not drive_sizing.is_two_axis(drive):
         return ""
     return f"{drive_sizing.TWO_AXIS}, phase {drive.phase / DEG:.4g} deg: {drive_sizing.TWO_MAGNETS}"
 
 
-def angles(study: Any, *, phase: bool = True) -> str:
+def angles(study: MachineSheet, *, phase: bool = True) -> str:
     """Return the angle of the motion at the springs and at the track, as text for titles and drawings."""
     degrees = study.bowl.machine.spring_angle / DEG, study.bowl.drive.vibration_angle / DEG
     words = f"{degrees[0]:.3g}° at the springs, {degrees[1]:.3g}° to the track"
@@ -53,16 +64,16 @@ def angles(study: Any, *, phase: bool = True) -> str:
     return f"{words}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else words
 
 
-def _ordered(study: Any, tried: Any) -> Pairs:
-    order, size, rules = study.order, study.order.size, study.bowl.sizing
-    part, room = order.part, order.lying
-    extents = " x ".join(f"{side / MM:.4g}" for side in sorted(np.ptp(part.vertices, axis=0), reverse=True))
+def _order_rows(study: MachineSheet, order: Order, trial: Verified | None) -> Pairs:
+    size, rules, part, room = order.size, study.bowl.sizing, order.part, order.lying
+    points, volume = cast(Points, part.vertices), cast(float, part.volume)  # an order is of a mesh
+    extents = " x ".join(f"{side / MM:.4g}" for side in sorted(np.ptp(points, axis=0), reverse=True))
     yield "part, drawing", f"{part.name}, {part.source}"
-    yield "material, density [g/cm3]", f"{material(part)}, {part.mass / part.volume / GRAM_CM3:.4g}"
-    yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {part.volume / MM**3:.5g}"
+    yield "material, density [g/cm3]", f"{material(part)}, {part.mass / volume / GRAM_CM3:.4g}"
+    yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {volume / MM**3:.5g}"
     at_most = f"at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
     yield "size [mm]", f"{extents}; {at_most}"
-    yield from _tried(tried)
+    yield from _trial_rows(trial)
     rates, low = study.rates(study.velocities) / PER_MINUTE, study.lowest
     yield "rate asked for [1/min]", f"{order.target / PER_MINUTE:.6g}"
     at = f"at {100 * low.level:.3g} % of the fill, {low.control}"
@@ -75,7 +86,7 @@ def _ordered(study: Any, tried: Any) -> Pairs:
         counted = f"aspect {order.wanted[0]} at {order.wanted[1] / DEG:.3g} deg"
     yield "orientation that counts", f"{counted}, {100 * order.flow.share:.3g} % of the parts"
     yield "whose probabilities", order.answer
-    rule = max(size.least, key=size.least.get)
+    rule = max(size.least, key=size.least.__getitem__)
     least = f"{size.least[rule] / MM:.4g} by: {rule}"
     play = f"play {size.clearance / MM:.3g}, bend {size.bend / MM:.3g}"
     yield "bowl diameter [mm]", f"{size.diameter / MM:.4g} (least {least})"
@@ -83,36 +94,36 @@ def _ordered(study: Any, tried: Any) -> Pairs:
     yield "track width [mm]", f"{size.track_width / MM:.4g} (part {room.width / MM:.4g}, {play})"
     yield "climb [deg]", f"{size.climb / DEG:.3g} (friction carries {order.steepest / DEG:.3g})"
     yield "turns", f"{study.turns:.3g}, each rises {size.pitch / MM:.3g} mm"
-    yield from _full(study)
+    yield from _fill_rows(study)
     hours = rules.hopper_interval / units.factor("min", "time")
     yield "hopper [l]", f"{order.hopper / LITRE:.3g}, filled every {hours:.4g} min"
     yield "supply, drive [Hz]", supply(study.stroke.frequency)
-    yield from _readings(study)
-    yield from _travel(study)
+    yield from _reading_rows(study)
+    yield from _travel_rows(study)
     least_setting, greatest_setting = (rules.controller + sign * rules.retune for sign in (-1.0, 1.0))
     window = f"{100 * least_setting:.3g} to {100 * greatest_setting:.3g}"
     yield "tune again outside [%]", f"{window} of the controller, at that rate"
 
 
-def _tried(tried: Any) -> Pairs:
-    if tried is not None:
-        ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (tried.low, tried.high))
-        shown = f"{tried.delivered / PER_MINUTE:.4g} ({ends}): {tried.status}"
+def _trial_rows(trial: Verified | None) -> Pairs:
+    if trial is not None:
+        ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (trial.low, trial.high))
+        shown = f"{trial.delivered / PER_MINUTE:.4g} ({ends}): {trial.status}"
         yield "rate as its trial showed [1/min]", shown
 
 
-def rate_of_trial(tried: Any) -> str:
+def rate_of_trial(trial: Verified) -> str:
     """Return what a trial has delivered as text for titles and drawings."""
-    value, low = (f"{end / PER_MINUTE:.4g}" for end in (tried.delivered, tried.low))
-    return f"{value}/min, at least {low}: {tried.status}"
+    value, low = (f"{end / PER_MINUTE:.4g}" for end in (trial.delivered, trial.low))
+    return f"{value}/min, at least {low}: {trial.status}"
 
 
-def material(part: Any) -> str:
+def material(part: Part) -> str:
     """Return what a part is made of, as text: 'steel assumed' where neither file nor user says it."""
     return "steel assumed" if part.material == DEFAULT_MATERIAL else part.material
 
 
-def _full(study: Any) -> Pairs:
+def _fill_rows(study: MachineSheet) -> Pairs:
     rules, fill, under = study.bowl.sizing, study.fill, study.bowl.machine
     third = abs(rules.fill_height - 1.0 / 3.0) < 1e-3
     share = "a third" if third else f"{100 * rules.fill_height:.3g} %"
@@ -133,7 +144,7 @@ def supply(frequency: float) -> str:
     return f"frequency converter, {frequency:.4g}"
 
 
-def _readings(study: Any) -> Pairs:
+def _reading_rows(study: MachineSheet) -> Pairs:
     moved, rules = study.stroke, study.bowl.sizing
     full = moved.peak_to_peak / rules.controller / MM
     at = f"at {100 * rules.controller:.3g} % of the controller, {full:.3g} at 100 %"
@@ -146,7 +157,7 @@ def _readings(study: Any) -> Pairs:
         yield "a part hops", hop(study.bowl).text
 
 
-def _travel(study: Any) -> Pairs:
+def _travel_rows(study: MachineSheet) -> Pairs:
     answer, bowl = study.answer, study.bowl
 
     def words(value: float) -> str:
@@ -163,7 +174,7 @@ def _travel(study: Any) -> Pairs:
         yield "velocity from full to empty [mm/s]", f"{full} to {empty}, amplitude left alone"
 
 
-def _springs(study: Any) -> Pairs:
+def _spring_rows(study: MachineSheet) -> Pairs:
     springs, under, rules = study.springs, study.bowl.machine, study.bowl.sizing
     each = f"{springs.leaf_stiffness / N_MM:.5g} N/mm each"
     counts = spring_banks(study.bowl).counts
@@ -177,13 +188,13 @@ def _springs(study: Any) -> Pairs:
     plain = f"without twist {springs.natural_frequency_without_twist:.4g}; rigid clamps {rigid}"
     yield "natural frequency [Hz]", f"{springs.natural_frequency:.4g} ({plain})"
     yield "above the drive [%], gain", f"{100 * study.detuning:.3g}, {study.gain:.3g}"
-    if study.rocking is not None:
+    if study.solid is not None and (modes := study.rocking) is not None:
         # where the centre of mass of a solid is, and what that does to the stroke round it
         x, y, z = study.solid.centre / MM
         yield "centre of mass [mm]", f"{np.hypot(x, y):.3g} from the axis, {z:.3g} over the floor's edge"
         as_is, balanced = (
             f"{100 * (rocking.least - 1.0):+.2g} to {100 * (rocking.greatest - 1.0):+.2g}"
-            for rocking in study.rocking
+            for rocking in modes
         )
         weight, angle = study.solid.balance
         words = f"with {weight / GRAM:.3g} g on the wall at {angle / DEG:.0f} deg {balanced}"
@@ -222,7 +233,7 @@ class SpringBanks:
         return (2 * max(self.counts) - 1) * self.thickness
 
 
-def spring_banks(bowl: Any) -> SpringBanks:
+def spring_banks(bowl: Bowl) -> SpringBanks:
     """Return the banks of the leaf springs of a bowl."""
     leaves, banks = int(bowl.machine.leaves), int(bowl.sizing.banks)
     counts = tuple(leaves // banks + (k < leaves % banks) for k in range(banks))
@@ -230,7 +241,7 @@ def spring_banks(bowl: Any) -> SpringBanks:
     return SpringBanks(counts, angles, float(bowl.machine.leaf_thickness))
 
 
-def leaf_words(machine: Any) -> str:
+def leaf_words(machine: Machine) -> str:
     """Return width, thickness and length [mm] of a leaf, as text."""
     return " x ".join(
         f"{getattr(machine, f'leaf_{side}') / MM:.3g}" for side in ("width", "thickness", "length")

@@ -1,15 +1,19 @@
 """The mark on every drawing and solid of a bowl whose trial falls short."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew.bowl.verified import FALLS_SHORT
+from feederscrew.arrays import Vector
+from feederscrew.bowl.verified import FALLS_SHORT, Verified
 from feederscrew.output import offers
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MARK = "FALLS SHORT - not for manufacture"
 MARK_COLOUR, STRENGTH = "#d40000", 0.45  # of the letters, and how much they hide [1]
@@ -26,11 +30,11 @@ class SheetFields:
     revision: str = ""
 
 
-def of_trial(tried: Any, mark: str | None = None) -> str:
+def of_trial(trial: Verified | None, mark: str | None = None) -> str:
     """Return the mark of a bowl whose trial falls short, or the one given in its place; '' of any other."""
     if mark is not None:
         return mark
-    return MARK if tried is not None and tried.status == FALLS_SHORT else ""
+    return MARK if trial is not None and trial.status == FALLS_SHORT else ""
 
 
 def marked_title(text: str, mark: str) -> str:
@@ -53,18 +57,19 @@ def mark_step(data: bytes, mark: str) -> bytes:
     return STEP_PRODUCT.sub(rb"\1" + end + rb",'\2" + end, data)
 
 
-def diagonal(sheet: Any, mark: str) -> tuple[float, float]:
+def diagonal(sheet: Sequence[float] | Vector, mark: str) -> tuple[float, float]:
     """Return the size of a mark's letters, in the unit of a sheet (width, height), and its turn [rad]."""
     length = min(DIAGONAL_SHARE * float(np.hypot(*sheet)), SIDE_SHARE * max(sheet))
     width = 0.62  # of a bold letter over its size, in the mean
     return length / (width * len(mark)), float(np.arctan2(sheet[1], sheet[0]))
 
 
-def across(figure: Any, mark: str) -> Any:
+def mark_figure(figure: "Figure | None", mark: str) -> "Figure | None":
     """Write a mark from corner to corner of a figure or of None, and return it; '' leaves it as it is."""
     if figure is None or not mark:
         return figure
-    image = getattr(figure.canvas, "image", None)
+    canvas: Any = figure.canvas
+    image = getattr(canvas, "image", None)
     if image is None:
         _write(figure, mark)
         return figure
@@ -78,11 +83,11 @@ def across(figure: Any, mark: str) -> Any:
     drawn = np.asarray(letters.canvas.buffer_rgba())
     hidden = drawn[..., 3:] / 255.0
     mixed = image * (1.0 - hidden) + drawn[..., :3] * hidden
-    figure.canvas.image = np.rint(mixed).astype(np.uint8)
+    canvas.image = np.rint(mixed).astype(np.uint8)
     return figure
 
 
-def _write(figure: Any, mark: str) -> None:
+def _write(figure: "Figure", mark: str) -> None:
     size, turn = diagonal(figure.get_size_inches(), mark)
     figure.text(
         0.5, 0.5, mark, fontsize=72.0 * size, rotation=np.degrees(turn), ha="center", va="center",
@@ -90,10 +95,12 @@ def _write(figure: Any, mark: str) -> None:
     ).set_in_layout(False)  # fmt: skip
 
 
-def pictures(offered: Iterable[Any], mark: str) -> list[Any]:
+def pictures(files: Iterable[offers.Offer], mark: str) -> list[offers.Offer]:
     """Return offers whose pictures bear a mark; the others as they are."""
 
-    def marked(offer: Any) -> Any:
-        return offers.picture(offer.name, f"{offer.alt} ({mark})", lambda: across(offer.view(), mark))
+    def mark_picture(offer: offers.Offer) -> offers.Offer:
+        return offers.picture(
+            offer.name, f"{offer.alt} ({mark})", lambda: mark_figure(offer.view and offer.view(), mark)
+        )
 
-    return [marked(offer) if mark and offer.is_picture else offer for offer in offered]
+    return [mark_picture(offer) if mark and offer.is_picture else offer for offer in files]

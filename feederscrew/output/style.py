@@ -12,14 +12,14 @@ from feederscrew.heavy import heavy
 from feederscrew.output import DPI
 from feederscrew.resting.rules import registry
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+if TYPE_CHECKING:  # other modules name them in their annotations: "style.Axes"
+    from matplotlib.axes import Axes as Axes
+    from matplotlib.figure import Figure as Figure
     from matplotlib.patheffects import AbstractPathEffect
     from matplotlib.text import Annotation
 
-
 canvas = heavy("feederscrew.output.canvas")
+layout_engine = heavy("matplotlib.layout_engine")
 
 INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames
@@ -35,7 +35,8 @@ SPARE_COLOURS = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 def figure(width: float = 6.4, height: float = 4.0) -> Any:
     """Return a white figure [in] that lays out its axes by itself, of ``DPI`` pixels an inch."""
-    drawn = canvas.ShownFigure(figsize=(width, height), dpi=DPI, layout=canvas.layout(), facecolor="white")
+    layout = layout_engine.ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08)
+    drawn = canvas.ShownFigure(figsize=(width, height), dpi=DPI, layout=layout, facecolor="white")
     canvas.Canvas(drawn)
     return drawn
 

@@ -19,7 +19,7 @@ from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, regime
 from feederscrew.mechanics.track_balance import TrackAxes, TrackMotion, frame
 from feederscrew.output import floor, style, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, noiseless, polygon
+from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, drop_rounding, polygon
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
@@ -59,19 +59,19 @@ def _instant(motion: TrackMotion) -> dict[str, Any]:
     load = motion.normal_force + abs(motion.traction)
     return {
         "normal_force_N": float(motion.normal_force),
-        "wall_1_N": noiseless(motion.walls[0], load),
-        "wall_2_N": noiseless(motion.walls[1], load),
-        "radial_friction_N": noiseless(motion.radial_friction, load),
-        "traction_N": noiseless(motion.traction, load),
-        "normal_line_offset_mm": noiseless(motion.offset[0] / MM, 1.0),
-        "normal_line_offset_y_mm": noiseless(motion.offset[1] / MM, 1.0),
+        "wall_1_N": drop_rounding(motion.walls[0], load),
+        "wall_2_N": drop_rounding(motion.walls[1], load),
+        "radial_friction_N": drop_rounding(motion.radial_friction, load),
+        "traction_N": drop_rounding(motion.traction, load),
+        "normal_line_offset_mm": drop_rounding(motion.offset[0] / MM, 1.0),
+        "normal_line_offset_y_mm": drop_rounding(motion.offset[1] / MM, 1.0),
         "acceleration_x_m_s2": float(motion.acceleration[0]),
-        "acceleration_y_m_s2": noiseless(motion.acceleration[1], motion.acceleration[0]),
-        "turning_rad_s2": noiseless(motion.turning, motion.acceleration[0] / MM),
+        "acceleration_y_m_s2": drop_rounding(motion.acceleration[1], motion.acceleration[0]),
+        "turning_rad_s2": drop_rounding(motion.turning, motion.acceleration[0] / MM),
         **row_of(motion, "wall_1_friction_N/wall_2_friction_N=wall_friction"),
         "floor_couple_N_mm": float(motion.couple) / MM,
         "opened": [] if motion.state == HOP else _open_contacts(motion.closed),
-        "tips": floor.tips(motion.inside),
+        "tips": floor.is_tipping(motion.inside),
         "state": MOTION_STATES[int(motion.state)],
     }
 
@@ -161,13 +161,13 @@ def _differences(study: "TrackAsPublished") -> Frame:
 
 
 def _omitted_terms(study: "TrackAsPublished") -> Frame:
-    return tables.table_of(study.omitted, "name equation value unit")
+    return tables.table_of(study.omitted_terms, "name equation value unit")
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
     """Return what people want to know first, a row a quantity."""
     velocity, needed = document["mean_velocity_m_s"], document["friction_needed"]
-    rows = floor.labelled(document, TRACK_LABELS) | {
+    rows = floor.label_values(document, TRACK_LABELS) | {
         "on the track, over the strokes": document["on_the_track_said"],
         # not that of a point mass, of convey
         "velocity along the wall, with its friction and the bank [mm/s]": velocity and velocity / MM,
@@ -183,12 +183,12 @@ def summary(document: Mapping[str, Any]) -> Frame:
     rows["stays against the wall"] = "not known: it hops" if stays is None else stays
     rows |= {f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACT_NAMES}
     rows["bank without radial friction [deg]"] = document["bank_without_radial_friction_deg"]
-    return floor.for_people(rows)
+    return floor.people_table(rows)
 
 
 def remarks(study: TrackStudy) -> list[str]:
     """Return what a reader of a TrackStudy should know, a sentence each."""
-    lines, cycle = floor.chosen(study), study.cycle
+    lines, cycle = floor.aspect_remark(study), study.cycle
     if len(study.seat.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
     if study.held_across:
@@ -272,7 +272,7 @@ def _map(study: TrackStudy, grid: Grid, labels: Sequence[str], title: str) -> "F
         own.append(attrgetter(key.field)(study.bowl) / key.share / axis.unit)
     return floor.regime_map(
         grid, "acceleration_x_m_s2", title=title, labels=labels,
-        value="acceleration V'_X at the upper reversal [m/s²]", own=own, note=map_remarks(grid),
+        value="acceleration V'_X at the upper reversal [m/s²]", bowl_point=own, note=map_remarks(grid),
     )  # fmt: skip
 
 
@@ -291,7 +291,7 @@ def _cycle(motion: TrackMotion, course: Cycle, title: str) -> "Figure":
     mean = f"{course.mean / MM:.3g} mm/s" if course.settled else "none: it gets faster"
     label = f"mean, with the\nwall's friction:\n{mean}"
     lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=label)
-    floor.over_phase(figure, (upper, middle, lower), phase, motion.state)
+    floor.dress_phases(figure, (upper, middle, lower), phase, motion.state)
     for axes in (upper, middle, lower):
         axes.axhline(0, color=style.INK, linewidth=0.8)
         axes.legend(**style.BESIDE)
@@ -337,7 +337,7 @@ def _draw_from_above(axes: "Axes", study: TrackStudy, size: float, balance: Trac
     draw = partial(_draw_force, axes, now, size)
     for k, color in enumerate(WALL_COLOURS):
         start = seat.walls[k, :2] / MM
-        draw(start, balance.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
+        draw(start, balance.normals[k, :2], now.walls[k], f"R{k + 1}", color, is_push=True)
         draw(start, -balance.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
     foot = now.offset / MM if np.isfinite(now.offset).all() else np.zeros(2)
     draw(foot, np.array([-1.0, 0.0]), float(now.traction), "R4", FRICTION)
@@ -395,7 +395,7 @@ def _draw_from_behind(axes: "Axes", study: TrackStudy, size: float, balance: Tra
     for k, color in enumerate(WALL_COLOURS):
         lift = np.array([0.0, 0.04 - 0.08 * k]) * size / MM  # or two reactions at one height hide each other
         towards = _unit(place(balance.normals[k]) * now.walls[k] * MM)
-        draw(place(seat.walls[k]) + lift, *towards, f"R{k + 1}", color, pushing=True)
+        draw(place(seat.walls[k]) + lift, *towards, f"R{k + 1}", color, is_push=True)
     foot = place(np.array([0.0, 0.0 if np.isnan(now.offset[1]) else now.offset[1], -seat.height]))
     draw(foot, *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, side=1)
     draw(foot, *_unit(place([0, 1.0, 0]) * now.radial_friction * MM), "R3", FRICTION)

@@ -131,7 +131,7 @@ class MachineSheet(ReadableRecord):
         label = drive_sizing.STROKE_CONTROL_LABELS[control]
         return Lowest(float(rates[row]), float(self.emptying.levels[row]), label)
 
-    def rates(self, velocities: Floats) -> Floats:
+    def rates(self, velocities: Floats | float) -> Floats:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
         return np.nan_to_num(np.maximum(velocities, 0.0)) * cast(Order, self.order).flow.parts
 

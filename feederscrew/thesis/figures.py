@@ -6,7 +6,7 @@ The printed curves are lost.
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -18,10 +18,8 @@ from feederscrew.output import compare, slide, style, tables
 from feederscrew.output.tables import Frame
 from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import parts
+from feederscrew.thesis.motion import Quantity
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
 
 GRAVITY_OF_CHAPTER_5 = 9.8  # [m/s2]
 AMPLITUDE_OF_5_6_M, FREQUENCY_OF_5_6_HZ = 0.5e-3, 60.0
@@ -52,7 +50,7 @@ class Bars:
 
     aspects: tuple[str, ...]
     profiles: dict[str, Floats]  # (A,) [1] by name
-    printed: dict[str, Floats]  # (A,) [1] the numbers in print, where ours are recomputed
+    printed_shares: dict[str, Floats]  # (A,) [1] the numbers in print, where ours are recomputed
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,14 +101,14 @@ class Claim:
     recomputed: float
     holds: bool
     finding: str = ""
-    explained: bool = False  # the finding says where it holds, and there it does
+    is_explained: bool = False  # the finding says where it holds, and there it does
 
     @property
     def verdict(self) -> str:
         """As of a cell."""
         if self.holds:
             return EXACT_TO_PRINT
-        return EXPLAINED if self.finding and self.explained else DIFFERS
+        return EXPLAINED if self.finding and self.is_explained else DIFFERS
 
 
 @dataclass(frozen=True)
@@ -119,7 +117,7 @@ class Figure:
 
     number: str
     caption: str
-    draw_data: Callable[[str, Any], "Drawing"]  # of its title and its data
+    draw_data: Callable[[str, Any], "style.Figure"]  # of its title and its data
     data: Callable[[], Data]
 
     @property
@@ -185,7 +183,7 @@ def limit_surface(number: str) -> FigureGrid:
     return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw, columns, axes, ticks)
 
 
-def sliding_acceleration(acceleration: Any, beta: Any, friction: Any) -> Floats:
+def sliding_acceleration(acceleration: Quantity, beta: Quantity, friction: Quantity) -> Floats:
     """Return V'_z [m/s2] of a sliding part at the upper reversal, as the thesis draws it.
 
     ``acceleration`` [m/s2] is A w^2 of the drive, ``beta`` [rad] the vibration angle, any shapes. Past the
@@ -221,12 +219,13 @@ def _grid(x: Floats, y: Floats, values: Floats, throw: Floats, *names: Any) -> F
     return FigureGrid(x, y, check.frozen(values), check.frozen(np.broadcast_to(throw, values.shape)), *names)
 
 
-def _below(statement: str, value: float, bound: float, *, above: bool = False, **finding: Any) -> Claim:
+def _claim(
+    statement: str, value: float, bound: float, finding: str = "", is_explained: bool = False, *,
+    is_above: bool = False,
+) -> Claim:  # fmt: skip
     """The claim that a value is below a bound, or above it."""
-    return Claim(
-        statement, f"{'>' if above else '<'} {bound:.3f}", value, value > bound if above else value < bound,
-        **finding,
-    )  # fmt: skip
+    published, holds = (f"> {bound:.3f}", value > bound) if is_above else (f"< {bound:.3f}", value < bound)
+    return Claim(statement, published, value, holds, finding, is_explained)
 
 
 def _chapter_3_claims(number: str) -> Iterator[Claim]:
@@ -235,9 +234,7 @@ def _chapter_3_claims(number: str) -> Iterator[Claim]:
         csa, measured = ngoi.numbers("csa") / 100.0, ngoi.numbers("experiment") / 100.0
         near, far = deviation(csa, measured), deviation(pmi, measured)
         order = np.argsort(pmi[:4]) == np.argsort(csa[:4])
-        yield _below(
-            "deviation of CSA from the experiment, below that of PMI", near, far, finding="csa-ratio"
-        )
+        yield _claim("deviation of CSA from the experiment, below that of PMI", near, far, "csa-ratio")
         text = "aspects A to D in the same order by PMI and CSA"
         yield Claim(text, "4", float(order.sum()), bool(order.all()))
     if number in ("3-7", "3-8"):  # E leads at the smallest ratio, falls at every step, leads no more at last
@@ -248,7 +245,7 @@ def _chapter_3_claims(number: str) -> Iterator[Claim]:
         yield Claim("aspect E from ratio 0.4, where it leads, to 1.4", "< 0", change, holds)
     if number == "3-7":
         ours, theirs = (float(np.ptp(by_ratio(name).lines["E"])) for name in ("pmi", "csa"))
-        yield _below("range of aspect E, smaller by PMI than by CSA", ours, theirs)
+        yield _claim("range of aspect E, smaller by PMI than by CSA", ours, theirs)
     if number not in COMPARED:
         return
     profiles = parts.profiles(COMPARED[number][1])
@@ -257,24 +254,24 @@ def _chapter_3_claims(number: str) -> Iterator[Claim]:
     text = "tests whose dominant aspect PMI predicts"
     if number == "3-9":
         rest = min(gap for name, gap in gaps.items() if name != "CSA")
-        yield _below("deviation of PMI from CSA, the least of all", gaps["CSA"], rest)
+        yield _claim("deviation of PMI from CSA, the least of all", gaps["CSA"], rest)
     elif number == "3-10":
         first, second = (deviation(profiles["MDBT_80"], profiles[name]) for name in ("MDBT_78", "MDBT_82"))
-        yield _below("deviation between amplitudes 78 and 80, above 80 and 82", first, second, above=True)
+        yield _claim("deviation between amplitudes 78 and 80, above 80 and 82", first, second, is_above=True)
         at_78 = ["78" in name and "MDBT" in name for name in MEASURED]
-        explained = all(agrees or low for agrees, low in zip(dominant, at_78, strict=True))
-        yield Claim(text, "6", float(sum(dominant)), all(dominant), "dominant-aspect", explained)
+        is_explained = all(agrees or low for agrees, low in zip(dominant, at_78, strict=True))
+        yield Claim(text, "6", float(sum(dominant)), all(dominant), "dominant-aspect", is_explained)
     elif number == "3-11":
         sentence = "deviation of PMI from stability, above that from CSA"
-        yield _below(sentence, gaps["STABILITY"], gaps["CSA"], above=True)
+        yield _claim(sentence, gaps["STABILITY"], gaps["CSA"], is_above=True)
     elif number == "3-12":
         mixed, bound = deviation(profiles["PMI"], parts.mixed_heights()), gaps["STABILITY"]
         sentence, finding = "deviation of PMI from CSA, below that from stability", "magnet-csa-mixed"
-        yield _below(sentence, gaps["CSA"], bound, finding=finding, explained=mixed < bound)
+        yield _claim(sentence, gaps["CSA"], bound, finding=finding, is_explained=mixed < bound)
     else:
         worst = max(deviation(profiles["STABILITY"], profiles[name]) for name in MEASURED)
         value = min(gaps[name] for name in MEASURED)
-        yield _below("deviation of PMI from any test, above stability's", value, worst, above=True)
+        yield _claim("deviation of PMI from any test, above stability's", value, worst, is_above=True)
         yield Claim(text, f"{len(dominant)}", float(sum(dominant)), all(dominant))
 
 
@@ -284,9 +281,9 @@ def _chapter_5_claims(number: str) -> Iterator[Claim]:
         betas = np.radians(list(curves))
         grows = (np.diff(np.array(list(curves.values())), axis=0) > 0.0)[:, 1:]
         beyond, below = ratios > np.sin(betas[1:, None]), ratios < np.sin(betas[:-1, None])
-        explained = bool(grows[beyond].all() and not grows[below].any())
+        is_explained = bool(grows[beyond].all() and not grows[below].any())
         text = "share of the drawn steps in beta that enlarge the sliding region"
-        yield Claim(text, "1", float(grows.mean()), bool(grows.all()), "beta-sliding", explained)
+        yield Claim(text, "1", float(grows.mean()), bool(grows.all()), "beta-sliding", is_explained)
     elif number in BETA_OF:  # below the surface the part slides: it is the complete limit of a level floor
         data, beta = limit_surface(number), np.radians(BETA_OF[number])
         gap = float(np.abs(data.values - limits.forward_limit(data.y[:, None], beta, data.x)).max())
@@ -311,7 +308,7 @@ def numbers(figure: Figure) -> Frame:
     """Return the numbers a figure draws, as a table; of a surface its cells, row by row."""
     data = figure.data()
     if isinstance(data, Bars):
-        printed = {f"{name}_printed": values for name, values in data.printed.items()}
+        printed = {f"{name}_printed": values for name, values in data.printed_shares.items()}
         return tables.frame({"aspect": data.aspects, **data.profiles, **printed})
     if isinstance(data, ByRatio):
         return tables.frame({"aspect_ratio": data.ratios, **data.lines})
@@ -322,24 +319,24 @@ def numbers(figure: Figure) -> Frame:
     return tables.frame({name: np.ravel(a) for name, a in zip((*data.columns, "hops"), arrays)})
 
 
-def draw(figure: Figure) -> "Drawing":
+def draw(figure: Figure) -> "style.Figure":
     """Return a figure of the thesis as a matplotlib Figure."""
     return figure.draw_data(f"Figure {figure.number}. {figure.caption}", figure.data())
 
 
-def _draw_bars(title: str, data: Bars) -> "Drawing":
+def _draw_bars(title: str, data: Bars) -> "style.Figure":
     bars = len(data.aspects) * (len(data.profiles) + 0.9)
     width = float(np.clip(bars * (0.42 if len(data.profiles) < 4 else 0.30) + 1.0, 4.6, 9.5))
     figure, axes = style.chart(width, 3.6, title=title, x="aspect", y="probability [%]", grid="y")
-    compare.bars(axes, data.aspects, data.profiles, data.printed, (width - 0.9) / bars)
+    compare.bars(axes, data.aspects, data.profiles, data.printed_shares, (width - 0.9) / bars)
     handles = list(axes.containers)
-    if data.printed:
+    if data.printed_shares:
         handles += axes.plot([], [], color=style.INK, linewidth=1.1, label="in print")
     style.legend(figure, handles=handles, ncols=min(len(handles), 4 if width < 9.0 else 8))
     return figure
 
 
-def _draw_lines(title: str, data: ByRatio) -> "Drawing":
+def _draw_lines(title: str, data: ByRatio) -> "style.Figure":
     x, y = "aspect ratio, thickness / width [1]", f"probability by {data.rule} [%]"
     figure, axes = style.chart(6.6, 4.4, title=title, x=x, y=y)
     handles = []
@@ -359,7 +356,7 @@ def _draw_lines(title: str, data: ByRatio) -> "Drawing":
     return figure
 
 
-def _draw_curves(title: str, data: Curves) -> "Drawing":
+def _draw_curves(title: str, data: Curves) -> "style.Figure":
     """As published, and over G: there the curves part, and cross where G = sin(beta)."""
     figure = style.figure(9.4, 4.2)
     left, right = figure.subplots(1, 2)
@@ -379,7 +376,7 @@ def _draw_curves(title: str, data: Curves) -> "Drawing":
     return figure
 
 
-def _draw_limits(title: str, data: FigureGrid) -> "Drawing":
+def _draw_limits(title: str, data: FigureGrid) -> "style.Figure":
     figure = style.figure(6.4, 5.0)
     shades: dict[str, Any] = {"vmin": 0.0, "vmax": slide.HIGHEST, "rcount": 34, "ccount": 46}
     labels = (slide.ANGLE, slide.RATIO, slide.FRICTION)
@@ -390,7 +387,7 @@ def _draw_limits(title: str, data: FigureGrid) -> "Drawing":
     return figure
 
 
-def _draw_contours(title: str, data: FigureGrid) -> "Drawing":
+def _draw_contours(title: str, data: FigureGrid) -> "style.Figure":
     figure, axes = style.chart(6.6, 4.2, title=title, x=slide.ANGLE, y=slide.RATIO, grid="none")
     levels = [level for level in slide.LEVELS if level <= data.values.max()]
     shades = matplotlib.colormaps[slide.LEVEL_COLOURS](np.linspace(0.05, 0.75, len(levels)))
@@ -405,7 +402,7 @@ def _draw_contours(title: str, data: FigureGrid) -> "Drawing":
     return figure
 
 
-def _draw_acceleration(title: str, data: FigureGrid) -> "Drawing":
+def _draw_acceleration(title: str, data: FigureGrid) -> "style.Figure":
     """As published, and from above with the part that no part follows."""
     figure = style.figure(10.4, 4.6)
     left, right = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.15))
@@ -437,9 +434,10 @@ def _draw_acceleration(title: str, data: FigureGrid) -> "Drawing":
 
 
 def _add_surface(
-    figure: Any, place: Sequence[Any], title: str, labels: Iterable[str], data: FigureGrid, **look: Any
-) -> Any:
-    axes = figure.add_subplot(*place, projection="3d", computed_zorder=False)
+    figure: "style.Figure", place: Sequence[Any], title: str, labels: Iterable[str], data: FigureGrid,
+    **look: Any,
+) -> Any:  # fmt: skip
+    axes: Any = figure.add_subplot(*place, projection="3d", computed_zorder=False)
     axes.plot_surface(
         *np.meshgrid(*data.ticks), data.values, cmap=slide.LEVEL_COLOURS, edgecolor="white", linewidth=0.2,
         **look,

@@ -157,8 +157,8 @@ def _motion() -> dict[str, Any]:
     plain, card, arc = bowl.read(None, SLIPS_ONE_WAY), parts.card("arc_chute"), chapter_4("arc_chute")
     drive, at_bank = replace(plain.drive, direction=BANK_SHOWN), replace(plain.track, bank=BANK_SHOWN)
     banked = track(card, replace(plain, drive=drive, track=at_bank), "5")
-    both = banked.printed, banked.now
-    size = {term.name: abs(term.value) / (MILLI if term.unit == "N" else 1.0) for term in banked.omitted}
+    both, terms = (banked.printed, banked.now), banked.omitted_terms
+    size = {term.name: abs(term.value) / (MILLI if term.unit == "N" else 1.0) for term in terms}
     # what the print has of moments on a floor
     e, h, beta = arc["drive_offset"], arc["centroid_height"], plain.drive.vibration_angle
     # Figures 5-6 and 5-7: where the part hops and sticks; when a larger beta helps

@@ -109,7 +109,7 @@ class TrackAsPublished(track_study.TrackStudy):
     """A TrackStudy whose upper reversal is solved by print as well."""
 
     printed: PrintedTrack  # type: ignore[misc]
-    omitted: tuple[Term, ...]  # what these leave out
+    omitted_terms: tuple[Term, ...]  # what these leave out
     terms = TRACK_TERMS
 
 
@@ -132,7 +132,7 @@ def track(
     return TrackAsPublished(
         **vars(study),
         printed=solve_track(levers, bowl, seat.heading),
-        omitted=omitted_terms(seat, bowl, study.now, levers.offset),
+        omitted_terms=omitted_terms(seat, bowl, study.now, levers.offset),
     )
 
 

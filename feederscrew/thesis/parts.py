@@ -153,7 +153,7 @@ def cells(number: str) -> tuple[Cell, ...]:
     printed = table(number)
     computed = {(cell.row, cell.column): cell for cell in RECIPES[number](printed)}
     order = [(row, column) for row in printed.rows for column in printed.columns if printed.text(row, column)]
-    listed = [computed.pop(key, Cell(*key, printed.text(*key))) for key in order]
+    listed = [computed.pop(key, printed.cell(*key)) for key in order]
     return (*listed, *computed.values())
 
 
@@ -169,126 +169,120 @@ def rounded_shares(ratio: float) -> tuple[Floats, Floats, Floats]:
     return moments, heights, formulas.normalise(formulas.pmi(ones, moments, heights), ones > 0)
 
 
-def _table_3_1(printed: PrintedTable) -> Iterator[Cell]:
+def _table_3_1(table: PrintedTable) -> Iterator[Cell]:
     """CSA at the printed ratio, explained by that of a thinner prism."""
     ours, thinner = (100.0 * t_aspects(ratio).csa for ratio in (0.6, THINNER_RATIO))
-    for row, value, other in zip(printed.names, ours, thinner, strict=True):
-        text, points = printed.text(row, "csa"), CSA_TOLERANCE_POINTS
-        yield Cell(row, "csa", text, value, finding="csa-ratio", explaining=other, within=points)
-    yield _sum(printed, "csa")
-    yield replace(_sum(printed, "experiment", finding="experiment-total"), explaining=100.0)
+    for row, value, other in zip(table.names, ours, thinner, strict=True):
+        explanation = {"finding": "csa-ratio", "explaining": other, "tolerance": CSA_TOLERANCE_POINTS}
+        yield table.cell(row, "csa", value, **explanation)
+    yield _sum(table, "csa")
+    yield replace(_sum(table, "experiment", finding="experiment-total"), explaining=100.0)
 
 
-def _table_3_8(printed: PrintedTable) -> Iterator[Cell]:
+def _table_3_8(table: PrintedTable) -> Iterator[Cell]:
     """PMI of the T shape, from its solid."""
     aspects = t_aspects(0.6)
     moments, heights, shares = rounded_shares(0.6)
-    for k, row in enumerate(printed.names):
-        yield Cell(row, "I", printed.text(row, "I"), aspects.moments[k] / G_MM2)
-        yield Cell(row, "h", printed.text(row, "h"), aspects.heights[k] / MM)
-        yield _ratio(printed, row, "I_over_h", moments[k] / heights[k], cut=True)
-        yield Cell(row, "probability", printed.text(row, "probability"), shares[k])
-    yield _total(printed, "I_over_h", (moments / heights).sum(), "cut-ratios")
-    yield _total(printed, "probability", 1.0, "sum-of-rounded")
+    for k, row in enumerate(table.names):
+        yield table.cell(row, "I", aspects.moments[k] / G_MM2)
+        yield table.cell(row, "h", aspects.heights[k] / MM)
+        yield _ratio(table, row, "I_over_h", moments[k] / heights[k], cut=True)
+        yield table.cell(row, "probability", shares[k])
+    yield _total(table, "I_over_h", (moments / heights).sum(), "cut-ratios")
+    yield _total(table, "probability", 1.0, "sum-of-rounded")
 
 
-def _table_3_9(printed: PrintedTable) -> Iterator[Cell]:
+def _table_3_9(table: PrintedTable) -> Iterator[Cell]:
     """PMI of the T shape, from the six solids."""
     for ratio in T_RATIOS:
         shares = 100.0 * rounded_shares(float(ratio))[2]
-        for row, share in zip(printed.names, shares, strict=True):
-            yield Cell(row, ratio, printed.text(row, ratio), share, finding="t-shape-rounded")
-        yield Cell(TOTAL, ratio, printed.text(TOTAL, ratio), shares.sum())
+        for row, share in zip(table.names, shares, strict=True):
+            yield table.cell(row, ratio, share, finding="t-shape-rounded")
+        yield table.cell(TOTAL, ratio, shares.sum())
 
 
-def _quotients(weight: str, part: str, rule: str, printed: PrintedTable) -> Iterator[Cell]:
+def _quotients(weight: str, part: str, rule: str, table: PrintedTable) -> Iterator[Cell]:
     """A table of weight, height, their quotient and its share, and what else of it the thesis leads to."""
-    column, cut, heights = f"{weight}_over_h", printed.number == "3-10", printed.numbers("h")
-    quotient = printed.numbers(weight) / heights
-    for row, value, share in zip(printed.names, quotient, _rule(part, rule), strict=True):
-        yield _ratio(printed, row, column, value, cut)
-        yield Cell(row, "probability", printed.text(row, "probability"), share)
-    if "h_total_over_h" in printed.columns:  # one height for a column
-        implied = (heights * printed.numbers("h_total_over_h")).mean()
-        for row, height in zip(printed.names, heights, strict=True):
-            yield Cell(row, "h_total_over_h", printed.text(row, "h_total_over_h"), implied / height)
+    column, cut, heights = f"{weight}_over_h", table.number == "3-10", table.numbers("h")
+    quotient = table.numbers(weight) / heights
+    for row, value, share in zip(table.names, quotient, _rule(part, rule), strict=True):
+        yield _ratio(table, row, column, value, cut)
+        yield table.cell(row, "probability", share)
+    if "h_total_over_h" in table.columns:  # one height for a column
+        implied = (heights * table.numbers("h_total_over_h")).mean()
+        for row, height in zip(table.names, heights, strict=True):
+            yield table.cell(row, "h_total_over_h", implied / height)
     # chapter 4's matrix
     inertia, centre = card(part).inertia / G_MM2, card(part).centre_of_mass / MM
-    if printed.number == "3-10":  # 2, 3 and 5 lie along its axes; 5 once x and z are exchanged
+    if table.number == "3-10":  # 2, 3 and 5 lie along its axes; 5 once x and z are exchanged
         for row in ("2", "3"):
-            yield Cell(row, "I", printed.text(row, "I"), inertia[1, 1])
-        moment = printed.text("5", "I")
-        yield Cell("5", "I", moment, inertia[0, 0], finding="axes-swapped", explaining=inertia[2, 2])
-        yield Cell("5", "h", printed.text("5", "h"), centre[0])
-    elif printed.number == "3-11":  # 2 and 3 lie along y and x of its axes
-        yield Cell("2", "I", printed.text("2", "I"), inertia[1, 1])
-        yield Cell("2", "h", printed.text("2", "h"), centre[1])
-        text = printed.text("3", "h")
-        within = 1.01 * last_digit(text)
-        yield Cell("3", "h", text, centre[0], finding="magnet-height", explaining=centre[0], within=within)
-    last = printed.rows[TOTAL]
+            yield table.cell(row, "I", inertia[1, 1])
+        yield table.cell("5", "I", inertia[0, 0], finding="axes-swapped", explaining=inertia[2, 2])
+        yield table.cell("5", "h", centre[0])
+    elif table.number == "3-11":  # 2 and 3 lie along y and x of its axes
+        yield table.cell("2", "I", inertia[1, 1])
+        yield table.cell("2", "h", centre[1])
+        near = {"explaining": centre[0], "tolerance": 1.01 * last_digit(table.text("3", "h"))}
+        yield table.cell("3", "h", centre[0], finding="magnet-height", **near)
+    last = table.rows[TOTAL]
     if last[weight]:
-        yield _sum(printed, weight, finding="q-total" if printed.number == "3-2" else "rounded-inputs")
+        yield _sum(table, weight, finding="q-total" if table.number == "3-2" else "rounded-inputs")
     if last[column] and cut:
-        yield _total(printed, column, quotient.sum(), "cut-ratios")
+        yield _total(table, column, quotient.sum(), "cut-ratios")
     elif last[column]:
         finding = "" if is_number(last[column]) else "magnet-total"
-        yield Cell(TOTAL, column, last[column], quotient.sum(), finding=finding)
+        yield table.cell(TOTAL, column, quotient.sum(), finding=finding)
     if cut:
-        yield _total(printed, "probability", 1.0, "sum-of-rounded")
-    elif printed.number == "3-11":
+        yield _total(table, "probability", 1.0, "sum-of-rounded")
+    elif table.number == "3-11":
         step = last_digit(last["probability"])
-        yield _sum(printed, "probability", finding="magnet-probability-total", within=1.01 * step)
+        yield _sum(table, "probability", finding="magnet-probability-total", tolerance=1.01 * step)
     else:
-        yield _sum(printed, "probability")
+        yield _sum(table, "probability")
 
 
-def _deviations(part: str, printed: PrintedTable) -> Iterator[Cell]:
+def _deviations(part: str, table: PrintedTable) -> Iterator[Cell]:
     """Deviation between any two profiles; those with the Magnet's CSA follow from mixed heights."""
     plain = profiles(part)
     mixed = plain | {"CSA": mixed_heights()} if part == "magnet" else plain
-    for row in printed.rows:
+    for row in table.rows:
         first, second = row.split(" - ")
         value, other = deviation(plain[first], plain[second]), deviation(mixed[first], mixed[second])
         finding = "magnet-csa-mixed" if part == "magnet" and "CSA" in row else "cut-deviations"
-        text = printed.text(row, "deviation")
-        yield Cell(row, "deviation", text, value, cut=True, finding=finding, explaining=other)
+        yield table.cell(row, "deviation", value, cut=True, finding=finding, explaining=other)
 
 
-def _measured(printed: PrintedTable) -> Iterator[Cell]:
+def _column_sums(table: PrintedTable) -> Iterator[Cell]:
     """An experiment's table: nothing leads to its entries, but each column is a whole."""
-    for column in printed.columns:
-        yield Cell(IMPLIED_ROW, column, "1", printed.numbers(column).sum())
+    for column in table.columns:
+        yield Cell(IMPLIED_ROW, column, "1", table.numbers(column).sum())
 
 
-def _ratio(printed: PrintedTable, row: str, column: str, value: float, cut: bool = False) -> Cell:
+def _ratio(table: PrintedTable, row: str, column: str, value: float, cut: bool = False) -> Cell:
     """A quotient's cell; the rounding of its two printed terms is what may explain a last digit."""
-    text = printed.text(row, column)
-    terms = [printed.text(row, name) for name in (column.partition("_")[0], "h")]
+    terms = [table.text(row, name) for name in (column.partition("_")[0], "h")]
     spread = value * sum(0.5 * last_digit(term) / float(term) for term in terms)
-    within = spread + 0.5 * last_digit(text)
-    finding = "cut-ratios" if cut else "rounded-inputs"
-    return Cell(row, column, text, value, cut=cut, finding=finding, explaining=value, within=within)
+    near = {"explaining": value, "tolerance": spread + 0.5 * last_digit(table.text(row, column))}
+    return table.cell(row, column, value, cut=cut, finding="cut-ratios" if cut else "rounded-inputs", **near)
 
 
-def _sum(printed: PrintedTable, column: str, finding: str = "", within: float = 0.0) -> Cell:
+def _sum(table: PrintedTable, column: str, finding: str = "", tolerance: float = 0.0) -> Cell:
     """A column's total, from the printed entries."""
-    text, values = printed.text(TOTAL, column), printed.numbers(column)
+    values = table.numbers(column)
     explaining = values[1:].sum() if finding == "q-total" else values.sum()
     if finding == "rounded-inputs":
-        spread = sum(0.5 * last_digit(printed.text(row, column)) for row in printed.names)
-        within = spread + 0.5 * last_digit(text)
-    return Cell(TOTAL, column, text, values.sum(), finding=finding, explaining=explaining, within=within)
+        tolerance = sum(0.5 * last_digit(table.text(row, column)) for row in (*table.names, TOTAL))
+    near = {"explaining": explaining, "tolerance": tolerance}
+    return table.cell(TOTAL, column, values.sum(), finding=finding, **near)
 
 
-def _total(printed: PrintedTable, column: str, total: float, finding: str) -> Cell:
+def _total(table: PrintedTable, column: str, total: float, finding: str) -> Cell:
     """A total of entries that were cut off or rounded before they were added."""
-    text = printed.text(TOTAL, column)
-    return Cell(TOTAL, column, text, total, finding=finding, explaining=printed.numbers(column).sum())
+    return table.cell(TOTAL, column, total, finding=finding, explaining=table.numbers(column).sum())
 
 
 RECIPES: dict[str, Callable[[PrintedTable], Iterator[Cell]]] = {
-    "3-1": _table_3_1, "3-4": _measured, "3-7": _measured, "3-8": _table_3_8, "3-9": _table_3_9,
+    "3-1": _table_3_1, "3-4": _column_sums, "3-7": _column_sums, "3-8": _table_3_8, "3-9": _table_3_9,
 }  # fmt: skip
 for _part, _numbers in TABLES_OF.items():
     for _weight, _key in (("Q", "csa"), ("A", "stability"), ("I", "pmi")):

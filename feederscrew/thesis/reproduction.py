@@ -150,7 +150,7 @@ def reproduce() -> Reproduction:
     return Reproduction((*tables, *drawn))
 
 
-def unexplained(items: Sequence[Item]) -> list[Item]:
+def unexplained_items(items: Sequence[Item]) -> list[Item]:
     """Return the items with a cell that differs and no finding that says why."""
     return [item for item in items if item.verdicts[DIFFERS]]
 
@@ -285,9 +285,9 @@ def print_and_ours(entry: Cell) -> str:
     return f"{entry.published} → {ours}" + ("" if result in ("", ours) else f" ({result})")
 
 
-def _digits(printed: str, value: float) -> str:
+def _digits(published: str, value: float) -> str:
     """A number with one digit more than print has; '' for NaN."""
-    decimals = len(printed.rpartition(".")[2]) if "." in printed else 0
+    decimals = len(published.rpartition(".")[2]) if "." in published else 0
     return "" if math.isnan(value) else f"{value:.{decimals + 1}f}"
 
 

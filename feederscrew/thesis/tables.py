@@ -5,6 +5,7 @@ import functools
 import math
 from dataclasses import dataclass
 from importlib import resources
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +38,10 @@ class PrintedTable:
     def text(self, row: str, column: str) -> str:
         """One cell as printed."""
         return self.rows[row][column]
+
+    def cell(self, row: str, column: str, recomputed: float = math.nan, **explanation: Any) -> "Cell":
+        """One cell as printed beside ours, with the further fields of a ``Cell``."""
+        return Cell(row, column, self.rows[row][column], recomputed, **explanation)
 
     def numbers(self, column: str) -> Floats:
         """One column without its total, as an array."""
@@ -74,29 +79,29 @@ class Cell:
     cut: bool = False  # the table drops digits instead of rounding
     finding: str = ""  # id of the finding that bears on the cell
     explaining: float = math.nan  # what the finding makes of the number
-    within: float = 0.0  # how far the explaining number may be from the print, in the print's unit
+    tolerance: float = 0.0  # how far the explaining number may be from the print, in the print's unit
 
     @property
-    def printed(self) -> float:
+    def printed_value(self) -> float:
         """The printed number; NaN where print holds no number."""
         return float(self.published) if is_number(self.published) else math.nan
 
     @property
     def deviation(self) -> float:
         """Ours minus theirs, in the print's unit."""
-        return self.recomputed - self.printed
+        return self.recomputed - self.printed_value
 
     @property
     def verdict(self) -> str:
         """``EXACT_TO_PRINT``, ``EXPLAINED``, ``DIFFERS`` or ``NOT_CHECKED``."""
         if math.isnan(self.recomputed):
             return NOT_CHECKED
-        if math.isnan(self.printed):
+        if math.isnan(self.printed_value):
             fits = is_slip(self.recomputed, self.published)
         elif prints_as(self.recomputed, self.published, self.cut):
             return EXACT_TO_PRINT
         else:
-            near = abs(self.explaining - self.printed) <= self.within
+            near = abs(self.explaining - self.printed_value) <= self.tolerance
             fits = near or prints_as(self.explaining, self.published, self.cut)
         return EXPLAINED if self.finding and fits else DIFFERS
 

@@ -164,7 +164,7 @@ def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, box, tmp_path,
 def test_feeder_bowl_of_a_file_that_falls_short_marks_its_picture(built, run, tmp_path, monkeypatch):
     (tmp_path / "design.yaml").write_text(designs.bowl_file(study(1.6), (), built.sheet))
     drawn = []
-    monkeypatch.setattr(marking, "across", lambda figure, mark: drawn.append(mark) or figure)
+    monkeypatch.setattr(marking, "mark_figure", lambda figure, mark: drawn.append(mark) or figure)
     done = run("bowl", "--config", tmp_path / "design.yaml", "-o", tmp_path / "out")
     assert done.exit_code == 0 and drawn == [marking.MARK]
     sheet = (tmp_path / "out/design/bowl.csv").read_text()

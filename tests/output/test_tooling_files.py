@@ -104,7 +104,7 @@ def test_drawing_and_section_are_closed_and_give_the_verdicts_again(drawn, lying
 def test_the_drawing_is_the_same_bytes_in_another_process():
     code = "\n".join([
         "from feederscrew.output.drafting import Drawing; import sys; made = Drawing()",
-        "made.hatched([[(0, 0), (9, 0), (0, 9)]]); made.text(0, 0, 'a'); made.length((0, 0), (9, 0), (0, 5))",
+        "made.hatch([[(0, 0), (9, 0), (0, 9)]]); made.text(0, 0, 'a'); made.length((0, 0), (9, 0), (0, 5))",
         "sys.stdout.buffer.write(made.dxf() + made.pdf('a') + made.svg((0, 0), (9, 9)).encode())",
     ])  # fmt: skip
     seeds = [{**os.environ, "PYTHONHASHSEED": seed} for seed in "12"]

@@ -107,7 +107,7 @@ OFF = {"finding": "x", "explaining": 0.13}
     [
         ("0.12", 0.121, {}, EXACT_TO_PRINT), ("0.12", 0.129, {}, DIFFERS),
         ("0.12", 0.129, {"cut": True}, EXACT_TO_PRINT), ("0.12", 0.3, FITTING, EXPLAINED),
-        ("0.12", 0.3, OFF, DIFFERS), ("0.12", 0.3, OFF | {"within": 0.02}, EXPLAINED),
+        ("0.12", 0.3, OFF, DIFFERS), ("0.12", 0.3, OFF | {"tolerance": 0.02}, EXPLAINED),
         ("0.12", 0.3, {"explaining": 0.12}, DIFFERS), ("1.2.3", 1.203, {"finding": "x"}, EXPLAINED),
         ("1.2.3", 1.204, {"finding": "x"}, DIFFERS), ("0.12", None, {}, NOT_CHECKED),
     ],
@@ -265,9 +265,9 @@ def test_every_table_and_figure_is_an_item_none_differs_and_findings_bear_on_the
         counts = item.counts
         assert counts["cells"] == counts["exact"] + counts["explained"] + counts["differs"] > 0
         assert counts["cells"] + counts["given"] == len(item.entries)
-    assert reproduction.unexplained(items) == []
+    assert reproduction.unexplained_items(items) == []
     odd = replace(items[0], entries=(Cell("A", "csa", "1", 2.0),))
-    assert reproduction.unexplained([odd, items[1]]) == [odd]
+    assert reproduction.unexplained_items([odd, items[1]]) == [odd]
     # Findings bear on items or on chapter 4.
     for item in items:
         assert set(item.findings) <= set(FINDING_OF)
@@ -324,7 +324,7 @@ def test_bar_charts_hold_whole_profiles(number):
     data = FIGURE_OF[number].data()
     for values in data.profiles.values():
         assert len(values) == len(data.aspects) and values.sum() == pytest.approx(1.0, abs=2e-3)
-    for name, printed in data.printed.items():
+    for name, printed in data.printed_shares.items():
         np.testing.assert_allclose(data.profiles[name], printed, rtol=0, atol=1e-4)
     if number == "3-9":  # drawn bars are the numbers
         (axes,) = figures.draw(FIGURE_OF[number]).axes

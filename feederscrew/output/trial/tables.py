@@ -10,7 +10,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.convey import rebound
+from feederscrew.output.convey import restitution_entry
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.trial import ENGINE, TrialStudy
 from feederscrew.trial import course
@@ -83,7 +83,7 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
         }
     return {
         **row_of(run, "amplitude_mm=bowl.drive.amplitude throw_number velocity_mm_s"),
-        "point_restitution_doubt": rebound(run.bowl, run.rebound),
+        "point_restitution_doubt": restitution_entry(run.bowl, run.rebound),
         **row_of(run, "rolls_back_mm_s=roll_back_velocity parts_per_minute efficiency purity jams"),
         "engine": ENGINE,
         "sorts": bool(run.sorts),
