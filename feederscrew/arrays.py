@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+Values = Any  # a number or an array of numbers
 Array = NDArray[Any]  # of any numbers
 Reals = float | Floats  # one, or an array of them that broadcasts
 Vector = Floats  # (2,) or (3,)

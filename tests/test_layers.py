@@ -31,7 +31,12 @@ FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])
 
 @cache
 def tree(path):
-    return ast.parse(path.read_text())
+    """What a file does when it is imported: names for annotations alone may come from a later room."""
+    module = ast.parse(path.read_text())
+    for node in module.body:
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            node.body = []
+    return module
 
 
 @cache

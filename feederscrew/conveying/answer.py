@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Array, Floats
+from feederscrew.arrays import Array, Floats, Values
 from feederscrew.bowl.record import Bowl, Friction
 from feederscrew.conveying import operating_point, point_motion, steady, waves
 from feederscrew.conveying.operating_point import PHASES, OperatingPoint
@@ -189,7 +189,7 @@ def throw_of_flight(periods: float) -> float:
     return math.hypot(1.0, (0.5 * turn * turn - 1.0 + math.cos(turn)) / (turn - math.sin(turn)))
 
 
-def greatest_speed(bowl: Bowl) -> Any:
+def greatest_speed(bowl: Bowl) -> Values:
     """Return A w [m/s], of the first harmonic.
 
     Source: the derivative of the motion.
@@ -278,7 +278,7 @@ def _loaded_loop() -> Callable[..., None]:
     return run
 
 
-def _loop(rows, out, arrays) -> None:
+def _loop(rows: Floats, out: Floats, arrays: steady.Memory) -> None:
     for k in range(len(rows)):
         s = rows[k]
         drive = s[8], s[9], s[10], s[11]
@@ -286,7 +286,7 @@ def _loop(rows, out, arrays) -> None:
         steady.survey(point, out[k], arrays)
 
 
-def scaled(bowl: Bowl, *, amplitude: Any = 1.0, friction: Any = 1.0, angle: Any = 1.0) -> Bowl:
+def scaled(bowl: Bowl, *, amplitude: Values = 1.0, friction: Values = 1.0, angle: Values = 1.0) -> Bowl:
     """Return the bowl with its stroke, every coefficient of friction or its vibration angle multiplied."""
     steep, mu = np.minimum(bowl.drive.vibration_angle * angle, np.pi / 2), bowl.friction
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * amplitude, vibration_angle=steep)
@@ -350,12 +350,12 @@ def even_range(restitution: float) -> tuple[float, float]:
     return restitution - half, restitution + half
 
 
-def inwards(bowl: Bowl) -> Any:
+def inwards(bowl: Bowl) -> Bowl:
     """Return the bowl at radii [m] from half the track's to the track's own, evenly spaced."""
     return at_radius(bowl, bowl.track.radius * np.linspace(INNER_RADIUS_SHARE, 1.0, RADIUS_STEPS))
 
 
-def at_radius(bowl: Bowl, radius: Any) -> Any:
+def at_radius(bowl: Bowl, radius: Values) -> Bowl:
     """Return the bowl as a part feels it nearer to its axis, at a radius [m], one or many.
 
     All points rise by the same amplitude and turn by the same angle, so the tangent of the angle to the
@@ -378,16 +378,16 @@ def at_radius(bowl: Bowl, radius: Any) -> Any:
 class BestPhase:
     """Velocities of one bowl over the phase of its drive."""
 
-    phases: np.ndarray  # (P,) [rad] tried, from -180 deg
-    cells: dict[str, np.ndarray]  # (P,) what the part does there, as ``answer.cells`` names it
+    phases: Floats  # (P,) [rad] tried, from -180 deg
+    cells: dict[str, Array]  # (P,) what the part does there, as ``answer.cells`` names it
     phase: float  # [rad] by which the motion along the normal leads, where the part is fastest up the track
     velocity: float  # [m/s] there
     straight: float  # [m/s] of a straight drive, phase 0
     lowest: float  # [rad] of the phases round the best that give nearly its velocity
     highest: float  # [rad] which may lie beyond half a turn
-    frictions: np.ndarray  # (K,) [1] friction tried, over the bowl's
-    best_over_friction: np.ndarray  # (K,) [m/s] at the best phase
-    straight_over_friction: np.ndarray  # (K,) [m/s]
+    frictions: Floats  # (K,) [1] friction tried, over the bowl's
+    best_over_friction: Floats  # (K,) [m/s] at the best phase
+    straight_over_friction: Floats  # (K,) [m/s]
 
 
 def best_phase(bowl: Bowl) -> BestPhase:
@@ -430,6 +430,6 @@ def best_phase(bowl: Bowl) -> BestPhase:
     )
 
 
-def with_phase(bowl: Bowl, phase: Any) -> Bowl:
+def with_phase(bowl: Bowl, phase: Values) -> Bowl:
     """Return the bowl with another phase of its drive [rad], one or many."""
     return replace(bowl, drive=replace(bowl.drive, phase=phase))

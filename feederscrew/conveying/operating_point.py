@@ -40,12 +40,14 @@ class OperatingPoint(NamedTuple):
     second_turn: float = 0.0  # [rad] by which the second harmonic swings steeper than the first
 
 
-def plain(ratio, angle, climb, friction, restitution=0.0) -> OperatingPoint:
+def plain(
+    ratio: float, angle: float, climb: float, friction: float, restitution: float = 0.0
+) -> OperatingPoint:
     """Return a track with one coefficient of friction, as most closed forms assume; [1] and [rad]."""
     return OperatingPoint(ratio, angle, climb, friction, friction, friction, friction, restitution)
 
 
-def checked(setting) -> OperatingPoint:
+def checked(setting: OperatingPoint) -> OperatingPoint:
     """Return the setting itself, its fields maybe arrays, once it is a track; else raise ValueError."""
     angle, kinetic = setting.angle, np.minimum(setting.kinetic, setting.kinetic_back)
     reasons = (
@@ -77,7 +79,7 @@ class Law(NamedTuple):
     restitution: float
 
 
-def law(setting) -> Law:
+def law(setting: OperatingPoint) -> Law:
     """Return the equations of motion of an OperatingPoint."""
     return Law(
         harmonic(lift_wave(setting)),
@@ -92,7 +94,7 @@ def law(setting) -> Law:
     )
 
 
-def lift_wave(setting) -> Wave:
+def lift_wave(setting: OperatingPoint) -> Wave:
     """Return the acceleration [A w2] along the normal of a part in flight; pressed on, what it lacks."""
     weight = math.cos(setting.climb) / setting.ratio
     normal, phase = math.sin(setting.angle), setting.second_phase
@@ -100,7 +102,7 @@ def lift_wave(setting) -> Wave:
     return Wave(-weight, normal, 0.0, second * math.cos(phase), second * math.sin(phase))
 
 
-def pull_wave(setting, direction, friction) -> Wave:
+def pull_wave(setting: OperatingPoint, direction: float, friction: float) -> Wave:
     """Return the acceleration [A w2] left after friction of a part about to slip.
 
     ``direction`` [1] of the slip and of the acceleration is +1 up the track, -1 down it.
@@ -122,7 +124,7 @@ def pull_wave(setting, direction, friction) -> Wave:
     )
 
 
-def throw_number(rules) -> float:
+def throw_number(rules: Law) -> float:
     """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1.
 
     Source: docs/conveying.md, "The model".
@@ -130,7 +132,7 @@ def throw_number(rules) -> float:
     return 1.0 - peak(rules.lift) / rules.lift.level
 
 
-def contact(rules, angle, speed) -> int:
+def contact(rules: Law, angle: float, speed: float) -> int:
     """Return the phase of a part that touches the plate at ``angle`` [rad], relative ``speed`` [A w]."""
     if above(rules.lift, angle):
         return FLIGHT
@@ -151,14 +153,14 @@ class Numbers(NamedTuple):
     phase: float = 0.0  # [rad] by which the motion along the normal leads the one along the track
 
 
-def numbers(setting) -> Numbers:
+def numbers(setting: OperatingPoint) -> Numbers:
     """Return the five numbers of a setting: harmonic, with one coefficient of friction above 0."""
     throw = setting.ratio * math.sin(setting.angle) / math.cos(setting.climb)
     coupling, steepness = setting.static * math.tan(setting.angle), math.tan(setting.climb) / setting.static
     return Numbers(coupling, steepness, throw, setting.restitution, -setting.lead)
 
 
-def with_numbers(five, friction) -> OperatingPoint:
+def with_numbers(five: Numbers, friction: float) -> OperatingPoint:
     """Return one of the many settings with given numbers, that of a friction [1].
 
     Raises ValueError if the friction, the coupling or the throw number is not above 0.

@@ -4,10 +4,22 @@ Where a phase ends, every root is bracketed where the sought function is monoton
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from feederscrew.conveying.operating_point import BACKWARD, FLIGHT, FORWARD, STICK, contact
-from feederscrew.conveying.waves import PERIOD_RAD, above, after, gain, onward, reached, travel, value
+from feederscrew.arrays import Floats
+from feederscrew.conveying.operating_point import BACKWARD, FLIGHT, FORWARD, STICK, Law, contact
+from feederscrew.conveying.waves import (
+    PERIOD_RAD,
+    Harmonic,
+    above,
+    after,
+    gain,
+    onward,
+    reached,
+    travel,
+    value,
+)
 
 EVENT_TIE_RAD = 1e-12  # [rad] an event this little in the past is happening now
 NEWTON_TOLERANCE = 1e-14  # relative size of a last Newton step
@@ -20,14 +32,14 @@ STOPS, UPWARD, DOWNWARD = 8, 9, 10  # how often it came to rest on the plate, an
 TALLY = 11
 
 
-def later(zeros, now) -> float:
+def later(zeros: Sequence[float], now: float) -> float:
     """Return the first of two angles [rad], ascending, still to come in this period; inf otherwise."""
     if zeros[0] >= now - EVENT_TIE_RAD:
         return max(zeros[0], now)
     return max(zeros[1], now) if zeros[1] >= now - EVENT_TIE_RAD else math.inf
 
 
-def slip_end(a, angle, speed) -> float:
+def slip_end(a: Harmonic, angle: float, speed: float) -> float:
     """Return the first angle [rad] of this period at which a slip ends; inf where it lasts beyond it.
 
     The speed [A w] grows by ``a`` from ``angle`` on; a slip from rest grows first, and ends only after that.
@@ -60,7 +72,7 @@ def slip_end(a, angle, speed) -> float:
     return math.inf
 
 
-def landing(lift, angle, height, speed) -> float:
+def landing(lift: Harmonic, angle: float, height: float, speed: float) -> float:
     """Return the first angle [rad] of this period at which a flight ends; inf where it lasts beyond it.
 
     ``height`` [A] is over the plate, zero at a take-off; ``speed`` [A w] along the normal, not negative then.
@@ -110,12 +122,12 @@ class State(NamedTuple):
     aloft: float  # [rad] since take-off
 
 
-def at_rest(rules) -> State:
+def at_rest(rules: Law) -> State:
     """Return a part lying on the plate at mid stroke."""
     return State(0.0, contact(rules, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
 
 
-def turn(rules, state, tally) -> State:
+def turn(rules: Law, state: State, tally: Floats) -> State:
     """Follow the part to the end of this period of the drive; return its State, the clock set back by one.
 
     Added to in place, for the compiled loops, is ``tally`` (11,): way made [A], time in each phase [rad],
@@ -129,7 +141,7 @@ def turn(rules, state, tally) -> State:
     return State(0.0, state.phase, state.speed, state.height, state.rising, state.aloft)
 
 
-def step(rules, state, tally) -> State:
+def step(rules: Law, state: State, tally: Floats) -> State:
     """Follow the part to its next event, or to the end of this period; adds to ``tally`` (11,)."""
     now = state.angle
     if state.phase == STICK:
@@ -180,7 +192,7 @@ def step(rules, state, tally) -> State:
     return landed
 
 
-def land(rules, angle, speed, impact) -> State:
+def land(rules: Law, angle: float, speed: float, impact: float) -> State:
     """Return the state after an impact: restitution (Newton) across the track, Coulomb's bound along it.
 
     ``speed`` and ``impact`` [A w] are along the track and towards the plate, just before. Source:

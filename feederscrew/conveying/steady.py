@@ -6,15 +6,25 @@ Source: own; docs/conveying.md, "How it is computed".
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.conveying import point_motion as motion
-from feederscrew.conveying.operating_point import FLIGHT, FORWARD, STICK, contact, law, throw_number
+from feederscrew.conveying.operating_point import (
+    FLIGHT,
+    FORWARD,
+    STICK,
+    Law,
+    OperatingPoint,
+    contact,
+    law,
+    throw_number,
+)
 from feederscrew.conveying.point_motion import State, at_rest, step, turn
-from feederscrew.conveying.waves import PERIOD_RAD, Wave, harmonic, onward, peak, travel, value
+from feederscrew.conveying.waves import PERIOD_RAD, Harmonic, Wave, harmonic, onward, peak, travel, value
 from feederscrew.mechanics import limits
 
 LONGEST_PERIOD = 32
@@ -50,11 +60,11 @@ TRACE_SAMPLES = 240  # a period; every phase has at least a few
 class Memory(NamedTuple):
     """Arrays that following a part takes, filled anew by each."""
 
-    tally: np.ndarray  # (11,) as ``turn`` adds to it
-    history: np.ndarray  # (33, 3) states at the starts of the last periods; read no further back than written
-    streak: np.ndarray  # (33,) how often in a row the state came back after so many periods
-    states: np.ndarray  # (64, 3) ``noted`` of steady motions, the first of them
-    row: np.ndarray  # (17,) results of a further start
+    tally: Floats  # (11,) as ``turn`` adds to it
+    history: Floats  # (33, 3) states at the starts of the last periods; read no further back than written
+    streak: Floats  # (33,) how often in a row the state came back after so many periods
+    states: Floats  # (64, 3) ``noted`` of steady motions, the first of them
+    row: Floats  # (17,) results of a further start
 
 
 def memory() -> Memory:
@@ -66,7 +76,7 @@ def memory() -> Memory:
     )  # fmt: skip
 
 
-def settle(rules, state) -> tuple[State, int]:
+def settle(rules: Law, state: State) -> tuple[State, int]:
     """Follow a part until its state repeats every q periods of the drive, twice in a row.
 
     Returns the State at the start of a period; and q, ``RUNS``, or 0 where none up to 32 was found. What
@@ -77,7 +87,7 @@ def settle(rules, state) -> tuple[State, int]:
     return follow(rules, state, memory(), 0, TRANSIENT)
 
 
-def follow(rules, state, arrays, noticed, patience) -> tuple[State, int]:
+def follow(rules: Law, state: State, arrays: Memory, noticed: int, patience: int) -> tuple[State, int]:
     """Follow a part as ``settle`` does, or to where it joins a known motion: ``JOINS`` is the number then.
 
     ``arrays`` is a Memory, of whose states so many are ``noticed``; ``patience`` the periods followed before
@@ -135,17 +145,17 @@ def follow(rules, state, arrays, noticed, patience) -> tuple[State, int]:
     return _hasten(rules, state, history, patience - 1, tally)
 
 
-def noted(state) -> tuple[float, float, float]:
+def noted(state: State) -> tuple[float, float, float]:
     """Return a state at the start of a period: height [A], velocity along the normal [A w], speed [A w]."""
     return (state.height if state.phase == FLIGHT else RESTING), state.rising, state.speed
 
 
-def _clear(numbers) -> None:
+def _clear(numbers: Floats) -> None:
     for k in range(len(numbers)):
         numbers[k] = 0.0
 
 
-def _leap(rules, history, count, state, tally) -> State:
+def _leap(rules: Law, history: Floats, count: int, state: State, tally: Floats) -> State:
     """The state, or where its speed tends to while the motion along the normal repeats every period.
 
     Three speeds in a row tell (Aitken). The leap is kept where the speed then changes less than before it:
@@ -168,12 +178,12 @@ def _leap(rules, history, count, state, tally) -> State:
     return leap if abs(change) < abs(second) else state
 
 
-def _normal_apart(history, row, state) -> float:
+def _normal_apart(history: Floats, row: int, state: State) -> float:
     """How far the motion along the normal is from what it was."""
     return max(abs(state.height - history[row, 1]), abs(state.rising - history[row, 2]))
 
 
-def _hasten(rules, state, history, count, tally) -> tuple[State, int]:
+def _hasten(rules: Law, state: State, history: Floats, count: int, tally: Floats) -> tuple[State, int]:
     """Find the steady motion of a part whose motion along the normal repeats, but whose speed changes slowly.
 
     Over whole periods the speed is carried on by a function of one number that keeps the order of speeds, so
@@ -218,13 +228,13 @@ def _hasten(rules, state, history, count, tally) -> tuple[State, int]:
     return _at_speed(rules, state, far), period
 
 
-def _at_speed(rules, state, speed) -> State:
+def _at_speed(rules: Law, state: State, speed: float) -> State:
     """The state at another speed along the track."""
     phase = FLIGHT if state.phase == FLIGHT else contact(rules, state.angle, speed)
     return State(state.angle, phase, speed, state.height, state.rising, state.aloft)
 
 
-def _on(rules, state, periods, tally) -> State:
+def _on(rules: Law, state: State, periods: int, tally: Floats) -> State:
     """The state after some periods, stops and contacts counted."""
     tally[motion.STOPS], tally[motion.UPWARD], tally[motion.DOWNWARD] = 0.0, 0.0, 0.0
     for _ in range(periods):
@@ -232,12 +242,12 @@ def _on(rules, state, periods, tally) -> State:
     return state
 
 
-def _runs(tally) -> bool:
+def _runs(tally: Floats) -> bool:
     """Whether a part slid one way whenever it touched the plate."""
     return tally[motion.STOPS] == 0.0 and (tally[motion.UPWARD] > 0.0) != (tally[motion.DOWNWARD] > 0.0)
 
 
-def steady(rules, state, out, arrays, count, patience) -> int:
+def steady(rules: Law, state: State, out: Floats, arrays: Memory, count: int, patience: int) -> int:
     """Fill in the steady motion reached from one start; return how many states of motions are noted now.
 
     ``out`` (17,) has status, period, velocity and its spread [A w], fraction of the time in each phase,
@@ -289,7 +299,7 @@ def steady(rules, state, out, arrays, count, patience) -> int:
     return count
 
 
-def _noted_turn(rules, state, tally, out) -> State:
+def _noted_turn(rules: Law, state: State, tally: Floats, out: Floats) -> State:
     """The state a period of the drive on; the range of the velocities in single periods grows by its own."""
     travelled = tally[motion.TRAVEL]
     state = turn(rules, state, tally)
@@ -298,7 +308,7 @@ def _noted_turn(rules, state, tally, out) -> State:
     return state
 
 
-def _escape(rules) -> float:
+def _escape(rules: Law) -> float:
     """Greatest growth of the speed [A w a radian] of a part that slides all the time, up or down the track.
 
     Positive where a part that once slides fast enough gets faster without end. Impacts pass on what the
@@ -307,7 +317,7 @@ def _escape(rules) -> float:
     return max(rules.slip.level, rules.slip_back.level)
 
 
-def _averages(out, tally, periods) -> None:
+def _averages(out: Floats, tally: Floats, periods: float) -> None:
     out[VELOCITY] = tally[motion.TRAVEL] / (periods * PERIOD_RAD)
     for phase in range(4):
         out[FRACTIONS + phase] = tally[motion.TIMES + phase] / (periods * PERIOD_RAD)
@@ -315,13 +325,13 @@ def _averages(out, tally, periods) -> None:
     out[HOPS] = tally[motion.FLIGHTS] / periods
 
 
-def _nothing(out) -> None:
+def _nothing(out: Floats) -> None:
     for place in range(THROW):
         out[place] = np.nan
     out[STATUS], out[PERIOD] = NO_STEADY_STATE, 0.0
 
 
-def survey(setting, out, arrays) -> None:
+def survey(setting: OperatingPoint, out: Floats, arrays: Memory) -> None:
     """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
 
     ``out`` (17,) is as ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady
@@ -357,7 +367,7 @@ def survey(setting, out, arrays) -> None:
                 out[LOW], out[HIGH] = min(out[LOW], other[LOW]), max(out[HIGH], other[HIGH])
 
 
-def thrown(rules, start) -> State:
+def thrown(rules: Law, start: int) -> State:
     """Return start number ``start``: near a regular bounce, or dropped onto the plate at mid stroke.
 
     0 and 1 are a bounce of one period, at either place where the plate slows down through the speed that
@@ -378,7 +388,7 @@ def thrown(rules, start) -> State:
     return State(angle, FLIGHT, 0.0, 0.0, BOUNCE_SPEED_FACTOR * rising, 0.0)
 
 
-def _plate_speed(lift, less) -> Any:
+def _plate_speed(lift: Harmonic, less: float) -> Harmonic:
     """The velocity of the plate along its normal, less a constant [A w], as a harmonic."""
     once, twice, half = lift.phase, lift.second_phase, 0.5 * lift.second
     sine, cosine = -lift.swing * math.sin(once), lift.swing * math.cos(once)
@@ -389,15 +399,15 @@ def _plate_speed(lift, less) -> Any:
 class CycleTrace:
     """Plate and part over a cycle; ways in units of the amplitude."""
 
-    time: np.ndarray  # (N,) [periods]
-    phase: np.ndarray  # (N,) places in ``operating_point.PHASES``
-    plate_along: np.ndarray  # (N,) along the track
-    part_along: np.ndarray
-    plate_normal: np.ndarray  # (N,) along its normal
-    part_normal: np.ndarray
+    time: Floats  # (N,) [periods]
+    phase: Ints  # (N,) places in ``operating_point.PHASES``
+    plate_along: Floats  # (N,) along the track
+    part_along: Floats
+    plate_normal: Floats  # (N,) along its normal
+    part_normal: Floats
 
 
-def trace(setting) -> CycleTrace:
+def trace(setting: OperatingPoint) -> CycleTrace:
     """Return the steady cycle a part falls into from rest, of four periods at most.
 
     Of a motion without a period they are the last ones followed.

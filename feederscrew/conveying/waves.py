@@ -6,6 +6,7 @@ that its own extremes bracket every zero.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 PERIOD_RAD = 2.0 * math.pi  # one period of the drive
@@ -28,7 +29,7 @@ class Wave(NamedTuple):
     cosine_2: float
 
 
-def height(wave, angle) -> float:
+def height(wave: Wave, angle: float) -> float:
     """Return the wave at an angle [rad], in its own unit.
 
     Source: the double angles of sine and cosine.
@@ -43,12 +44,12 @@ def size(a: float, b: float) -> float:
     return math.sqrt(a * a + b * b)
 
 
-def slope(wave) -> Wave:
+def slope(wave: Wave) -> Wave:
     """Return its derivative, a wave again, in its own unit over [rad]."""
     return Wave(0.0, -wave.cosine, wave.sine, -2.0 * wave.cosine_2, 2.0 * wave.sine_2)
 
 
-def find_bends(wave) -> Zeros:
+def find_bends(wave: Wave) -> Zeros:
     """Find where a wave turns: angles [rad] from 0 to 2 pi, ascending, then inf.
 
     With S and T the harmonics of the slope, its own slope at a zero has |cos| <= T/S of the first harmonic,
@@ -65,7 +66,7 @@ def find_bends(wave) -> Zeros:
     return crossings(rate, crossings(second, crossings(third, knots, 0), 0), 0)
 
 
-def _knots(first, spacing, count) -> Zeros:
+def _knots(first: float, spacing: float, count: int) -> Zeros:
     """So many angles [rad], this far apart, then inf."""
     return (
         first if count > 0 else INF,
@@ -75,7 +76,7 @@ def _knots(first, spacing, count) -> Zeros:
     )
 
 
-def crest(wave) -> float:
+def crest(wave: Wave) -> float:
     """Return the angle [rad] of its greatest value; the wave has a harmonic."""
     best, angle, angles = -math.inf, 0.0, find_bends(wave)
     for k in range(MAX_ZEROS):
@@ -84,7 +85,7 @@ def crest(wave) -> float:
     return angle
 
 
-def crossings(wave, knots, sense) -> Zeros:
+def crossings(wave: Wave, knots: Zeros, sense: int) -> Zeros:
     """Find the zeros [rad] of a wave that has at most one between neighbouring knots.
 
     From 0 to 2 pi, ascending, then inf.
@@ -142,7 +143,7 @@ class Harmonic(NamedTuple):
     falls: tuple[float, float]  # [rad] where it falls through zero
 
 
-def harmonic(wave) -> Harmonic:
+def harmonic(wave: Wave) -> Harmonic:
     """Return a wave by its amplitudes and phases, with its zeros."""
     level = wave.level
     swing, phase = size(wave.sine, wave.cosine), math.atan2(wave.cosine, wave.sine)
@@ -158,7 +159,7 @@ def harmonic(wave) -> Harmonic:
     return Harmonic(level, swing, phase, 0.0, 0.0, (rise, INF), (fall, INF))
 
 
-def peak(a) -> float:
+def peak(a: Harmonic) -> float:
     """Return the greatest value of a harmonic [A w2].
 
     Source: own; docs/conveying.md, "Elliptical drives".
@@ -170,7 +171,7 @@ def peak(a) -> float:
     return value(a, crest(Wave(a.level, sine, cosine, sine_2, cosine_2)))
 
 
-def value(a, angle) -> float:
+def value(a: Harmonic, angle: float) -> float:
     """Return the harmonic at an angle [rad], in its own unit.
 
     Source: docs/conveying.md, "The model".
@@ -179,14 +180,14 @@ def value(a, angle) -> float:
     return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
 
 
-def after(zeros, angle) -> float:
+def after(zeros: Sequence[float], angle: float) -> float:
     """Return the first of two angles [rad], ascending, beyond another; inf where neither is."""
     if zeros[0] > angle:
         return zeros[0]
     return zeros[1] if zeros[1] > angle else INF
 
 
-def above(a, angle) -> bool:
+def above(a: Harmonic, angle: float) -> bool:
     """Tell by its zeros whether it is positive from an angle [rad] on: at one, its value is only rounding."""
     rise, fall = after(a.rises, angle), after(a.falls, angle)
     if rise == fall:  # neither is to come in this period
@@ -205,7 +206,7 @@ class Arc(NamedTuple):
     cosine_2: float
 
 
-def onward(a, start) -> Arc:
+def onward(a: Harmonic, start: float) -> Arc:
     """Return the harmonic from ``start`` [rad] on."""
     sine, cosine = a.swing * math.sin(start + a.phase), a.swing * math.cos(start + a.phase)
     if a.second == 0.0:
@@ -214,7 +215,7 @@ def onward(a, start) -> Arc:
     return Arc(a.level, sine, cosine, a.second, a.second * math.sin(angle), a.second * math.cos(angle))
 
 
-def reached(arc, span) -> float:
+def reached(arc: Arc, span: float) -> float:
     """Return the harmonic after a span [rad].
 
     Source: the addition theorems, as products of the half span.
@@ -227,7 +228,7 @@ def reached(arc, span) -> float:
     return once + arc.sine_2 + 2.0 * s * (arc.cosine_2 * c - arc.sine_2 * s)
 
 
-def gain(arc, span) -> float:
+def gain(arc: Arc, span: float) -> float:
     """Integrate over a span [rad]: the velocity gained [A w].
 
     Source: the integral of ``value``.
@@ -240,7 +241,7 @@ def gain(arc, span) -> float:
     return once + s * (arc.sine_2 * c + arc.cosine_2 * s)
 
 
-def travel(arc, span) -> float:
+def travel(arc: Arc, span: float) -> float:
     """Integrate twice over a span [rad]: the way made from rest [A].
 
     Source: the integral of ``gain``.
@@ -254,7 +255,7 @@ def travel(arc, span) -> float:
     return once + 0.5 * arc.sine_2 * span * span + 0.25 * curved
 
 
-def _beyond_sine(x) -> float:
+def _beyond_sine(x: float) -> float:
     """x - sin x."""
     if abs(x) > SERIES:
         return x - 2.0 * math.sin(0.5 * x) * math.cos(0.5 * x)
@@ -263,7 +264,7 @@ def _beyond_sine(x) -> float:
     return x * y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * tail))
 
 
-def _beyond_cosine(x) -> float:
+def _beyond_cosine(x: float) -> float:
     """x^2 / 2 - 1 + cos x."""
     if abs(x) > SERIES:
         half = math.sin(0.5 * x)

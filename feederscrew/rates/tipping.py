@@ -455,7 +455,7 @@ def _steady(
     return True
 
 
-def _foot_beside(orientation: Orientation, span: tuple[float, float]) -> Floats:
+def _foot_beside(orientation: Orientation, span: tuple[float, ...]) -> Floats:
     """Corners (K, 2) [m] of what a span of the track leaves of a foot."""
     foot, radius = orientation.foot, orientation.track.radius
     return footprints.outside_slot(foot, span, orientation.distance, radius).corners

@@ -2,19 +2,25 @@
 
 import itertools
 from dataclasses import dataclass, field, replace
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
+from feederscrew.arrays import Floats, Points, Triangles, Vector
 from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.cuts import TrackBlade
+from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, CONICAL, FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
+
+if TYPE_CHECKING:
+    from feederscrew.solidbowl.exact.exact_file import StepFile
 
 PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 BEYOND_BOWL_M = 1.0  # [m] beyond everything
@@ -30,18 +36,18 @@ class BowlSolid:
     """A bowl as a closed surface, with what it is and weighs."""
 
     plan: BowlPlan
-    vertices: np.ndarray  # (V, 3) [m]
-    faces: np.ndarray  # (F, 3)
-    gates: tuple[tuple[str, np.ndarray, np.ndarray], ...]  # name, vertices and faces of each part of its own
+    vertices: Points  # (V, 3) [m]
+    faces: Triangles  # (F, 3)
+    gates: tuple[tuple[str, Points, Triangles], ...]  # name, vertices and faces of each part of its own
     volume: float  # [m3]
     mass: float  # [kg] gates included
-    tensor: np.ndarray  # (3, 3) [kg m2] inertia about its centre of mass
-    centre: np.ndarray  # (3,) [m]
+    tensor: Floats  # (3, 3) [kg m2] inertia about its centre of mass
+    centre: Vector  # (3,) [m]
     falls: dict = field(default_factory=dict)  # where what falls through each cut comes to lie
     turns_of_sheet: float = 0.0  # that the sheet has, and the solid may not have room for
     riders: tuple = ()  # (Orientation, s [m]) of parts along its track, to draw
     segments: Segments | None = None  # where it is cut to fit a printer
-    step: Any = None  # an ``exact_file.StepFile``, where it was asked for
+    step: "StepFile | None" = None  # where it was asked for
 
     @property
     def inertia(self) -> float:
@@ -113,12 +119,12 @@ def body(plan: BowlPlan) -> BowlSolid:
     return BowlSolid(plan, vertices, faces, tuple(extra), volume, total, inertia, centre)
 
 
-def screwed(solid: Any, weight: float) -> BowlSolid:
+def screwed(solid: BowlSolid, weight: float) -> BowlSolid:
     """Return a bowl in segments that weighs what it does with its lugs and screws, of ``weight`` [kg] each.
 
     Without screws it stays as it is.
     """
-    if solid.segments.joined is None:
+    if solid.segments is None or solid.segments.joined is None:
         return solid
     vertices, faces = solid.segments.joined
     bodies = [mass.integrate_solid(v[f]) for v, f in ((vertices, faces), *(gate[1:] for gate in solid.gates))]
@@ -132,19 +138,19 @@ def screwed(solid: Any, weight: float) -> BowlSolid:
     return replace(solid, mass=float(total), centre=centre, tensor=tensor)
 
 
-def _weighed(plan: BowlPlan, parts: list[Any]) -> tuple[float, Any, Any]:
+def _weighed(plan: BowlPlan, parts: list[mass.Solid]) -> tuple[float, Vector, Floats]:
     """Mass [kg], centre (3,) [m] and inertia (3, 3) [kg m2] about it of a bowl with its gates."""
     density = plan.material.density
     weights = [density * part.volume for part in parts]
     total = float(sum(weights))
-    centre = sum(w * part.centre for w, part in zip(weights, parts)) / total
-    inertia = sum(
-        mass.shift_inertia(density * part.inertia, w, part.centre - centre) for w, part in zip(weights, parts)
-    )
+    centre = sum((w * part.centre for w, part in zip(weights, parts)), np.zeros(3)) / total
+    inertia = np.zeros((3, 3))
+    for w, part in zip(weights, parts):
+        inertia = inertia + mass.shift_inertia(density * part.inertia, w, part.centre - centre)
     return total, centre, inertia
 
 
-def pieces(plan: BowlPlan, kit: Any = facets) -> tuple[Any, list[tuple[str, Any]]]:
+def pieces(plan: BowlPlan, kit: ModuleType = facets) -> tuple[Body, list[tuple[str, Body]]]:
     """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0.
 
     The kit is ``facets`` or ``exact_body``, which the body is made with.
@@ -189,7 +195,7 @@ def pieces(plan: BowlPlan, kit: Any = facets) -> tuple[Any, list[tuple[str, Any]
     return kit.one_piece(whole, "devices"), gates
 
 
-def _floor(plan: BowlPlan, kit: Any) -> list[Any]:
+def _floor(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     """Floor with its dome, and the hub below it."""
     low, inner, outer = plan.underside, plan.ring, plan.path.radius + plan.material.wall
     edge = []
@@ -211,11 +217,11 @@ def _floor(plan: BowlPlan, kit: Any) -> list[Any]:
     return [kit.united([kit.turned(profile, plan.segments) for profile in (shell, hub)]), *edge]
 
 
-def walls(plan: Any, kit: Any) -> list[Any]:
+def walls(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     """Return the wall; of a stepped or conical bowl, and the plate that closes its last turn."""
     if plan.stairs is None:
-        inner, outer, low = plan.path.radius, plan.path.radius + plan.material.wall, plan.underside
-        profile = [(inner, low + PIECE_OVERLAP_M), (outer, low), (outer, plan.top), (inner, plan.top)]
+        r, far, low = plan.path.radius, plan.path.radius + plan.material.wall, plan.underside
+        profile = [(r, low + PIECE_OVERLAP_M), (far, low), (far, plan.top), (r, plan.top)]
         return [kit.turned(profile, plan.segments)]
     legs, places = [], QUARTER_TURN_POINTS if kit.HAS_EXACT_CURVES else plan.segments // 4
     quarters = FULL_TURN_RAD * np.array([-1.0, -0.75, -0.5, -0.25, 0.0])
@@ -245,7 +251,7 @@ def walls(plan: Any, kit: Any) -> list[Any]:
     return [kit.above(body, plan.underside + WALL_LIFT_M) for body in (wall, end)]
 
 
-def _plate(plan: BowlPlan, kit: Any, blade: TrackBlade) -> Any:
+def _plate(plan: BowlPlan, kit: ModuleType, blade: TrackBlade) -> Body:
     """A blade across the track, at its height over the higher of its two faces."""
     s = plan.first + blade.start
     area = blade.area
@@ -256,7 +262,9 @@ def _plate(plan: BowlPlan, kit: Any, blade: TrackBlade) -> Any:
     return _standing(plan, kit, s, blade.thickness, area, blade.lean)
 
 
-def _standing(plan: BowlPlan, kit: Any, s: float, thickness: float, area: Any, lean: float = 0.0) -> Any:
+def _standing(
+    plan: BowlPlan, kit: ModuleType, s: float, thickness: float, area: shapely.Geometry, lean: float = 0.0
+) -> Body:
     """An area of distances from the wall and heights over the track, as a plate across the track.
 
     A swept one leans ahead with the distance; its edge keeps its height over the track at both ends.

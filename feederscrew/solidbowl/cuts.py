@@ -2,16 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import shapely
 from shapely import affinity
 
+from feederscrew.arrays import Points
 from feederscrew.bowl.record import Track
 from feederscrew.tooling.devices.base import Device, room_of
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.fates import leading
+from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.track_sections import Station, build_section
 
 MAX_EDGE_SLOPE_RAD = np.radians(10.0)  # slope along the track of its free edge, where the bank changes
@@ -31,7 +32,7 @@ class TrackLedge:
     ramp: float  # [m] over which it comes down
 
 
-def banked_height(track: Track, devices: Sequence[Device], orientations: Sequence[Any]) -> Track:
+def banked_height(track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]) -> Track:
     """Return the track with the bank that the first devices give it from its entry on."""
     for device in lean_at_entry(devices):
         for slope in device.standing(track, orientations).slopes:
@@ -39,13 +40,13 @@ def banked_height(track: Track, devices: Sequence[Device], orientations: Sequenc
     return track
 
 
-def lean_at_entry(devices: Sequence[Device]) -> tuple[Any, ...]:
+def lean_at_entry(devices: Sequence[Device]) -> tuple[Device, ...]:
     """Return those devices that stand at the track's entry: before what does more than lean it."""
     return leading([device for device in devices if device.placed])
 
 
 def laid_out(
-    track: Track, stations: Sequence[Station], orientations: Sequence[Any]
+    track: Track, stations: Sequence[Station], orientations: Sequence[Orientation]
 ) -> tuple[list[Station], tuple, tuple[TrackLedge, ...], tuple, float]:
     """Return stations along a solid's track, with room for what leans and drops it.
 
@@ -79,7 +80,7 @@ def laid_out(
                 twist = max(TWIST * room_of(orientations), edge / np.tan(MAX_EDGE_SLOPE_RAD))
                 leans.append((at, at + float(twist), slope.bank))
                 bank, more = slope.bank, more + max(leans[-1][1] - end, 0.0)
-        drop, aside = station.device.lower(orientations) or (0.0, 0.0)
+        drop, aside = station.device.lower(orientations)
         if aside > 0.0:
             ramp = float(drop / np.tan(RAMP))
             ledges.append(TrackLedge(station.label, station.start, end, float(aside), float(drop), ramp))
@@ -96,7 +97,7 @@ class TrackHole:
     """A hole in the track; s along the wall from where the stretch begins."""
 
     label: str  # 'gap 9 mm'
-    ring: np.ndarray  # (K, 2) [m] s and distance from the wall
+    ring: Points  # (K, 2) [m] s and distance from the wall
     hangs: bool  # parts hang in it from there on: it goes on to the end of the track
 
     @property
@@ -113,7 +114,7 @@ class TrackBlade:
     start: float  # [m] s
     thickness: float  # [m] along the wall
     lean: float  # [1] ahead over inwards: a swept blade
-    area: Any  # shapely geometry [m]: distance from the wall, height over the track
+    area: shapely.Geometry  # [m] distance from the wall, height over the track
     alone: bool  # a gate that is a part of its own, and stands in a notch of the wall
 
 
@@ -149,7 +150,7 @@ class Stretch:
         return max((cut.span[1] for cut in self.cuts), default=None)
 
 
-def stretch(track: Track, devices: Sequence[Device], orientations: Sequence[Any]) -> Stretch:
+def stretch(track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]) -> Stretch:
     """Return the tooled stretch of a track, of orientations of the part on it."""
     section = build_section(track, devices, orientations)
     stations, leans, ledges, grooves, more = laid_out(track, section.stations, orientations)

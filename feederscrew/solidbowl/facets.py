@@ -1,27 +1,33 @@
 """Bodies of our own facets, united and cut: the bowl's door to manifold3d."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
+from numpy.typing import ArrayLike
 from shapely import affinity
 
 from feederscrew.arrays import Points
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
+from feederscrew.solidbowl.plan import BowlPlan, TrackPath
 from feederscrew.tooling.solid import extruded
 from feederscrew.units import MM, counted
+
+if TYPE_CHECKING:
+    from feederscrew.solidbowl.closed_body import BowlSolid
 
 manifold3d = heavy("manifold3d")
 
 MIN_PIECE_VOLUME_M3 = 1e-9  # [m3] a loose piece smaller than this is left out
 HOLE_SIDES = 48  # of a round hole
+Body = Any  # [mm] a Manifold; of the kit ``exact_body`` a TopoDS_Shape
 HAS_EXACT_CURVES = False  # a curve is a chain of chords
 
 
-def swept(legs: Sequence[tuple[Points, Points]]) -> Any:
+def swept(legs: Sequence[tuple[Points, Points]]) -> Body:
     """Return a body [mm] whose section is handed on from frame to frame, leg after leg.
 
     A leg has ``sections`` (M, K, 2) [m], the corners of each counter-clockwise: outwards, upwards; and
@@ -56,17 +62,17 @@ def in_space(sections: Points, frames: Points) -> Points:
     return np.concatenate([place + sections[..., :1] * outward, sections[..., 1:]], axis=-1)
 
 
-def turned(profile: Any, segments: int) -> Any:
+def turned(profile: ArrayLike, segments: int) -> Body:
     """Return a body of revolution [mm] about Z, of radius and height (K, 2) [m] counter-clockwise."""
     return manifold3d.CrossSection([np.asarray(profile) / MM]).revolve(segments)
 
 
-def patch(ring: Points, low: float, high: float) -> Any:
+def patch(ring: Points, low: float, high: float) -> Body:
     """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
     return extruded(shapely.Polygon(ring), low, high)
 
 
-def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
+def over(path: TrackPath, ring: Points, low: float, high: float, chord: float) -> Body:
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m].
 
     ``chord`` [m] is by how much an arc may be seen too flat.
@@ -76,7 +82,7 @@ def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
     return extruded(shapely.make_valid(shapely.Polygon(path.plan(fine[:, 0], fine[:, 1]))), low, high)
 
 
-def disc(at: Any, size: float, low: float, high: float) -> Any:
+def disc(at: ArrayLike, size: float, low: float, high: float) -> Body:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
     return extruded(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
 
@@ -87,45 +93,45 @@ def _circle(size: float) -> Points:
     return 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
-def bore(place: Any, towards: Points, size: float, deep: float) -> Any:
+def bore(place: ArrayLike, towards: Points, size: float, deep: float) -> Body:
     """Return a round rod along a level unit vector (3,): its near end (3,), diameter and length [m]."""
     up = np.array([0.0, 0.0, 1.0])
     axes = np.column_stack([np.cross(up, towards), up, towards])
     return plank(shapely.Polygon(_circle(size)), deep, axes, place)
 
 
-def plank(area: Any, thickness: float, axes: Points, foot: Any) -> Any:
+def plank(area: shapely.Geometry, thickness: float, axes: Points, foot: ArrayLike) -> Body:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
     return extruded(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
 
 
-def hull(places: Points) -> Any:
+def hull(places: Points) -> Body:
     """Return the convex hull of places (N, 3) [m] as a Manifold."""
     return manifold3d.Manifold.hull_points(np.asarray(places) / MM)
 
 
-def united(bodies: Iterable[Any]) -> Any:
+def united(bodies: Iterable[Body]) -> Body:
     """Return the union of a list of Manifolds."""
     return manifold3d.Manifold.batch_boolean(list(bodies), manifold3d.OpType.Add)
 
 
-def without(body: Any, tools: Sequence[Any]) -> Any:
+def without(body: Body, tools: Sequence[Body]) -> Body:
     """Return a Manifold with a list of others cut out of it."""
     return manifold3d.Manifold.batch_boolean([body, *tools], manifold3d.OpType.Subtract) if tools else body
 
 
-def above(body: Any, height: float) -> Any:
+def above(body: Body, height: float) -> Body:
     """Return what of a Manifold lies above a height [m]."""
     return body.trim_by_plane((0.0, 0.0, 1.0), height / MM)
 
 
-def placed_as(body: Any, *, mirrored: bool, turned: float) -> Any:
+def placed_as(body: Body, *, mirrored: bool, turned: float) -> Body:
     """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
     body = body.mirror((0.0, 1.0, 0.0)) if mirrored else body
     return body.rotate((0.0, 0.0, float(np.degrees(turned)))) if turned else body
 
 
-def one_piece(body: Any, where: str) -> Any:
+def one_piece(body: Body, where: str) -> Body:
     """Return the one piece of a body; raises FeederError if more than a crumb hangs loose."""
     pieces = sorted(body.decompose(), key=lambda item: -item.volume())
     loose = [piece for piece in pieces[1:] if piece.volume() * MM**3 > MIN_PIECE_VOLUME_M3]
@@ -135,43 +141,43 @@ def one_piece(body: Any, where: str) -> Any:
     return pieces[0]
 
 
-def placed(solid: Any) -> Any:
-    """Return a BowlSolid as a Manifold [mm] as it stands in its files."""
+def placed(solid: "BowlSolid") -> Body:
+    """Return a BowlSolid as a body as it stands in its files."""
     return manifold3d.Manifold(manifold3d.Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
 
 
-def unplaced(solid: Any) -> Any:
-    """Return a BowlSolid as a Manifold [mm] with its outlet at the angle 0, right-handed, to cast rays at."""
+def unplaced(solid: "BowlSolid") -> Body:
+    """Return a BowlSolid with its outlet at the angle 0, right-handed, to cast rays at."""
     whole = placed(solid).rotate((0.0, 0.0, -float(np.degrees(solid.plan.turned))))
     return whole.mirror((0.0, 1.0, 0.0)) if solid.plan.left else whole
 
 
-def about_axis(places: Any, turn: float) -> Points:
+def about_axis(places: ArrayLike, turn: float) -> Points:
     """Return places (..., 2 or 3) turned about Z by an angle [rad]."""
     places = np.asarray(places)
     return np.concatenate([rotated(places, turn), places[..., 2:]], axis=-1)
 
 
-def as_planned(plan: Any, points: Any) -> Points:
+def as_planned(plan: BowlPlan, points: ArrayLike) -> Points:
     """Return points (N, 2 or 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
     points = about_axis(points, -plan.turned)
     return points * [1.0, -1.0, 1.0][: points.shape[-1]] if plan.left else points
 
 
-def as_filed(plan: Any, points: Any) -> Points:
+def as_filed(plan: BowlPlan, points: ArrayLike) -> Points:
     """Return points as ``as_planned`` has them as the bowl's files have them."""
     points = np.asarray(points)
     return about_axis(points * [1.0, -1.0, 1.0][: points.shape[-1]] if plan.left else points, plan.turned)
 
 
-def below(body: Any, place: Any, deep: float = 10.0) -> float | None:
+def below(body: Body, place: ArrayLike, deep: float = 10.0) -> float | None:
     """Return the height [m] of the first surface straight below a place (3,) [m]; None if there is none."""
     start = np.asarray(place) / MM
     hits = body.ray_cast(tuple(start), tuple(start + np.array([0.0, 0.0, -deep]) / MM))
     return float(hits[0].position[2]) * MM if hits else None
 
 
-def section(body: Any, angle: float) -> list[Points]:
+def section(body: Body, angle: float) -> list[Points]:
     """Return what a plane through the axis, at an angle [rad] from XZ, cuts of a Manifold [mm].
 
     The closed outlines, holes among them, are (K, 2) [m] each: place along the plane, height.
@@ -180,21 +186,21 @@ def section(body: Any, angle: float) -> list[Points]:
     return [np.asarray(ring) * MM for ring in flat.slice(1e-3).to_polygons()]
 
 
-def first_met(body: Any, start: Any, towards: Any) -> list[float]:
+def first_met(body: Body, start: ArrayLike, towards: ArrayLike) -> list[float]:
     """Return the distances [m] of all surfaces on a straight line from a place (3,) to another (3,) [m]."""
     start = np.asarray(start, float)
     hits = body.ray_cast(tuple(start / MM), tuple(np.asarray(towards, float) / MM))
     return [float(np.sqrt(np.sum((np.asarray(hit.position) * MM - start) ** 2))) for hit in hits]
 
 
-def rod(axis: int, middle: Any, size: float, deep: float) -> Any:
+def rod(axis: int, middle: ArrayLike, size: float, deep: float) -> Body:
     """Return a round rod along an axis (0, 1, 2) about a place (3,) [m], ``deep`` [m] to either side."""
     solid = manifold3d.Manifold.cylinder(2.0 * deep / MM, 0.5 * size / MM, circular_segments=24, center=True)
     solid = (solid.rotate((0.0, 90.0, 0.0)), solid.rotate((90.0, 0.0, 0.0)), solid)[axis]
     return solid.translate(tuple(np.asarray(middle) / MM))
 
 
-def cut_by(body: Any, planes: Iterable[tuple[int, float]]) -> list[Any]:
+def cut_by(body: Body, planes: Iterable[tuple[int, float]]) -> list[Body]:
     """Return a Manifold in cells, cut by planes (axis, place [m]) square to the axes."""
     cells = [body]
     for axis, at in planes:
@@ -203,12 +209,12 @@ def cut_by(body: Any, planes: Iterable[tuple[int, float]]) -> list[Any]:
     return [cell for cell in cells if not cell.is_empty()]
 
 
-def parts_of(body: Any, least: float = MIN_PIECE_VOLUME_M3) -> list[Any]:
+def parts_of(body: Body, least: float = MIN_PIECE_VOLUME_M3) -> list[Body]:
     """Return the pieces of a Manifold that hang together, those of less than a volume [m3] left out."""
     return [item for item in body.decompose() if item.volume() * MM**3 > least]
 
 
-def cut_face(body: Any, axis: int, at: float) -> Any:
+def cut_face(body: Body, axis: int, at: float) -> shapely.Geometry:
     """Return what a plane square to an axis cuts of a Manifold, as a shapely area [m] of the other two."""
     turn = ((0.0, -90.0, 0.0), (90.0, 0.0, 0.0), (0.0, 0.0, 0.0))[axis]  # x' y' z': -z y x, x -z y, x y z
     rings = [np.asarray(ring) * MM for ring in body.rotate(turn).slice(at / MM).to_polygons()]

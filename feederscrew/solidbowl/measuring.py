@@ -1,14 +1,15 @@
 """What the finished solid measures, by rays on its surface; whether what falls through comes back."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import shapely
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl import facets, track
+from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.cuts import TrackHole
+from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import FULL_TURN_RAD, SEEN, SURE, BowlPlan
 
 WALL_RAY_HEIGHT_M = 5e-4  # [m] over the track, where its wall is met
@@ -28,7 +29,7 @@ class Measures:
     extent: tuple[float, float, float]  # of a box around it
 
 
-def measures(solid: Any) -> Measures:
+def measures(solid: BowlSolid) -> Measures:
     """Measure a bowl, a BowlSolid."""
     plan, body = solid.plan, facets.unplaced(solid)
     path, far = plan.path, 3.0 * plan.path.radius
@@ -66,7 +67,7 @@ def measures(solid: Any) -> Measures:
     )
 
 
-def track_width(plan: BowlPlan, body: Any, s: float) -> float:
+def track_width(plan: BowlPlan, body: Body, s: float) -> float:
     """Return the width [m] of the track at a length along the wall, along its surface.
 
     Rays from the middle of the track along its surface to the wall, at two heights over it: a wall may lean,
@@ -89,7 +90,7 @@ def track_width(plan: BowlPlan, body: Any, s: float) -> float:
     return (2.0 * low - high) + (to_middle - to_edge) / float(np.cos(bank))
 
 
-def track_heights(plan: BowlPlan, body: Any, s: float, y: float) -> Any:
+def track_heights(plan: BowlPlan, body: Body, s: float, y: float) -> float | None:
     """Return the height [m] of the first surface below a place a little over the track."""
     place = plan.path.places(s, y)
     return facets.below(body, place + [0.0, 0.0, 0.5 * plan.headroom])
@@ -103,7 +104,7 @@ FACE_TOLERANCE_M = 5e-4  # [m] from a face: what lies on it
 ON_FLOOR, ON_TURN = "the floor", "the turn of the track before"
 
 
-def ways_down(solid: Any) -> dict[str, str]:
+def ways_down(solid: BowlSolid) -> dict[str, str]:
     """Return where what falls through each cut of a BowlSolid comes to lie, by the label of the cut.
 
     That is straight down on the floor; where the wall steps outwards down its slope too, on the floor or on
@@ -128,7 +129,7 @@ def ways_down(solid: Any) -> dict[str, str]:
     return ways
 
 
-def _lies(plan: BowlPlan, whole: Any, cut: TrackHole, s: float, y: float) -> str:
+def _lies(plan: BowlPlan, whole: Body, cut: TrackHole, s: float, y: float) -> str:
     """Where what falls at a place of a cut comes to lie."""
     path, place = plan.path, plan.path.places(plan.first + s, y)
     meet = facets.below(whole, place)

@@ -8,18 +8,16 @@ and stands upright again below the next turn.
 
 import itertools
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Values
 from feederscrew.bowl.record import Sizing, Track
 from feederscrew.errors import FeederError
-from feederscrew.machine.sizing import MIN_WALL_ABOVE_PART_M
+from feederscrew.machine.sizing import MIN_WALL_ABOVE_PART_M, Size
 from feederscrew.solidbowl.cuts import Stretch
 
 Extents = Floats | tuple[float, ...]  # (3,) [m] of a part along its axes
-Values = Any  # a number or an array of numbers
 STEEL_NAME = "steel"
 CYLINDER, CONICAL = "cylinder", "conical"  # the third shape is stepped
 FULL_TURN_RAD = 2.0 * np.pi
@@ -207,7 +205,7 @@ class Stairs:
         """Least rise of a turn [m]: upright wall over the turn before, slope, upright wall below."""
         return self.upright + self.step * float(np.tan(self.slope)) + self.below
 
-    def sections(self, path: TrackPath, theta: Values, low: float) -> np.ndarray:
+    def sections(self, path: TrackPath, theta: Values, low: float) -> Floats:
         """Return the corners (M, K, 2) [m] of the wall's inner side: radius and height, from below upwards.
 
         ``theta`` (M,) [rad] lead from a turn before the outlet to the outlet; below the height ``low`` [m] no
@@ -325,7 +323,7 @@ class SolidOptions:
 
 
 def plan(
-    size: Any, track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions, *,
+    size: Size, track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions, *,
     extents: Extents,
 ) -> BowlPlan:  # fmt: skip
     """Return the measures of a bowl as a solid.
@@ -408,7 +406,7 @@ def _stairs(
 
 
 def _track_path(
-    size: Any, track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions,
+    size: Size, track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions,
     stepped: Stairs | None,
 ) -> tuple[TrackPath, float]:  # fmt: skip
     """The way of the track, and where on it the tooled stretch begins."""

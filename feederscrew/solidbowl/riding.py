@@ -1,13 +1,12 @@
 """A part as it lies on the track of a bowl, along its wall."""
 
-from typing import Any
-
 import numpy as np
 
-from feederscrew.arrays import Points
+from feederscrew.arrays import Points, Values
 from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.plan import CONICAL, FULL_TURN_RAD, BowlPlan
+from feederscrew.tooling.orientations import Orientation
 
 SPACED = 1.3  # of its length: from part to part
 FIRST_RIDER_POSITION = 0.12  # of the track: where the first of them is
@@ -16,7 +15,7 @@ RIDER_CONTACT_M = 5e-6  # [m]
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does not touch the wall
 
 
-def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) -> Points:
+def place_rider(plan: BowlPlan, orientation: Orientation, vertices: Points, s: float) -> Points:
     """Return a part (V, 3) [m] on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
     ``orientation``: the part's, on the track of that bowl; ``vertices`` (V, 3) [m]: of the part, in its
@@ -49,7 +48,7 @@ def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) ->
     return facets.as_filed(plan, placed)
 
 
-def leaning(plan: BowlPlan, s: Any) -> Any:
+def leaning(plan: BowlPlan, s: Values) -> Values:
     """Return how far the wall leans outwards over its height [1], at lengths along it."""
     if plan.stairs is not None and plan.stairs.shape == CONICAL:  # upright above the last turn but one
         return np.where(plan.path.angle(s) < -FULL_TURN_RAD, 1.0 / np.tan(plan.stairs.slope), 0.0)
@@ -71,7 +70,9 @@ def frame(plan: BowlPlan, s: float, y: float) -> tuple[Points, Points, Points]:
     return ahead, np.cross(up, ahead), up
 
 
-def riders(plan: BowlPlan, orientation: Any, hung: Any) -> list[tuple[Any, float]]:
+def riders(
+    plan: BowlPlan, orientation: Orientation, hung: Orientation | None
+) -> list[tuple[Orientation, float]]:
     """Return parts along the track of a bowl, one behind the other, each with its length along the wall [m].
 
     They come along in an orientation; ``hung`` is that in which they hang from the last rails on, or None.

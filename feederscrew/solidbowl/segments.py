@@ -3,19 +3,25 @@
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from feederscrew import units
-from feederscrew.arrays import Points
+from feederscrew.arrays import Floats, Points, Triangles, Vector
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.solidbowl import facets
+from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
 from feederscrew.units import MM
+
+if TYPE_CHECKING:
+    from feederscrew.solidbowl.closed_body import BowlSolid
+
+Frame = tuple[Vector, Vector, Vector, Vector]  # place, along, out, across
 
 HOLE = 3.4e-3  # [m] for a screw M3, ISO 273
 FLATS, LUG_DEPTH_M = 5.7e-3, 2.6e-3  # [m] of the pocket for its nut, ISO 4032 and 0.2 mm of play
@@ -39,14 +45,14 @@ STANDS = OFF + OVER  # [m] of a lug over the wall, at least
 class Lug:
     """A lug across a seam, with its screw; the seam lies in the middle of it."""
 
-    middle: np.ndarray  # (3,) [m] of the screw, in the seam
-    along: np.ndarray  # (3,) the screw's direction, from its nut to its head
-    out: np.ndarray  # (3,) off the wall
-    body: object  # Manifold [mm], without its holes
+    middle: Vector  # (3,) [m] of the screw, in the seam
+    along: Vector  # (3,) the screw's direction, from its nut to its head
+    out: Vector  # (3,) off the wall
+    body: Body  # [mm] without its holes
     under: float  # [m] by which it goes on beyond its nut, where it is carried at 45 deg
 
     @property
-    def holes(self) -> list[Any]:
+    def holes(self) -> list[Body]:
         """The hole of its screw and the pocket of its nut."""
         side = np.cross(self.along, self.out)
         axes = np.column_stack([self.out, side, self.along])
@@ -58,7 +64,7 @@ class Lug:
         ]
 
 
-def _regular(corners: int, across: float) -> Any:
+def _regular(corners: int, across: float) -> shapely.Polygon:
     """A regular polygon [m] by the distance of its flats, one of them outwards."""
     turns = FULL_TURN_RAD * (np.arange(corners) + 0.5) / corners
     size = 0.5 * across / np.cos(np.pi / corners)
@@ -66,7 +72,7 @@ def _regular(corners: int, across: float) -> Any:
 
 
 def place_lugs(
-    body: Any, planes: Sequence[tuple[int, float]], tooled_area: Any, extents: Points
+    body: Body, planes: Sequence[tuple[int, float]], tooled_area: shapely.Geometry, extents: Points
 ) -> tuple[list[Lug], int, int]:
     """Return the lugs along the seams of a bowl, how many ends of seams have none, and how many there are.
 
@@ -95,7 +101,7 @@ def place_lugs(
     return lugs, len(seam_points - with_lug), len(seam_points)
 
 
-def _lug_frames(axis: int, at: float, extents: Points) -> Iterator[Any]:
+def _lug_frames(axis: int, at: float, extents: Points) -> Iterator[Frame]:
     """Frames (place, along, out, across) of lugs at both ends of an upright seam, or round a level one."""
     unit, up = np.eye(3), np.array([0.0, 0.0, 1.0])
     if axis == 2:
@@ -112,7 +118,7 @@ def _lug_frames(axis: int, at: float, extents: Points) -> Iterator[Any]:
         yield at * unit[axis] + z * up, along, side * unit[1 - axis], up
 
 
-def _lug(body: Any, frame: Any, level: bool, low: float) -> Lug | None:
+def _lug(body: Body, frame: Frame, level: bool, low: float) -> Lug | None:
     """A lug on the wall's outer face; None where that is not smooth there."""
     place, along, out, across = frame
     n, t = 0.5 * SCREW_LENGTH_M * np.linspace(-1.0, 1.0, 5), LUG_HALF_WIDTH_M * np.linspace(-1.0, 1.0, 3)
@@ -136,7 +142,7 @@ def _lug(body: Any, frame: Any, level: bool, low: float) -> Lug | None:
     return Lug(place + (off.max() + OFF) * out, along, out, facets.hull(places), deep if level else 0.0)
 
 
-def _wall(body: Any, place: Points, out: Points) -> float:
+def _wall(body: Body, place: Points, out: Points) -> float:
     """How far out [m] the outer face of the wall lies from a place; not a number without one."""
     first_met = facets.first_met(body, place + BEYOND_LUGS_M * out, place)
     return BEYOND_LUGS_M - first_met[0] if first_met else np.nan
@@ -158,8 +164,8 @@ class Segment:
     """One piece to print, as it stands on the bed."""
 
     name: str
-    vertices: np.ndarray  # (V, 3) [m] from the corner of its box
-    faces: np.ndarray  # (F, 3)
+    vertices: Points  # (V, 3) [m] from the corner of its box
+    faces: Triangles  # (F, 3)
     size: tuple[float, float, float]  # [m] of its box
     volume: float  # [m3]
 
@@ -169,12 +175,12 @@ class Segments:
     """A bowl in pieces."""
 
     pieces: tuple[Segment, ...]
-    places: np.ndarray  # (N, 3) [m] the middle of each dowel, in axes turned with the seams
+    places: Points  # (N, 3) [m] the middle of each dowel, in axes turned with the seams
     dowel: float  # [m] diameter
     dowel_length: float  # [m]
     turned: float  # [rad] of the seams against the bowl's axes
-    lugs: np.ndarray  # (N, 3, 3) of each screw: its middle [m], its direction, off the wall
-    joined: tuple[np.ndarray, np.ndarray] | None  # vertices, faces of the bowl with lugs, bored; None without
+    lugs: Floats  # (N, 3, 3) of each screw: its middle [m], its direction, off the wall
+    joined: tuple[Points, Triangles] | None  # vertices, faces of the bowl with lugs, bored; None without
     ends: tuple[int, int] = (0, 0)  # of seams, that have no screw where screws are asked for; and of how many
 
     @property
@@ -216,7 +222,7 @@ def bed(text: str) -> tuple[float, ...]:
     return tuple(size)
 
 
-def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segments:
+def segments(solid: "BowlSolid", size: tuple[float, ...], joint: str = DOWELS) -> Segments:
     """Return a bowl in pieces that fit a bed, whole where it fits as it is.
 
     ``size`` (float, float, float) [m]: of the bed, and of the height that is printed; ``joint``: of
@@ -269,7 +275,9 @@ def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segmen
     )
 
 
-def _seams(solid: Any, size: tuple[float, ...], screwed: bool) -> tuple[tuple[int, ...], float, Points]:
+def _seams(
+    solid: "BowlSolid", size: tuple[float, ...], screwed: bool
+) -> tuple[tuple[int, ...], float, Points]:
     """Segments along each axis, the turn of the seams, and the box (3, 2) [m] of the bowl turned back by it.
 
     The box has room for the lugs of screws.
@@ -309,7 +317,7 @@ def _counts(extents: Points, size: tuple[float, ...]) -> tuple[int, ...]:
     return tuple(int(np.ceil((high - low) / side - 1e-9)) for (low, high), side in zip(extents, size))
 
 
-def _box_points(solid: Any, turn: float) -> Points:
+def _box_points(solid: "BowlSolid", turn: float) -> Points:
     """Places (N, 2) [m] along the devices, in the axes of the seams."""
     plan = solid.plan
     first, last = _tooled(plan)
@@ -323,7 +331,7 @@ def _tooled(plan: BowlPlan) -> tuple[float, float]:
 
 
 def _dowels(
-    solid: Any, body: Any, turn: float, plane: tuple[int, float], size: float
+    solid: "BowlSolid", body: Body, turn: float, plane: tuple[int, float], size: float
 ) -> list[tuple[int, Points]]:
     """Places (axis, middle (3,) [m]) of dowels across a seam: in solid, apart, and none below a cut."""
     axis, at = plane
@@ -338,7 +346,7 @@ def _dowels(
     places = np.column_stack([u.ravel(), v.ravel()])
     places = places[shapely.contains_xy(area, *places.T)]
     ring = shapely.MultiPoint(_box_points(solid, turn)).convex_hull.buffer(2.0 * size)
-    dowels: list[tuple[int, np.ndarray]] = []
+    dowels: list[tuple[int, Vector]] = []
     for place in places:
         middle = np.insert(place, axis, at)
         if shapely.contains_xy(ring, *middle[:2]):
@@ -348,7 +356,7 @@ def _dowels(
     return dowels
 
 
-def overhangs(solid: Any) -> dict[str, float]:
+def overhangs(solid: "BowlSolid") -> dict[str, float]:
     """Return the area [m2] that hangs over by more than 45 deg, printed as a BowlSolid stands.
 
     By what it belongs to; nothing of less than a square centimetre.

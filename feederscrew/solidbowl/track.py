@@ -2,12 +2,13 @@
 
 import itertools
 from collections.abc import Iterable, Iterator
-from typing import Any
+from types import ModuleType
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Values
 from feederscrew.solidbowl.cuts import TrackHole
+from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import CONICAL, DIP, FULL_TURN_RAD, BowlPlan
 
 Groove = tuple[float, float, float, float]
@@ -26,7 +27,7 @@ def fillet(plan: BowlPlan) -> float:
     return min(plan.material.plate, 0.5 * plan.across)
 
 
-def slab(plan: BowlPlan, kit: Any) -> Any:
+def slab(plan: BowlPlan, kit: ModuleType) -> Body:
     """Return the track with its outlet, its devices not yet cut; the kit is ``facets`` or ``exact_body``."""
     runs, path = [], plan.path
     begin = path.rises(plan.width) - DIP * path.radius
@@ -49,14 +50,14 @@ def slab(plan: BowlPlan, kit: Any) -> Any:
 
 
 def _legs(
-    plan: BowlPlan, kit: Any, ends: list[float], changes: Iterable[float]
+    plan: BowlPlan, kit: ModuleType, ends: list[float], changes: Iterable[float]
 ) -> Iterator[tuple[float, float]]:
     """From and to [m] of each piece between ends, changes within them, and turns too long for one face."""
     turned = plan.path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
     return itertools.pairwise(sorted({*ends, *(at for at in (*changes, *turned) if ends[0] < at < ends[-1])}))
 
 
-def steps(plan: BowlPlan, kit: Any, start: float, end: float) -> Floats:
+def steps(plan: BowlPlan, kit: ModuleType, start: float, end: float) -> Floats:
     """Return the lengths (M,) [m] along the wall at which a piece of track has its sections.
 
     Of facets they are those of the wall's own facets, and both ends; of exact faces the places that a curve
@@ -84,7 +85,7 @@ def frames(plan: BowlPlan, s: Floats) -> Floats:
     return np.stack([plan.path.plan(s, 0.0), outward], axis=1)
 
 
-def _strips(plan: BowlPlan, kit: Any) -> int:
+def _strips(plan: BowlPlan, kit: ModuleType) -> int:
     """Into how many strips the track is divided across, so that its twist stays within the chord."""
     if kit.HAS_EXACT_CURVES:
         return 1
@@ -123,7 +124,7 @@ def _sections(plan: BowlPlan, s: Floats, heights: Floats, strips: int) -> Floats
     return sections
 
 
-def ledges(plan: BowlPlan, kit: Any) -> list[Any]:
+def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     """Return the ledges along the wall that stand on the track which goes on lower beside them.
 
     A ledge begins within the plate before it, a little lower, and ends within the plate below it.
@@ -146,12 +147,12 @@ def ledges(plan: BowlPlan, kit: Any) -> list[Any]:
     return bodies
 
 
-def drum(plan: BowlPlan, kit: Any, radius: float, low: float, high: float) -> Any:
+def drum(plan: BowlPlan, kit: ModuleType, radius: float, low: float, high: float) -> Body:
     """Return a cylinder about the axis between two heights [m], its facets those of the wall."""
     return kit.turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], plan.segments)
 
 
-def sides(plan: BowlPlan, kit: Any) -> list[Any]:
+def sides(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
     path, wall, height = plan.path, plan.material.wall, plan.outlet_height
     end = path.end + plan.outlet
@@ -173,7 +174,7 @@ def _cuts(plan: BowlPlan, hang: bool) -> tuple[TrackHole, ...]:
     return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if cut.hangs == hang)
 
 
-def holes(plan: BowlPlan, kit: Any, *, hang: bool) -> list[Any]:
+def holes(plan: BowlPlan, kit: ModuleType, *, hang: bool) -> list[Body]:
     """Return what cuts take out of the track: those in which parts hang, or the others.
 
     The former go on from their device to the end of the outlet, open there.
@@ -190,7 +191,7 @@ def holes(plan: BowlPlan, kit: Any, *, hang: bool) -> list[Any]:
     return solid
 
 
-def yokes(plan: BowlPlan, kit: Any) -> list[Any]:
+def yokes(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     """Return the brackets that carry the inner rail from below, behind the stretch that sorts.
 
     They lie so deep that parts hang free over them.
@@ -222,7 +223,7 @@ STRIPS = 8  # of the face upwards: its facets are about as wide as high where it
 MAX_GROOVE_WALL_RAD = 0.85 * FULL_TURN_RAD  # [rad] before the outlet: above it the bowl's wall is open
 
 
-def groove_walls(plan: BowlPlan, kit: Any) -> tuple[list[Any], list[Any]]:
+def groove_walls(plan: BowlPlan, kit: ModuleType) -> tuple[list[Body], list[Body]]:
     """Return what grooves take from the bowl's wall, and their own walls: lists of bodies [mm]."""
     path, wide = plan.path, plan.headroom + GROOVE_WALL_MARGIN_M
     strips = 1 if kit.HAS_EXACT_CURVES else STRIPS
@@ -266,7 +267,7 @@ def groove_spans(plan: BowlPlan) -> list[Groove]:
     ]
 
 
-def lean_at(groove: Groove, s: Any) -> Any:
+def lean_at(groove: Groove, s: Values) -> Values:
     """Return by how much [rad] the wall of a groove leans back from upright at lengths s."""
     start, end, lean, opens = groove
     share = np.clip((s - start) / opens, 0.0, 1.0) * (1.0 - np.clip((s - end) / opens, 0.0, 1.0))

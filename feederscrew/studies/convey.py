@@ -148,9 +148,9 @@ def along_radius(bowl: Bowl) -> ConveyCurve:
     """
     there = answer.inwards(bowl)
     axes = (
-        grids.GridAxis("radius_mm", there.track.radius, MM),
-        grids.GridAxis("vibration_angle_deg", there.drive.vibration_angle, DEG),
-        grids.GridAxis("amplitude_mm", there.drive.amplitude, MM),
+        grids.GridAxis("radius_mm", np.asarray(there.track.radius), MM),
+        grids.GridAxis("vibration_angle_deg", np.asarray(there.drive.vibration_angle), DEG),
+        grids.GridAxis("amplitude_mm", np.asarray(there.drive.amplitude), MM),
     )
     return ConveyCurve("radius", "the radius", axes, answer.cells(there))
 

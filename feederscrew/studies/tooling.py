@@ -277,7 +277,10 @@ def tooling(
     )  # fmt: skip
     for kind in leaning():  # the stretch that makes gaps in this bowl, where it may be used and makes some
         steeper = kind.parting(DESIGN_KEY) if may_use.allows(kind.kind) else None
-        if steeper is not None and travel_speed(steeper.onward(bowl)) > travel_speed(bowl):
+        if steeper is None:
+            continue
+        track = replace(bowl.track, climb=steeper.angle)
+        if travel_speed(replace(bowl, track=track)) > travel_speed(bowl):
             may_use = replace(may_use, separation=steeper)
             break
     request = {"purity": purity, "efficiency": efficiency, "before": bowl.devices, "constraints": may_use}

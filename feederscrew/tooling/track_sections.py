@@ -112,7 +112,7 @@ def build_section(
             blade=blade,
             openings=tuple(rings),
             top=0.0 if gate is None else max(tallest, gate.bounds[3]) + GATE_FRAME_M,
-            drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
+            drop=lower[0] if lower[1] <= 0.0 else 0.0,
             edge=device.edge(start, length, width),
             wall=lean,
             standing=standing,

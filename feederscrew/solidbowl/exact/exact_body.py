@@ -7,18 +7,20 @@ cubic spline through places every 0.1 rad: within 1e-4 mm of the helix for a bow
 import contextlib
 import contextvars
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
 from feederscrew.arrays import Ints, Points
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.geometry.vectors import product
 from feederscrew.heavy import heavy
-from feederscrew.solidbowl.facets import in_space
+from feederscrew.solidbowl.facets import Body, in_space
+from feederscrew.solidbowl.plan import TrackPath
 from feederscrew.units import MM
 
 BRepAdaptor = heavy("OCP.BRepAdaptor")
@@ -37,6 +39,8 @@ TopExp = heavy("OCP.TopExp")
 TopoDS = heavy("OCP.TopoDS")
 gp = heavy("OCP.gp")
 
+Handle = Any  # a point, an axis, a curve or an array of OpenCASCADE
+Spline = tuple[Points, Points, Ints, int]  # poles (N, 3), knots, multiplicities, degree
 SEWN = 1e-5  # [mm] edges nearer than this are one
 CURVE_STEP_RAD = 0.05  # [rad] of a curve between two places that it is led through
 HAS_EXACT_CURVES = True  # a curve is a curve
@@ -65,22 +69,22 @@ def meeting(near: float) -> Iterator[None]:
         _near.reset(before)
 
 
-def axis() -> Any:
+def axis() -> Handle:
     """Return the Z axis."""
     return gp.gp_Ax1(point([0, 0, 0]), gp.gp_Dir(0, 0, 1))
 
 
-def point(place: Any) -> Any:
+def point(place: Iterable[float]) -> Handle:
     """Return a place (3,) [mm]."""
     return gp.gp_Pnt(*map(float, place))
 
 
-def cast(kind: str, shape: Any) -> Any:
+def cast(kind: str, shape: Body) -> Body:
     """Return a shape as what it is: 'Face', 'Wire', 'Shell'."""
     return (getattr(TopoDS.TopoDS, f"{kind}_s", None) or getattr(TopoDS.TopoDS, kind))(shape)
 
 
-def parts(body: Any, kind: Any) -> list[Any]:
+def parts(body: Body, kind: Handle) -> list[Body]:
     """Return the parts of a kind that a body has, a list."""
     parts, walk = [], TopExp.TopExp_Explorer(body, kind)
     while walk.More():
@@ -89,7 +93,7 @@ def parts(body: Any, kind: Any) -> list[Any]:
     return parts
 
 
-def polygon(corners: Points) -> Any:
+def polygon(corners: Points) -> Body:
     """Return the closed outline through corners (K, 3) [mm]."""
     wire = BRepBuilderAPI.BRepBuilderAPI_MakePolygon()
     for corner in corners:
@@ -98,12 +102,12 @@ def polygon(corners: Points) -> Any:
     return wire.Wire()
 
 
-def flat_face(corners: Points) -> Any:
+def flat_face(corners: Points) -> Body:
     """Return the flat face within corners (K, 3) [mm]."""
     return BRepBuilderAPI.BRepBuilderAPI_MakeFace(polygon(corners), True).Face()
 
 
-def drawn(wires: list[Any], along: Any) -> Any:
+def drawn(wires: list[Body], along: Iterable[float]) -> Body:
     """Return the body that a flat outline, holes after it, leaves along a vector (3,) [mm]."""
     face = BRepBuilderAPI.BRepBuilderAPI_MakeFace(wires[0], True)
     for hole in wires[1:]:
@@ -111,12 +115,12 @@ def drawn(wires: list[Any], along: Any) -> Any:
     return outwards(BRepPrimAPI.BRepPrimAPI_MakePrism(face.Face(), gp.gp_Vec(*map(float, along))).Shape())
 
 
-def outwards(body: Any) -> Any:
+def outwards(body: Body) -> Body:
     """Return a body, turned inside out where its volume is negative."""
     return body if volume(body) > 0.0 else body.Reversed()
 
 
-def side(path: Any, start: Points, stop: Points, z: float) -> Any:
+def side(path: TrackPath, start: Points, stop: Points, z: float) -> Body:
     """Return a side of a ring as an edge: a straight line, an arc of a circle, or else a spline."""
     if min(start[0], stop[0]) >= path.end - 1e-12 or abs(start[0] - stop[0]) < 1e-9:
         ends = path.plan(*np.array([start, stop]).T) / MM
@@ -130,21 +134,21 @@ def side(path: Any, start: Points, stop: Points, z: float) -> Any:
     return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(curve).Edge()
 
 
-def spline_curve(places: Points) -> Any:
+def spline_curve(places: Points) -> Handle:
     """Return a spline through places (M, 3) [mm] as a curve."""
     poles, knots, often, degree = spline(places)
     along = row("double", knots.tolist()), row("int", often.tolist())
     return Geom.Geom_BSplineCurve(row("gp_Pnt", map(point, poles)), *along, degree)
 
 
-def spline(places: Points) -> tuple[Points, Points, Ints, int]:
+def spline(places: Points) -> Spline:
     """Return poles (N, 3), knots, multiplicities and degree of a spline through places (M, 3)."""
     degree = min(3, len(places) - 1)
     curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
     return curve.c, *np.unique(curve.t, return_counts=True), degree
 
 
-def ruled(lower: Any, upper: Any) -> Any:
+def ruled(lower: Spline, upper: Spline) -> Body:
     """Return the face between two splines of the same knots."""
     poles, knots, often, degree = lower
     grid = arrays.Array2_gp_Pnt(1, len(poles), 1, 2)
@@ -157,7 +161,7 @@ def ruled(lower: Any, upper: Any) -> Any:
     return BRepBuilderAPI.BRepBuilderAPI_MakeFace(surface, SEWN).Face()
 
 
-def row(kind: str, values: Iterable[Any]) -> Any:
+def row(kind: str, values: Iterable[object]) -> Handle:
     """Return values as the kernel's array of 'double', 'int' or 'gp_Pnt'."""
     values = list(values)
     row_kind = getattr(arrays, f"Array1_{kind}")(1, len(values))
@@ -166,7 +170,7 @@ def row(kind: str, values: Iterable[Any]) -> Any:
     return row_kind
 
 
-def volume(body: Any) -> float:
+def volume(body: Body) -> float:
     """Return the volume [mm3] of a body."""
     properties, door = GProp.GProp_GProps(), BRepGProp.BRepGProp
     measure = getattr(door, "VolumeProperties_s", None) or door.VolumeProperties
@@ -174,7 +178,7 @@ def volume(body: Any) -> float:
     return float(properties.Mass())
 
 
-def kinds(body: Any) -> dict[str, int]:
+def kinds(body: Body) -> dict[str, int]:
     """Return how many faces of a body are planes, cylinders, cones and ruled splines, a dict."""
     names = {"Plane": "planes", "Cylinder": "cylinders", "Cone": "cones", "BSplineSurface": "ruled"}
     surface_kinds = dict.fromkeys(names.values(), 0)
@@ -185,12 +189,12 @@ def kinds(body: Any) -> dict[str, int]:
     return surface_kinds
 
 
-def valid(body: Any) -> bool:
+def valid(body: Body) -> bool:
     """Say whether OpenCASCADE finds nothing wrong with a body."""
     return bool(BRepCheck.BRepCheck_Analyzer(body).IsValid())
 
 
-def below(body: Any, place: Points) -> float | None:
+def below(body: Body, place: Points) -> float | None:
     """Return the height [mm] of the first surface straight below a place (3,) [mm]; None without one."""
     intersector = IntCurvesFace.IntCurvesFace_ShapeIntersector()
     intersector.Load(body, 1e-6)
@@ -199,11 +203,11 @@ def below(body: Any, place: Points) -> float | None:
     return max(heights, default=None)
 
 
-def swept(legs: Any) -> Any:
+def swept(legs: Sequence[tuple[Points, Points]]) -> Body:
     """Return a body whose section is handed on from frame to frame; as ``facets.swept``."""
-    legs = [in_space(*leg) / MM for leg in legs]
-    faces = [flat_face(legs[0][0][::-1]), flat_face(legs[-1][-1])]
-    for leg in legs:
+    rows = [in_space(*leg) / MM for leg in legs]
+    faces = [flat_face(rows[0][0][::-1]), flat_face(rows[-1][-1])]
+    for leg in rows:
         borders = [spline(leg[:, k]) for k in range(leg.shape[1])]
         faces += [ruled(border, other) for border, other in zip(borders, [*borders[1:], borders[0]])]
     sewing = BRepBuilderAPI.BRepBuilderAPI_Sewing(SEWN)
@@ -214,7 +218,9 @@ def swept(legs: Any) -> Any:
     return outwards(BRepBuilderAPI.BRepBuilderAPI_MakeSolid(cast("Shell", shell)).Solid())
 
 
-def turned(profile: Any, segments: int, start: float = SEAM_ANGLE_RAD, angle: float = 2.0 * np.pi) -> Any:
+def turned(
+    profile: ArrayLike, segments: int, start: float = SEAM_ANGLE_RAD, angle: float = 2.0 * np.pi
+) -> Body:
     """Return a body of revolution about Z of radius and height (K, 2) [m], over an ``angle`` [rad].
 
     It begins at an angle ``start`` [rad]; ``segments`` is for ``facets`` alone.
@@ -224,32 +230,32 @@ def turned(profile: Any, segments: int, start: float = SEAM_ANGLE_RAD, angle: fl
     return outwards(BRepPrimAPI.BRepPrimAPI_MakeRevol(face, axis(), float(angle)).Shape())
 
 
-def disc(at: Any, size: float, low: float, high: float) -> Any:
+def disc(at: Sequence[float], size: float, low: float, high: float) -> Body:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
     seam = gp.gp_Dir(float(np.cos(SEAM_ANGLE_RAD)), float(np.sin(SEAM_ANGLE_RAD)), 0.0)
     foot = gp.gp_Ax2(point([at[0] / MM, at[1] / MM, low / MM]), gp.gp_Dir(0, 0, 1), seam)
     return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
 
 
-def bore(place: Any, towards: Any, size: float, deep: float) -> Any:
+def bore(place: ArrayLike, towards: Iterable[float], size: float, deep: float) -> Body:
     """Return a round rod along a unit vector (3,): its near end (3,), diameter and length [m]."""
     foot = gp.gp_Ax2(point(np.asarray(place) / MM), gp.gp_Dir(*map(float, towards)))
     return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, deep / MM).Shape()
 
 
-def plank(area: Any, thickness: float, axes: Any, foot: Any) -> Any:
+def plank(area: shapely.Geometry, thickness: float, axes: Points, foot: ArrayLike) -> Body:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
     solid = []
     for area_part in shapely.get_parts(area):
         if area_part.geom_type == "Polygon":
             area_part = shapely.geometry.polygon.orient(area_part)
             rings = [np.asarray(ring.coords)[:-1] for ring in (area_part.exterior, *area_part.interiors)]
-            wires = [polygon((foot + product(ring, np.asarray(axes)[:, :2].T)) / MM) for ring in rings]
-            solid.append(drawn(wires, thickness / MM * np.asarray(axes)[:, 2]))
+            wires = [polygon((np.asarray(foot) + product(ring, axes[:, :2].T)) / MM) for ring in rings]
+            solid.append(drawn(wires, thickness / MM * axes[:, 2]))
     return solid[0] if len(solid) == 1 else united(solid)
 
 
-def patch(ring: Points, low: float, high: float) -> Any:
+def patch(ring: Points, low: float, high: float) -> Body:
     """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
     half = len(ring) // 2
     wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
@@ -259,7 +265,7 @@ def patch(ring: Points, low: float, high: float) -> Any:
     return drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
 
 
-def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
+def over(path: TrackPath, ring: Points, low: float, high: float, chord: float) -> Body:
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
     wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
     for a, b in zip(ring, np.roll(ring, -1, axis=0)):
@@ -272,7 +278,7 @@ def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
     return drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
 
 
-def united(bodies: list[Any]) -> Any:
+def united(bodies: list[Body]) -> Body:
     """Return the union of bodies, one after the other."""
     whole, *rest = bodies
     for other in rest:
@@ -280,19 +286,19 @@ def united(bodies: list[Any]) -> Any:
     return whole
 
 
-def without(body: Any, tools: list[Any]) -> Any:
+def without(body: Body, tools: list[Body]) -> Body:
     """Return a body with others cut out of it."""
     return _combined(BRepAlgoAPI.BRepAlgoAPI_Cut, body, tools) if tools else body
 
 
-def above(body: Any, height: float) -> Any:
+def above(body: Body, height: float) -> Body:
     """Return what of a body lies above a height [m]."""
     far = 10.0  # beyond everything
     under = plank(shapely.box(-far, -far, far, far), height + far, np.eye(3), [0.0, 0.0, -far])
     return without(body, [under])
 
 
-def placed_as(body: Any, *, mirrored: bool, turned: float) -> Any:
+def placed_as(body: Body, *, mirrored: bool, turned: float) -> Body:
     """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
     turn, flip = gp.gp_Trsf(), gp.gp_Trsf()
     turn.SetRotation(axis(), float(turned))
@@ -301,14 +307,14 @@ def placed_as(body: Any, *, mirrored: bool, turned: float) -> Any:
     return BRepBuilderAPI.BRepBuilderAPI_Transform(body, turn.Multiplied(flip), True).Shape()
 
 
-def moved(body: Any, by: Any) -> Any:
+def moved(body: Body, by: Iterable[float]) -> Body:
     """Return a body moved by a vector (3,) [mm]."""
     shift = gp.gp_Trsf()
     shift.SetTranslation(gp.gp_Vec(*map(float, by)))
     return BRepBuilderAPI.BRepBuilderAPI_Transform(body, shift, True).Shape()
 
 
-def one_piece(body: Any, where: str) -> Any:
+def one_piece(body: Body, where: str) -> Body:
     """Return the one piece of a body; as ``facets.one_piece``."""
     pieces = sorted(parts(body, TopAbs.TopAbs_SOLID), key=lambda item: -volume(item))
     if not pieces or any(volume(piece) > MIN_PIECE_VOLUME_MM3 for piece in pieces[1:]):
@@ -316,7 +322,7 @@ def one_piece(body: Any, where: str) -> Any:
     return pieces[0]
 
 
-def _combined(kind: Any, body: Any, tools: list[Any]) -> Any:
+def _combined(kind: Callable[[], Handle], body: Body, tools: list[Body]) -> Body:
     solid, lists = kind(), (arrays.List_TopoDS_Shape(), arrays.List_TopoDS_Shape())
     lists[0].Append(body)
     for tool in tools:

@@ -5,7 +5,6 @@ import re
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import shapely
@@ -14,6 +13,7 @@ from feederscrew.errors import FeederError
 from feederscrew.heavy import heavy
 from feederscrew.solidbowl.closed_body import BowlSolid, pieces
 from feederscrew.solidbowl.exact import exact_body
+from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import TrackPath
 from feederscrew.tooling.solid import leaning_profile, section_pieces, solid
 from feederscrew.tooling.track_sections import TrackSection
@@ -94,7 +94,7 @@ def _refused(what: str) -> FeederError:
     return FeederError("bowl.step", f"OpenCASCADE {what}", "take bowl.stl or bowl.3mf")
 
 
-def step_bytes(bodies: list[Any], name: str) -> bytes:
+def step_bytes(bodies: list[Body], name: str) -> bytes:
     """Return bodies of OpenCASCADE [mm] as the bytes of a STEP file without a date, of products of a name.
 
     Raises FeederError if OpenCASCADE does not take one of them.
@@ -134,7 +134,7 @@ def section_file(section: TrackSection) -> bytes:
     raise FeederError("tooling.step", what, "take tooling.stl")
 
 
-def section_body(section: TrackSection) -> Any:
+def section_body(section: TrackSection) -> Body:
     """Return the section as a body of OpenCASCADE [mm]; for its axes see ``section_file``."""
     radius = section.track.radius
     pieces, path = section_pieces(section, BESIDE_WALL_M), TrackPath(radius, 0.0, 0.0, 2.0 * section.length)

@@ -7,17 +7,27 @@ track. A device hands over one `Standing`: holes, blades, slopes, jets and a sen
 
 import math
 import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 import shapely
 
 from feederscrew import units
 from feederscrew import value_forms as forms
+from feederscrew.arrays import Points
+from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import orientation_names, values
+from feederscrew.tooling.devices.values import Corner
 from feederscrew.units import MM
+
+if TYPE_CHECKING:
+    from feederscrew.bowl.record import Track
+    from feederscrew.tooling.devices.openings import HoleEdges
+    from feederscrew.tooling.orientations import Orientation
+    from feederscrew.tooling.verdicts import DeviceEncounter
 
 BLADE = 1.5e-3  # [m] thickness of a blade
 GATE_FRAME_M = 5e-3  # [m] of a gate above its opening
@@ -36,7 +46,7 @@ DRAWN_LINE_M = 2e-4  # [m] the width with which a line along or across the track
 class Blade:
     """An upright plate on or over the track, at any angle to it."""
 
-    solid: object  # shapely: of its face [m], along the face from its foot, height over the track
+    solid: shapely.Geometry  # of its face [m], along the face from its foot, height over the track
     foot: tuple[float, float] = (0.0, 0.0)  # [m] x, y where the face begins
     heading: float = 0.5 * np.pi  # [rad] from the track's direction; less than a right angle is swept back
     thickness: float = BLADE  # [m] behind the face
@@ -72,7 +82,7 @@ class Sensor:
 
     at: float  # [m] x
     sees: str  # 'outline' from above, 'side' from the bowl's axis, 'height' or 'relief'
-    wanted: tuple  # of Orientation: what is like any of them passes
+    wanted: "tuple[Orientation, ...]"  # what is like any of them passes
     play: float  # [m] what is seen to differ by less passes
     resolution: float  # [m] to which it sees
 
@@ -83,7 +93,7 @@ class Standing:
 
     length: float = 0.0  # [m] of the device along the wall
     # (K, 2) [m] x, y of each; open into the wall where y <= 0, at the free edge where y >= width
-    holes: tuple[np.ndarray, ...] = ()
+    holes: tuple[Points, ...] = ()
     blades: tuple[Blade, ...] = ()
     slopes: tuple[Slope, ...] = ()
     jets: tuple[Jet, ...] = ()
@@ -167,11 +177,11 @@ class Device:
     # -- as it is read and written
 
     @staticmethod
-    def read(entry) -> dict[str, Any]:
+    def read(entry: Entry) -> dict[str, Any]:
         """Return what an entry of a bowl file gives of the fields: by default a length."""
         return values.length(entry)
 
-    def misfits(self, width) -> list[ConfigError]:
+    def misfits(self, width: float) -> list[ConfigError]:
         """Return what is wrong with it on a track of some width [m]."""
         return []
 
@@ -179,11 +189,11 @@ class Device:
         """Return its value as a bowl file has it, with every attribute that is not as by default."""
         return length_text(self.limit)
 
-    def rewritten(self) -> "Device":
+    def rewritten(self) -> Self:
         """Return it with the text of its own attributes."""
         return replace(self, text=self.value_text())
 
-    def valued(self, limit) -> "Device":
+    def valued(self, limit: float) -> Self:
         """Return it with another value [m], and with the text of that."""
         return replace(self, limit=limit).rewritten()
 
@@ -236,16 +246,18 @@ class Device:
         """What a shop buys and sets for it, a sentence each: sensor, nozzles, valve; () of plain steel."""
         return ()
 
-    def hole_faults(self, width, first, last, endless=True) -> list[ConfigError]:
+    def hole_faults(
+        self, width: float, near: float, far: float, *, endless: bool = True
+    ) -> list[ConfigError]:
         """Return what is wrong with a hole between two distances off the wall of a track of a width [m].
 
         ``endless``: it goes on along the track, so that one as wide as the track leaves none.
         """
         wide, faults = f"the track is {1e3 * width:.4g} mm wide", []
-        if endless and first <= 0.0 and last >= width:
+        if endless and near <= 0.0 and far >= width:
             what = f"{self.kind} leaves no track: {wide}"
             faults.append(ConfigError(self.where, what, "give a smaller one, or a wider track"))
-        if first >= width or last <= 0.0:
+        if near >= width or far <= 0.0:
             what = f"{self.kind} lies beside the track: {wide}"
             faults.append(ConfigError(self.where, what, "move it onto the track"))
         return faults
@@ -253,33 +265,33 @@ class Device:
     # -- as a design tries it
 
     @classmethod
-    def needed(cls, orientation) -> float:
+    def needed(cls, orientation: "Orientation") -> float:
         """Return the value [m] of a device of this kind that an orientation just passes."""
         if not cls.limited_by:
             raise NotImplementedError(f"{cls.kind} is not one number")
         return getattr(orientation, cls.limited_by)
 
     @classmethod
-    def proposal(cls, where, limit) -> "Device":
+    def proposal(cls, where: str, limit: float) -> Self:
         """Return the device of a value [m] that a design tries."""
         return cls(where, limit=limit)
 
     @classmethod
-    def relieving(cls, wanted, margin, where) -> "Device | None":
+    def relieving(cls, wanted: "Sequence[Orientation]", margin: float, where: str) -> "Device | None":
         """Return the device before the tooling at which orientations leave where they back up, or None."""
         return None
 
     # -- as it stands on the track
 
-    def span_on(self, track) -> Any:
+    def span_on(self, track: "Track") -> tuple[float, ...] | None:
         """Return from where to where (m, m) off the wall it takes the track away along its way, or None."""
         return None
 
-    def hole_on(self, track) -> Any:
+    def hole_on(self, track: "Track") -> "HoleEdges | None":
         """Return the HoleEdges of what it cuts, if that has an edge across the track, or None."""
         return None
 
-    def outline_on(self, track, length) -> Any:
+    def outline_on(self, track: "Track", length: float) -> Points | None:
         """Return what it cuts away of a track, unrolled from its start, (K, 2) [m], or None.
 
         ``length`` [m] is that of a device that goes on along the track.
@@ -287,30 +299,30 @@ class Device:
         span = self.span_on(track)
         return None if span is None else box_ring(0.0, length, *span)
 
-    def goes_on(self, width) -> float:
+    def goes_on(self, width: float) -> float:
         """Return how far along a track of some width it goes beyond the room every device has [m]."""
         return 0.0
 
-    def footprint(self, place, width, thick) -> np.ndarray:
+    def footprint(self, place: float, width: float, thick: float) -> Points:
         """Return where a blade of some thickness stands, unrolled, (4, 2) [m]: straight across the track."""
         return box_ring(place, place + thick, 0.0, width)
 
-    def opening(self, orientations, width) -> Any:
+    def opening(self, orientations: "Sequence[Orientation]", width: float) -> shapely.Geometry | None:
         """Return a gate's opening on a track of a width [m]: shapely, off the wall and upwards; or None.
 
         ``orientations`` are those of the part, which an opening may name.
         """
         return None
 
-    def lower(self, orientations) -> Any:
-        """Return the track that goes on lower, (drop, from where off the wall) [m], or None."""
-        return None
+    def lower(self, orientations: "Sequence[Orientation]") -> tuple[float, float]:
+        """Return by how much and from where off the wall on the track goes on lower [m]."""
+        return 0.0, 0.0
 
-    def edge(self, start, length, width) -> np.ndarray | None:
+    def edge(self, start: float, length: float, width: float) -> Points | None:
         """Return the edge over which parts turn, or what is drawn of it, unrolled, (4, 2) [m], or None."""
         return None
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         """Return all that stands along the track at it: for the trial, drawings and solids.
 
         The longest of the part's orientations sets how long one is that goes on along the track.
@@ -343,11 +355,11 @@ class Device:
 
     # -- what it does with parts
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         """Return what it does with the orientation of a DeviceEncounter, by what statics knows of it."""
         return encounter.passing()
 
-    def fate(self, encounter) -> str:
+    def fate(self, encounter: "DeviceEncounter") -> str:
         """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it."""
         if self.rejected:
             return self.rejected
@@ -358,11 +370,11 @@ class Device:
             return STOPPED  # it hangs in the slot up to its end
         return RETURNED if cut is None or encounter.falls_through(cut) else STOPPED
 
-    def onward(self, orientation) -> Any:
+    def onward(self, orientation: "Orientation") -> "Orientation":
         """Return an orientation that it lets pass as it goes on behind it."""
         return orientation
 
-    def hop_blur(self, orientation) -> float:
+    def hop_blur(self, orientation: "Orientation") -> float:
         """Return what the hop of an orientation takes of its margin [m].
 
         Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
@@ -370,51 +382,51 @@ class Device:
         """
         return orientation.flight if type(self).hole_on is not Device.hole_on else orientation.hop
 
-    def gap(self, orientation, speed) -> float:
+    def gap(self, orientation: "Orientation", speed: float) -> float:
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
         return 0.0
 
-    def acts(self, track) -> bool:
+    def acts(self, track: "Track") -> bool:
         """Return whether it does anything at all on a track."""
         return True
 
-    def more(self, encounter) -> float:
+    def more(self, encounter: "DeviceEncounter") -> float:
         """Return by how much more [m] an orientation that travels passes it than one that is placed."""
         return 0.0
 
 
-def box_ring(x0, x1, y0, y1) -> np.ndarray:
+def box_ring(x0: float, x1: float, y0: float, y1: float) -> Points:
     """Return the corners (4, 2) [m] of what lies between two places along the track and two across it."""
     return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
 
 
-def tall_of(orientations, least) -> float:
+def tall_of(orientations: "Sequence[Orientation]", least: float) -> float:
     """Return how tall [m] a gate is made: well over the tallest part, and a ``least`` height [m]."""
     return 2.0 * max(max(orientation.height for orientation in orientations), least) + GATE_FRAME_M
 
 
-def length_text(value) -> str:
+def length_text(value: float) -> str:
     """Return a length [m] as a bowl file has it, to a ten-thousandth of a millimetre: '9.25 mm'."""
     steps = value / WRITTEN_STEP_M
     return f"{(round(steps) if math.isfinite(steps) else steps) * WRITTEN_STEP_M / MM:.9g} mm"
 
 
-def degrees_words(angle) -> str:
+def degrees_words(angle: float) -> str:
     """Return an angle [rad] for people: '30 deg'."""
     return f"{math.degrees(angle):.4g} deg"
 
 
-def length_words(length) -> str:
+def length_words(length: float) -> str:
     """Return a length [m] for people: '8.35 mm'."""
     return f"{length / MM:.4g} mm"
 
 
-def span_words(span) -> str:
+def span_words(span: tuple[float, ...]) -> str:
     """Return a span [m] off the wall for people: 'from 2 to 5 mm off the wall'."""
     return f"from {span[0] / MM:.4g} to {span[1] / MM:.4g} mm off the wall"
 
 
-def keeps(orientations) -> str:
+def keeps(orientations: Iterable[tuple[str, float]]) -> str:
     """Return aspects and headings [rad] in words: 'A at heading 188 and 354 deg, B at heading 90 deg'."""
     headings: dict[str, list[str]] = {}
     for aspect, heading in orientations:
@@ -422,32 +434,32 @@ def keeps(orientations) -> str:
     return units.listed([f"{name} at heading {units.listed(turns)} deg" for name, turns in headings.items()])
 
 
-def angle_text(value) -> str:
+def angle_text(value: float) -> str:
     """Return an angle [rad] as a bowl file has it: '30 deg'."""
     return f"{math.degrees(value):.9g} deg"
 
 
-def corners_text(corners) -> str:
+def corners_text(corners: Sequence[Corner]) -> str:
     """Return corners [m] as a bowl file has them."""
     return f"[{', '.join(f'[{length_text(x)}, {length_text(y)}]' for x, y in corners)}]"
 
 
-def mapping_text(entries) -> str:
+def mapping_text(entries: Iterable[tuple[str, str]]) -> str:
     """Return pairs of a key and a text as a bowl file has them on one line; without those of no text."""
     return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
 
-def size_of(orientation) -> float:
+def size_of(orientation: "Orientation") -> float:
     """Return the greatest length [m] of an orientation in the plane of the track or across it."""
     return float(np.hypot(orientation.length, max(orientation.width, orientation.height)))
 
 
-def room_of(orientations) -> float:
+def room_of(orientations: "Sequence[Orientation]") -> float:
     """Return the length of track [m] that one has to itself, by the longest orientation."""
     return ROOM_PER_DEVICE * max(orientation.length for orientation in orientations)
 
 
-def share(margin, sigma) -> float:
+def share(margin: float, sigma: float) -> float:
     """Return the share that passes at a margin [m], its standard deviation being ``sigma`` [m].
 
     Source: the normal distribution of what a margin scatters by.
@@ -457,7 +469,7 @@ def share(margin, sigma) -> float:
     return float(margin >= -LIMIT_TOLERANCE_M)
 
 
-def carried(margin, travel, carry) -> float:
+def carried(margin: float, travel: float, carry: float) -> float:
     """Return the margin [m] of an orientation that travels, from that of one that is placed.
 
     What it travels on before it has tipped, ``carry`` [m], is taken from the way over which it is not
@@ -486,6 +498,6 @@ class Yield(Device):
     def value_words(self) -> str:
         return "passes " + ", ".join(f"{100.0 * share:.4g} % of {name}" for name, share in self.shares)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         shares = {name.casefold(): share for name, share in self.shares}
         return Verdict(shares.get(encounter.orientation.aspect.casefold(), 1.0), math.nan)

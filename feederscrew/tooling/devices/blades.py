@@ -2,13 +2,15 @@
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 import shapely
 
 from feederscrew import value_forms as forms
+from feederscrew.arrays import Points
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import orientation_names, values
 from feederscrew.tooling.devices.base import (
@@ -27,6 +29,12 @@ from feederscrew.tooling.devices.base import (
     room_of,
     tall_of,
 )
+from feederscrew.tooling.devices.values import Corner
+
+if TYPE_CHECKING:
+    from feederscrew.bowl.record import Track
+    from feederscrew.tooling.orientations import Orientation
+    from feederscrew.tooling.verdicts import DeviceEncounter
 
 SQUARE_FACE_RAD = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
 PROPOSED_SWEEP_RAD = math.radians(30.0)  # [rad] that a design tries: 20 to 35 deg clear fastest
@@ -50,14 +58,14 @@ class _Overhead(Device):
     picture: ClassVar[str] = "side"
     feature: ClassVar[str] = "height"
 
-    def opening(self, orientations, width) -> Any:
+    def opening(self, orientations: "Sequence[Orientation]", width: float) -> shapely.Geometry:
         return shapely.box(0.0, 0.0, width, self.limit)
 
     @property
     def value_words(self) -> str:
         return f"{length_words(self.limit)} over the track"
 
-    def judged(self, encounter, sweep=0.0) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter", sweep: float = 0.0) -> Verdict:
         margin = self.limit - encounter.orientation.height
         return encounter.verdict(encounter.unless_laid_over(margin, self.limit, sweep))
 
@@ -83,7 +91,7 @@ class Wiper(_Overhead):
 
     read = staticmethod(values.blade)
 
-    def misfits(self, width) -> list[ConfigError]:
+    def misfits(self, width: float) -> list[ConfigError]:
         heights = [height for _, height in self.contour]
         if all(later <= before for before, later in itertools.pairwise(heights)):
             return []
@@ -91,7 +99,7 @@ class Wiper(_Overhead):
         return [ConfigError(self.where, what, "let it stay level or fall")]
 
     @classmethod
-    def proposal(cls, where, limit) -> "Wiper":
+    def proposal(cls, where: str, limit: float) -> Self:
         return cls(where, limit=limit, sweep=PROPOSED_SWEEP_RAD)
 
     def value_text(self) -> str:
@@ -117,26 +125,26 @@ class Wiper(_Overhead):
         """Its sweep [rad] and friction [1], None: that of the track; None of one straight across."""
         return (self.sweep, self.friction) if self.sweep < SQUARE_FACE_RAD else None
 
-    def clear_of(self, grip) -> bool:
+    def clear_of(self, grip: float) -> bool:
         """Return whether its face sweeps parts off a track of some friction."""
         friction = grip if self.friction is None else self.friction
         return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
 
-    def fate(self, encounter) -> str:
+    def fate(self, encounter: "DeviceEncounter") -> str:
         clears = self.clear_of(encounter.grip) and not encounter.hanging  # rails hold what hangs
         return RETURNED if clears else super().fate(encounter)
 
-    def opening(self, orientations, width) -> Any:
+    def opening(self, orientations: "Sequence[Orientation]", width: float) -> shapely.Geometry:
         if not self.contour:
             return super().opening(orientations, width)
         return shapely.Polygon([(0.0, 0.0), *self._edge(width), (width, 0.0)])
 
-    def judged(self, encounter, sweep=0.0) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter", sweep: float = 0.0) -> Verdict:
         if not self.contour:
             return super().judged(encounter, self.sweep if self.face else 0.0)
         return encounter.verdict(encounter.through(self.opening(encounter.orientations, BEYOND_TRACK_M)))
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         room, lean = room_of(orientations), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
         tall = tall_of(orientations, edge[:, 1].max())
@@ -144,10 +152,10 @@ class Wiper(_Overhead):
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
         return Standing(0.5 * room + self.goes_on(track.extent), blades=(blade,))
 
-    def goes_on(self, width) -> float:
+    def goes_on(self, width: float) -> float:
         return 0.0 if self.face is None else width / math.tan(self.sweep)
 
-    def footprint(self, place, width, thick) -> np.ndarray:
+    def footprint(self, place: float, width: float, thick: float) -> Points:
         lean = self.goes_on(width)
         far = [[place + lean + thick, width], [place + lean, width]]
         return np.array([[place, 0.0], [place + thick, 0.0], *far])
@@ -157,7 +165,7 @@ class Wiper(_Overhead):
         own |= {} if self.friction is None else {"friction": self.friction}
         return super().document_values() | (own if self.face else {})
 
-    def _edge(self, width) -> list[tuple[float, float]]:
+    def _edge(self, width: float) -> list[Corner]:
         """Its lower edge from the wall to the free edge: distances and heights [m]."""
         if not self.contour:
             return [(0.0, self.limit), (width, self.limit)]
@@ -207,11 +215,11 @@ class Profile(Device):
         aspect, heading, play = self.like
         return mapping_text((("of", orientation_names.written(aspect, heading)), ("play", length_text(play))))
 
-    def opening(self, orientations, width) -> Any:
+    def opening(self, orientations: "Sequence[Orientation]", width: float) -> shapely.Geometry:
         free = self.free(orientations)
         return free.intersection(shapely.box(0.0, 0.0, width, MAX_OPENING_HEIGHT_M)) if self.like else free
 
-    def free(self, orientations) -> Any:
+    def free(self, orientations: "Sequence[Orientation]") -> shapely.Geometry:
         """Return the opening however wide the track is, in distances from the wall and heights [m]."""
         if not self.like:
             return shapely.Polygon(self.corners)
@@ -219,5 +227,5 @@ class Profile(Device):
         k = orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
         return orientations[k].view_ahead.buffer(play)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.verdict(encounter.through(self.free(encounter.orientations)))

@@ -2,10 +2,12 @@
 
 import importlib
 import pkgutil
+from collections.abc import Sequence
 from typing import Any
 
 from feederscrew.tooling import devices
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.leans import Lean
 
 # class by kind, in the order of the modules; rails, which end a chain, and what has no place last
 KINDS: dict[str, type[Device]] = {}
@@ -25,12 +27,12 @@ def register_kinds() -> dict[str, type[Device]]:
     return KINDS
 
 
-def make_device(kind, where, **values) -> Device:
+def make_device(kind: str, where: str, **values: Any) -> Device:
     """Return a device of a kind by its name."""
     return KINDS[kind](where, **values)
 
 
-def names(**traits) -> tuple[str, ...]:
+def names(**traits: object) -> tuple[str, ...]:
     """Return the names of the kinds that have some traits, such as ``hangs=True``: a tuple of str."""
     return tuple(
         name
@@ -39,19 +41,19 @@ def names(**traits) -> tuple[str, ...]:
     )
 
 
-def cost_class(devices) -> int:
+def cost_class(devices: Sequence[Device]) -> int:
     """Return what a chain takes, the dearest of its devices: 1 steel alone, 2 steady air, 3 a sensor."""
     return max((device.cost_class for device in devices), default=1)
 
 
-def dearer(cost) -> tuple[str, ...]:
+def dearer(cost: int) -> tuple[str, ...]:
     """Return the names of the kinds whose cost class is above one: a tuple of str."""
     return tuple(name for name, kind in KINDS.items() if kind.cost_class > cost)
 
 
-def leaning() -> tuple[Any, ...]:
+def leaning() -> tuple[type[Lean], ...]:
     """Return the kinds (type, ...) that lean the track."""
-    return tuple(kind for kind in KINDS.values() if kind.leans)
+    return tuple(kind for kind in KINDS.values() if issubclass(kind, Lean))
 
 
 register_kinds()

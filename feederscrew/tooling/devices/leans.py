@@ -1,12 +1,13 @@
 """Stretches of the track that lean otherwise: bank, separation on a steeper way, and the V of a groove."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from feederscrew import value_forms as forms
+from feederscrew.arrays import Points
+from feederscrew.documents import Entry
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import (
     DRAWN_LINE_M,
@@ -20,6 +21,11 @@ from feederscrew.tooling.devices.base import (
     mapping_text,
     room_of,
 )
+
+if TYPE_CHECKING:
+    from feederscrew.bowl.record import Track
+    from feederscrew.tooling.orientations import Orientation
+    from feederscrew.tooling.verdicts import DeviceEncounter
 
 MAX_BANK_RAD = math.radians(45.0)
 # [deg] of a bank that holds what rolls: the least, the greatest, and beyond the angle that just holds
@@ -45,7 +51,7 @@ class Lean(Device):
     limits: ClassVar[tuple[float, float]] = (0.0, MAX_BANK_RAD)  # [rad] of the angle
 
     @classmethod
-    def read(cls, entry) -> dict[str, Any]:
+    def read(cls, entry: Entry) -> dict[str, Any]:
         name, arguments = entry.key, {entry.key: entry}
         if cls.key:
             name, arguments = cls.key, values.mapping(entry, (cls.key,), f"write {cls.example}")
@@ -55,12 +61,12 @@ class Lean(Device):
         return mapping_text(((self.key, angle_text(self.angle)),)) if self.key else angle_text(self.angle)
 
     @classmethod
-    def of(cls, degrees, where) -> Device:
+    def of(cls, degrees: float, where: str) -> Self:
         """Return the stretch at an angle [deg]."""
         return cls(where, angle=math.radians(degrees)).rewritten()
 
     @classmethod
-    def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
+    def holding(cls, orientation: "Orientation", wall_friction: float, where: str) -> "tuple[Lean, ...]":
         """Return the devices, in order, that hold what rolls on the level; none where they cannot.
 
         ``wall_friction`` [1] is that of the wall, ``where`` what asks for it.
@@ -68,16 +74,16 @@ class Lean(Device):
         return ()
 
     @classmethod
-    def leanings(cls, orientation, where) -> list[tuple[Device, ...]]:
+    def leanings(cls, orientation: "Orientation", where: str) -> "list[tuple[Lean, ...]]":
         """Return other ways to lean the track for an orientation, devices in order each."""
         return []
 
     @classmethod
-    def parting(cls, where) -> Device | None:
+    def parting(cls, where: str) -> "Lean | None":
         """Return the stretch of track on which parts come apart, or None."""
         return None
 
-    def edge(self, start, length, width) -> np.ndarray:
+    def edge(self, start: float, length: float, width: float) -> Points:
         return box_ring(start, start + DRAWN_LINE_M, 0.0, width)
 
     def document_values(self) -> dict[str, Any]:
@@ -106,23 +112,23 @@ class Groove(Lean):
         return f"both faces rise at {degrees_words(self.angle)}"
 
     @classmethod
-    def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
+    def holding(cls, orientation: "Orientation", wall_friction: float, where: str) -> "tuple[Lean, ...]":
         return (cls.of(HOLDS, where), Bank.of(LEAST, where)) if orientation.rolls_along else ()
 
     @classmethod
-    def leanings(cls, orientation, where) -> list[tuple[Device, ...]]:
+    def leanings(cls, orientation: "Orientation", where: str) -> "list[tuple[Lean, ...]]":
         along = orientation.kind == "rolling" and orientation.rolls_along
         return [(cls.of(angle, where), Bank.of(LEAST, where)) for angle in ANGLES] if along else []
 
-    def onward(self, orientation) -> Any:
+    def onward(self, orientation: "Orientation") -> "Orientation":
         track = replace(orientation.track, bank=self.angle)
         rolls = orientation.may_roll_back and not orientation.rolls_along
         return replace(orientation, track=track, groove=self.angle, may_roll_back=rolls)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.laid_in_groove(self.angle)
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
         return Standing(GROOVE_ROOMS * room_of(orientations), slopes=(slope,))
 
@@ -147,22 +153,22 @@ class Bank(Lean):
         return f"{degrees_words(self.angle)} towards the wall"
 
     @classmethod
-    def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
+    def holding(cls, orientation: "Orientation", wall_friction: float, where: str) -> "tuple[Lean, ...]":
         steep = math.degrees(math.atan2(math.tan(max(orientation.track.climb, 0.0)), max(wall_friction, 0.0)))
         bank = max(LEAST, math.ceil(steep + MORE))
         return (cls.of(bank, where),) if wall_friction > 0.0 and bank <= MOST else ()
 
     @classmethod
-    def leanings(cls, orientation, where) -> list[tuple[Device, ...]]:
+    def leanings(cls, orientation: "Orientation", where: str) -> "list[tuple[Lean, ...]]":
         return [(cls.of(bank, where),) for bank in PROPOSED_BANKS_DEG]
 
-    def onward(self, orientation) -> Any:
+    def onward(self, orientation: "Orientation") -> "Orientation":
         track = replace(orientation.track, bank=self.angle)
         held = math.tan(track.climb) <= orientation.wall_grip * math.tan(self.angle)
         rolls = orientation.may_roll_back and not held
         return replace(orientation, track=track, groove=0.0, may_roll_back=rolls)
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         return Standing(0.5 * room_of(orientations), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
 
 
@@ -182,7 +188,7 @@ class Separation(Lean):
     key, limits = "climb", (-MAX_BANK_RAD, MAX_BANK_RAD)
 
     @classmethod
-    def parting(cls, where) -> Device:
+    def parting(cls, where: str) -> Lean:
         return cls.of(PARTING, where)
 
     @property
@@ -194,8 +200,8 @@ class Separation(Lean):
         """What it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
-    def onward(self, orientation) -> Any:
+    def onward(self, orientation: "Orientation") -> "Orientation":
         return replace(orientation, track=replace(orientation.track, climb=self.angle))
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         return Standing(room_of(orientations), slopes=(Slope(0.0, climb=self.angle),))

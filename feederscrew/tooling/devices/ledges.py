@@ -1,12 +1,15 @@
 """Edges along the track: step and tip turn parts over; narrowed track, canyon, slot; rails to hang on."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
 from feederscrew import value_forms as forms
+from feederscrew.arrays import Points
+from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import (
@@ -26,6 +29,11 @@ from feederscrew.tooling.devices.base import (
     span_words,
 )
 
+if TYPE_CHECKING:
+    from feederscrew.bowl.record import Track
+    from feederscrew.tooling.orientations import Hanging, Orientation
+    from feederscrew.tooling.verdicts import DeviceEncounter
+
 LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
 LOWER_TRACK_LENGTHS = 10.0  # of the part's size: how far the lower track goes on
 SETTLES = 2.0  # of the part's size: how far behind a turning device parts end
@@ -41,7 +49,7 @@ class _Turner(Device):
     turns: ClassVar[bool] = True
     picture: ClassVar[str] = "turned"
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         drop, aside = self.lower(orientations)
         far = LOWER_TRACK_LENGTHS * max(size_of(orientation) for orientation in orientations)
         cut = box_ring(0.0, far, aside, track.extent)
@@ -59,28 +67,28 @@ class Step(_Turner):
     )
     layer = "STEP"
 
-    def lower(self, orientations) -> tuple[float, float]:
+    def lower(self, orientations: "Sequence[Orientation]") -> tuple[float, float]:
         return self.limit, 0.0
 
-    def edge(self, start, length, width) -> np.ndarray:
+    def edge(self, start: float, length: float, width: float) -> Points:
         middle = start + 0.5 * length
         return box_ring(middle, middle + DRAWN_LINE_M, 0.0, width)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.turning(*encounter.pitched_over(self.limit))
 
     @classmethod
-    def changes(cls, often) -> list[float]:
+    def changes(cls, often: "Sequence[DeviceEncounter]") -> list[float]:
         """Return the values [m] at which it changes what it does in some DeviceEncounters."""
         turns = [encounter.pitched(False) for encounter in often]
         return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
 
 
 class _Ledge(Device):
-    def span_on(self, track) -> tuple[float, ...] | None:
+    def span_on(self, track: "Track") -> tuple[float, ...] | None:
         return (self.limit, track.extent) if self.limit < track.extent else None
 
-    def ledge_margin(self, encounter) -> float:
+    def ledge_margin(self, encounter: "DeviceEncounter") -> float:
         needed = encounter.orientation.balcony
         return self.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
 
@@ -99,13 +107,13 @@ class Tip(_Ledge, _Turner):
     layer = "LEDGE"
     inwards = True
 
-    def lower(self, orientations) -> tuple[float, float]:
+    def lower(self, orientations: "Sequence[Orientation]") -> tuple[float, float]:
         return below_ledge(orientations), self.limit
 
-    def edge(self, start, length, width) -> np.ndarray:
+    def edge(self, start: float, length: float, width: float) -> Points:
         return box_ring(start, start + length, self.limit, self.limit + DRAWN_LINE_M)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         margin = self.ledge_margin(encounter)
         beyond = 1.0 - encounter.share(margin)
         turned: tuple[tuple[int, float], ...] = ()
@@ -116,12 +124,12 @@ class Tip(_Ledge, _Turner):
         return encounter.turning(turned, margin)
 
     @classmethod
-    def changes(cls, often) -> list[float]:
+    def changes(cls, often: "Sequence[DeviceEncounter]") -> list[float]:
         """Return the values [m] at which it changes what it does in some DeviceEncounters."""
         return sorted({x for x in (one.orientation.balcony for one in often) if np.isfinite(x)})
 
 
-def below_ledge(orientations) -> float:
+def below_ledge(orientations: "Sequence[Orientation]") -> float:
     """Return how far below a ledge the second track lies [m]: half the part's greatest length.
 
     Source: own; docs/tooling.md, "4. Turning parts over".
@@ -137,7 +145,7 @@ class _Balcony(_Ledge):
     carries: ClassVar[bool] = True
     feature: ClassVar[str] = DISTANCE
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.verdict(self.ledge_margin(encounter))
 
 
@@ -153,7 +161,7 @@ class NarrowedTrack(_Balcony):
     proposed = True
     rank = 3
 
-    def acts(self, track) -> bool:
+    def acts(self, track: "Track") -> bool:
         return self.limit < track.width
 
 
@@ -171,7 +179,7 @@ class PressureBreak(_Balcony):
     relieves = True
 
     @classmethod
-    def relieving(cls, wanted, margin, where) -> Device | None:
+    def relieving(cls, wanted: "Sequence[Orientation]", margin: float, where: str) -> Device | None:
         """Return the break that carries some orientations by a margin [m], beside what their hop takes of it.
 
         None where one of them would not reach over the ledge, and so not leave it where they back up.
@@ -196,16 +204,16 @@ class Canyon(Device):
     feature = DISTANCE
     picture = "above"
 
-    def misfits(self, width) -> list[ConfigError]:
+    def misfits(self, width: float) -> list[ConfigError]:
         return self.hole_faults(width, 0.0, self.limit)
 
-    def span_on(self, track) -> tuple[float, ...]:
+    def span_on(self, track: "Track") -> tuple[float, ...]:
         return 0.0, self.limit
 
-    def more(self, encounter) -> float:
+    def more(self, encounter: "DeviceEncounter") -> float:
         return encounter.leans(self.limit)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         margin = encounter.orientation.canyon - self.limit
         return encounter.verdict(carried(margin, -margin, self.more(encounter) if margin < 0.0 else 0.0))
 
@@ -221,19 +229,19 @@ class Slot(Device):
     carries = True
 
     @classmethod
-    def read(cls, entry) -> dict[str, Any]:
+    def read(cls, entry: Entry) -> dict[str, Any]:
         return values.span(entry)[0]
 
     def value_text(self) -> str:
         return mapping_text(zip(("from", "to"), map(length_text, self.span)))
 
-    def misfits(self, width) -> list[ConfigError]:
+    def misfits(self, width: float) -> list[ConfigError]:
         return self.hole_faults(width, *self.span)
 
-    def span_on(self, track) -> tuple[float, ...]:
+    def span_on(self, track: "Track") -> tuple[float, ...]:
         return self.span
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.verdict(encounter.over_slot(self.span))
 
 
@@ -258,7 +266,7 @@ class Rails(Device):
     picture = "above"
 
     @classmethod
-    def read(cls, entry) -> dict[str, Any]:
+    def read(cls, entry: Entry) -> dict[str, Any]:
         span, arguments = values.span(entry, ("lead_in",))
         if "lead_in" not in arguments:
             return span
@@ -271,11 +279,11 @@ class Rails(Device):
             raise ConfigError(lead.value.where, what, "let it reach as far to both sides, or leave it out")
         return span | {"lead": (*own, *ends)}
 
-    def misfits(self, width) -> list[ConfigError]:
+    def misfits(self, width: float) -> list[ConfigError]:
         entry = self.hole_faults(width, *self.entry.span) if self.lead else []
         return self.hole_faults(width, *self.span) + entry
 
-    def span_on(self, track) -> tuple[float, ...]:
+    def span_on(self, track: "Track") -> tuple[float, ...]:
         return self.span
 
     @property
@@ -283,12 +291,12 @@ class Rails(Device):
         """The rails as parts meet them first: as wide as the lead-in, without one."""
         return replace(self, span=self.lead[:2], lead=()) if self.lead else self
 
-    def goes_on(self, width) -> float:
+    def goes_on(self, width: float) -> float:
         return sum(self.lead[2:])
 
-    def outline_on(self, track, length) -> Any:
+    def outline_on(self, track: "Track", length: float) -> Points:
         if not self.lead:
-            return super().outline_on(track, length)
+            return box_ring(0.0, length, *self.span)
         (low, high), (near, far, straight, taper) = self.span, self.lead
         end = max(length, straight + taper + 0.5 * length)
         ring = [
@@ -301,26 +309,26 @@ class Rails(Device):
             del ring[-3:-1]
         return np.array(ring)
 
-    def with_span(self, span, lead=None) -> Device:
+    def with_span(self, span: Sequence[float], lead: tuple[float, ...] | None = None) -> Device:
         """Return the rails with another slot [m] and, where given, another lead-in, written anew."""
         lead = self.lead if lead is None else lead
         if lead:
             lead = (min(lead[0], span[0]), max(lead[1], span[1]), *lead[2:])
         return replace(self, span=tuple(span), lead=tuple(lead)).rewritten()
 
-    def hop_blur(self, orientation) -> float:
+    def hop_blur(self, orientation: "Orientation") -> float:
         """Return nothing: its margins are widths of head, shank and slot, which a hop does not change."""
         return 0.0
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         size = max(size_of(orientation) for orientation in orientations)
         length = room_of(orientations) + self.goes_on(track.extent)
         holes = (self.outline_on(track, length + 2.0 * size),)
         return Standing(length, holes=holes, hangs=True, slot=self.span)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         if encounter.hanging:
-            return encounter.verdict(encounter.orientation.over(self.span))
+            return encounter.verdict(cast("Hanging", encounter.orientation).over(self.span))
         first = self.entry.span
         over = encounter.over_slot(first)
         stem = encounter.held_by_shoulders(self.span) if over < -UNSURE else -np.inf

@@ -1,16 +1,24 @@
 """Holes in the track about the bowl's axis, and the devices with an edge across it: gap and cut-out."""
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
 
 from feederscrew import check
 from feederscrew import value_forms as forms
+from feederscrew.arrays import Points
+from feederscrew.errors import ConfigError
 from feederscrew.geometry.compiled import frozen_rows, record_type
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import UNSURE, Device, Verdict, carried, corners_text
+from feederscrew.tooling.devices.values import Corner
+
+if TYPE_CHECKING:
+    from feederscrew.bowl.record import Track
+    from feederscrew.tooling.verdicts import DeviceEncounter
 
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
 FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
@@ -27,10 +35,10 @@ class HoleEdges(NamedTuple):
     """What is cut out of the track, about the bowl's axis."""
 
     edges: np.recarray  # (M,) HOLE_EDGE
-    nodes: np.ndarray  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
+    nodes: Points  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
 
 
-def polygon(corners, radius) -> HoleEdges:
+def polygon(corners: Points, radius: float) -> HoleEdges:
     """Return a hole about the bowl's axis from its unrolled polygon, straight edges when unrolled.
 
     ``corners`` (K, 2) [m] are lengths along the wall and distances from it, ``radius`` [m] is the wall's.
@@ -63,7 +71,7 @@ def polygon(corners, radius) -> HoleEdges:
     return HoleEdges(edges=frozen_rows(rows, HOLE_EDGE), nodes=np.array(nodes).reshape(-1, 3))
 
 
-def gap(length, radius, width) -> HoleEdges:
+def gap(length: float, radius: float, width: float) -> HoleEdges:
     """Return a gap across the track of a length [m]: the edge left is radial, the edge met parallel to it.
 
     It reaches from the wall, of a ``radius`` [m], as far as the ``width`` [m].
@@ -74,16 +82,16 @@ def gap(length, radius, width) -> HoleEdges:
     return HoleEdges(edges=frozen_rows([*rows, inner], HOLE_EDGE), nodes=np.empty((0, 3)))
 
 
-def _sides(corners) -> list[Any]:
+def _sides(corners: Sequence[Corner]) -> list[tuple[Corner, Corner]]:
     return list(zip(corners, (*corners[1:], corners[0])))
 
 
-def through_the_wall(corners) -> list[Any]:
+def through_the_wall(corners: Sequence[Corner]) -> list[Corner]:
     """Return the corners [m] of a hole, in pairs, with every edge along the wall moved behind it."""
     return _moved_out(corners, math.inf, WALL_OVERCUT_M)
 
 
-def beyond_borders(corners, width, far) -> list[Any]:
+def beyond_borders(corners: Sequence[Corner], width: float, far: float) -> list[Corner]:
     """Return the corners [m] of a hole, in pairs, with edges along the wall and the free edge moved out.
 
     Those from a ``width`` [m] off the wall on are along the free edge; they are moved by ``far`` [m]. Edges
@@ -94,7 +102,7 @@ def beyond_borders(corners, width, far) -> list[Any]:
     return [here for before, here, after in sides if not before[0] == here[0] == after[0]]
 
 
-def _moved_out(corners, width, far) -> list[Any]:
+def _moved_out(corners: Sequence[Corner], width: float, far: float) -> list[Corner]:
     """As ``beyond_borders``, with the corners between what is moved and straight sides to it."""
     out = []
     for (s0, y0), (s1, y1) in _sides(corners):
@@ -120,10 +128,10 @@ class Gap(Device):
     feature = "reach of the foot ahead of and behind the centre of mass"
     picture = "above"
 
-    def hole_on(self, track) -> HoleEdges:
+    def hole_on(self, track: "Track") -> HoleEdges:
         return gap(self.limit, track.radius, track.extent)
 
-    def outline_on(self, track, length) -> np.ndarray:
+    def outline_on(self, track: "Track", length: float) -> Points:
         radius, width = track.radius, track.extent
         off = np.linspace(width, 0.0, GAP_EDGE_POINTS)
         left, met = (
@@ -136,10 +144,10 @@ class Gap(Device):
     def across(self) -> float:
         return 0.0
 
-    def more(self, encounter) -> float:
+    def more(self, encounter: "DeviceEncounter") -> float:
         return encounter.orientation.carry_ahead
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         needed, carry = encounter.orientation.gap, encounter.orientation.carry_ahead
         return encounter.verdict(carried(needed - self.limit, self.limit - needed, carry))
 
@@ -164,20 +172,20 @@ class CutOut(Device):
     def value_text(self) -> str:
         return corners_text(self.corners)
 
-    def misfits(self, width) -> list[Any]:
+    def misfits(self, width: float) -> list[ConfigError]:
         across = [y for _, y in self.corners]
         return self.hole_faults(width, min(across), max(across), endless=False)
 
-    def hole_on(self, track) -> HoleEdges:
+    def hole_on(self, track: "Track") -> HoleEdges:
         return polygon(np.array(self.corners), track.radius)
 
-    def outline_on(self, track, length) -> np.ndarray:
+    def outline_on(self, track: "Track", length: float) -> Points:
         return np.array(self.corners)
 
-    def goes_on(self, width) -> float:
+    def goes_on(self, width: float) -> float:
         return max(x for x, _ in self.corners)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         orientation, hole = encounter.orientation, self.hole_on(encounter.orientation.track)
         margin, shift = encounter.over_hole(hole)
         if margin < 0.0 < orientation.carry:

@@ -1,17 +1,31 @@
 """The orientation that a text such as A@90 names."""
 
 import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feederscrew import units
+from feederscrew.arrays import Floats, Values
 from feederscrew.errors import ConfigError, FeederError
+
+if TYPE_CHECKING:
+    from feederscrew.tooling.orientations import Orientation
 
 HEADING_TOLERANCE_RAD = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
 HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] with decimals
 
 
-def place(aspects, headings, aspect, heading, where, named="", kind=FeederError) -> int:
+def place(
+    aspects: Sequence[str],
+    headings: Sequence[float] | Floats,
+    aspect: str,
+    heading: float,
+    where: str,
+    named: str = "",
+    kind: type[FeederError] = FeederError,
+) -> int:
     """Return the place of an orientation by its aspect and heading [rad]: the one nearest in heading.
 
     ``aspects`` and ``headings`` [rad] are those of the M orientations; ``aspect`` is in capitals or not. If
@@ -34,19 +48,26 @@ def place(aspects, headings, aspect, heading, where, named="", kind=FeederError)
     raise kind(where, what, f"choose one of {listed} deg")
 
 
-def place_of(orientations, aspect, heading, where, named="", kind=ConfigError) -> int:
+def place_of(
+    orientations: "Sequence[Orientation]",
+    aspect: str,
+    heading: float,
+    where: str,
+    named: str = "",
+    kind: type[FeederError] = ConfigError,
+) -> int:
     """Return the same among orientations (M,)."""
     names = [orientation.aspect for orientation in orientations]
     turns = [orientation.heading for orientation in orientations]
     return place(names, turns, aspect, heading, where, named, kind)
 
 
-def nearest(aspects, headings, aspect, heading) -> int:
+def nearest(aspects: Sequence[str], headings: Sequence[float] | Floats, aspect: str, heading: float) -> int:
     """Return the place of an orientation that is known from another track: its headings are others there."""
     return min(_places(aspects, aspect), key=lambda k: abs(_turn(headings[k] - heading)))
 
 
-def rows(aspects, aspect, where, kind=FeederError) -> list[int]:
+def rows(aspects: Sequence[str], aspect: str, where: str, kind: type[FeederError] = FeederError) -> list[int]:
     """Return the places of an aspect's orientations; a fault where there is none."""
     aspect_rows = _places(aspects, aspect)
     if not aspect_rows:
@@ -55,19 +76,19 @@ def rows(aspects, aspect, where, kind=FeederError) -> list[int]:
     return aspect_rows
 
 
-def _places(aspects, aspect) -> list[int]:
+def _places(aspects: Sequence[str], aspect: str) -> list[int]:
     return [k for k, name in enumerate(aspects) if name.casefold() == aspect.strip().casefold()]
 
 
-def _turn(angle) -> float:
+def _turn(angle: Values) -> float:
     return np.remainder(angle + np.pi, 2.0 * np.pi) - np.pi
 
 
-def written(aspect, heading) -> str:
+def written(aspect: str, heading: float) -> str:
     """Return an orientation by its aspect and heading [rad] as a bowl file names it: 'A@90'."""
     return units.quoted(f"{aspect}@{np.degrees(heading):.9g}")
 
 
-def whole_degrees(text) -> str:
+def whole_degrees(text: str) -> str:
     """Return a text such as '{of: A@90.4021}' with its headings in whole degrees, as people read them."""
     return HEADING.sub(lambda degrees: f"@{round(float(degrees[1])) % 360}", text)

@@ -5,14 +5,15 @@ Source: isentropic flow through a nozzle; docs/tooling.md.
 
 import functools
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from feederscrew import units
 from feederscrew import value_forms as forms
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Points
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
@@ -34,6 +35,12 @@ from feederscrew.tooling.devices.base import (
     mapping_text,
     room_of,
 )
+
+if TYPE_CHECKING:
+    from feederscrew.bowl.record import Track
+    from feederscrew.resting.posture import Posture
+    from feederscrew.tooling.orientations import Orientation
+    from feederscrew.tooling.verdicts import DeviceEncounter
 
 optimize = heavy("scipy.optimize")
 shapely = heavy("shapely")
@@ -75,7 +82,7 @@ MAX_JET_PRESSURE_PA, REGULATOR_STEP_PA = 4e5, 5e3  # of a usual compressed-air n
 JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
 
 
-def thrust(diameter, pressure) -> float:
+def thrust(diameter: float, pressure: float) -> float:
     """Return the thrust [N] of a nozzle of a diameter [m] at a pressure [Pa] above the ambient.
 
     Isentropic flow of air of a convergent nozzle: beyond the critical ratio of 1.893 the mouth has the
@@ -102,7 +109,7 @@ class Nozzles:
     def thrust(self) -> float:
         return thrust(self.diameter, self.pressure)
 
-    def heights(self, orientations) -> np.ndarray:
+    def heights(self, orientations: "Sequence[Orientation]") -> Floats:
         """Return their heights [m] over the track, (N,), upwards.
 
         Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
@@ -111,19 +118,23 @@ class Nozzles:
         """
         return np.array(_heights(self, tuple(orientations)))
 
-    def moves(self, orientation, heights) -> float:
+    def moves(self, orientation: "Orientation", heights: Sequence[float]) -> float:
         """Return the force outwards, less the friction of that down, over the thrust of a nozzle [1]."""
         pushes = [_share(orientation, self.diameter, float(height)) for height in heights]
         return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
 
-    def push(self, orientation, orientations, ahead=0.0) -> tuple[float, float]:
+    def push(
+        self, orientation: "Orientation", orientations: "Sequence[Orientation]", ahead: float = 0.0
+    ) -> tuple[float, float]:
         """Return the force [N] outwards, and down, on an orientation ``ahead`` [m] of them by its weight."""
         heights = self.heights(orientations)
         pushes = [_share(orientation, self.diameter, float(height), ahead) for height in heights]
         out, down = (self.thrust * sum(push[k] for push in pushes) for k in range(2))
         return out, down
 
-    def jets(self, place, orientations, seconds=math.inf) -> tuple[Jet, ...]:
+    def jets(
+        self, place: float, orientations: "Sequence[Orientation]", seconds: float = math.inf
+    ) -> tuple[Jet, ...]:
         return tuple(
             Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, JET_REACH_M, seconds)
             for height in self.heights(orientations)
@@ -131,7 +142,7 @@ class Nozzles:
 
 
 @functools.lru_cache(maxsize=256)
-def _heights(nozzles, orientations) -> tuple[float, ...]:
+def _heights(nozzles: Nozzles, orientations: "Sequence[Orientation]") -> tuple[float, ...]:
     low, count = nozzles.height, nozzles.count
     top = max(orientation.height for orientation in orientations)
     if low is None and count > 1:
@@ -165,14 +176,18 @@ def _heights(nozzles, orientations) -> tuple[float, ...]:
     return tuple(np.linspace(low, high, count) if high > low else np.full(count, low))
 
 
-def _share(orientation, diameter, height, ahead=0.0) -> tuple[float, float]:
+def _share(
+    orientation: "Orientation", diameter: float, height: float, ahead: float = 0.0
+) -> tuple[float, float]:
     """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
     return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
 
 
 @functools.lru_cache(maxsize=4096)
-def _taken(posture, heading, place, diameter, height) -> tuple[float, float]:
-    points, faces = posture.surface, posture.solid.faces
+def _taken(
+    posture: "Posture", heading: float, place: tuple[float, float], diameter: float, height: float
+) -> tuple[float, float]:
+    points, faces = posture.surface, posture.facets
     plan = turned(points[:, :2], heading) + place
     corners = np.column_stack([plan, points[:, 2]])[faces]
     sides = vectors.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -210,7 +225,7 @@ def _taken(posture, heading, place, diameter, height) -> tuple[float, float]:
     return float(out) / RAYS, float(down) / RAYS
 
 
-def _pressure(diameter, force) -> float:
+def _pressure(diameter: float, force: float) -> float:
     return float(optimize.brentq(lambda bar: thrust(diameter, bar) - force, 0.0, MAX_JET_PRESSURE_PA))
 
 
@@ -267,7 +282,13 @@ class Sorter(Device):
         return (self.like[:2], *self.also)
 
     @classmethod
-    def around(cls, encounter, margin, where, unlike=lambda view: ()) -> list["Sorter"]:
+    def around(
+        cls,
+        encounter: "DeviceEncounter",
+        margin: float,
+        where: str,
+        unlike: "Callable[[str], Sequence[Orientation]]" = lambda view: (),
+    ) -> list["Sorter"]:
         """Return the sorters of an orientation, with the play [m] by which what they pass may differ.
 
         Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
@@ -281,13 +302,13 @@ class Sorter(Device):
             sorters.append(replace(device, like=(*named, play + device.hop_blur(orientation))))
         return sorters
 
-    def with_play(self, play) -> Device:
+    def with_play(self, play: float) -> Device:
         """Return the same sorter with other play [m], and headings as its text has them."""
         turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in self.names]
         first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
         return replace(self, like=(*first, float(play)), also=tuple(also)).rewritten()
 
-    def with_pulse(self, time) -> Device:
+    def with_pulse(self, time: float) -> Device:
         return replace(self, time=time).rewritten()
 
     @property
@@ -340,7 +361,7 @@ class Sorter(Device):
         return {"value_mm": self.like[2] / MM, "sees": self.sees, "resolution_mm": self.blur / MM,
                 "thrust_N": self.jet.thrust}  # fmt: skip
 
-    def differs(self, encounter) -> float:
+    def differs(self, encounter: "DeviceEncounter") -> float:
         """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.
 
         At least, of what is not wanted; at most, of what is: either may come askew.
@@ -350,7 +371,7 @@ class Sorter(Device):
             return encounter.askew(self.sees)
         return min(encounter.differs(other, self.sees) for other in wanted)
 
-    def wanted(self, orientations) -> tuple[Any, ...]:
+    def wanted(self, orientations: "Sequence[Orientation]") -> "tuple[Orientation, ...]":
         source = self.where, f"{self.kind} names"
         places = (orientation_names.place_of(orientations, *named, *source) for named in self.names)
         return tuple(orientations[k] for k in places)
@@ -359,24 +380,24 @@ class Sorter(Device):
     def jet(self) -> Nozzles:
         return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         room = room_of(orientations)
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(orientations), self.like[2], self.blur)
         jets = self.jet.jets(middle + SENSOR_TO_NOZZLE_M, orientations, self.time)
         return Standing(room + SENSOR_TO_NOZZLE_M, jets=jets, sensor=sensor)
 
-    def edge(self, start, length, width) -> np.ndarray:
+    def edge(self, start: float, length: float, width: float) -> Points:
         return box_ring(start, start + length, 0.0, width)
 
-    def hop_blur(self, orientation) -> float:
+    def hop_blur(self, orientation: "Orientation") -> float:
         return 0.0 if self.sees == "outline" else orientation.hop
 
-    def gap(self, orientation, speed) -> float:
+    def gap(self, orientation: "Orientation", speed: float) -> float:
         beam = self.nozzle + 2.0 * SPREAD * orientation.width
         return max(beam + speed * (REACTION + self.time), self.blur)
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         margin = self.like[2] - self.differs(encounter)
         margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
         if margin < 0.0:
@@ -415,7 +436,13 @@ class SteadyJet(Device):
     read = staticmethod(functools.partial(values.nozzle, needed=("nozzle", "pressure", "height")))
 
     @classmethod
-    def proposals(cls, wanted, competitors, orientations, where) -> list[Device]:
+    def proposals(
+        cls,
+        wanted: "Sequence[DeviceEncounter]",
+        competitors: "Sequence[DeviceEncounter]",
+        orientations: "Sequence[Orientation]",
+        where: str,
+    ) -> "list[SteadyJet]":
         """Return the jets that blow surely off some orientations and surely leave others, one a height.
 
         ``wanted`` and ``competitors`` are DeviceEncounters. Each jet has the least pressure that blows off as
@@ -456,15 +483,15 @@ class SteadyJet(Device):
     def jet(self) -> Nozzles:
         return Nozzles(self.nozzle, self.pressure, self.height)
 
-    def factor(self, encounter) -> float:
+    def factor(self, encounter: "DeviceEncounter") -> float:
         """Return its mean force on an orientation that passes, over the one that just moves it off [1]."""
         return float(np.mean(self._factors(encounter)))
 
-    def most(self, encounter) -> float:
+    def most(self, encounter: "DeviceEncounter") -> float:
         """Return the greatest such factor [1] at any place along an orientation."""
         return float(self._factors(encounter).max())
 
-    def _factors(self, encounter) -> Floats:
+    def _factors(self, encounter: "DeviceEncounter") -> Floats:
         """The same (JET_POSITIONS,) along its length: it may offer more ahead or behind than amid."""
         orientation = encounter.orientation
         lying = encounter.orientations or (orientation,)
@@ -475,7 +502,7 @@ class SteadyJet(Device):
         force = encounter.force_to_clear(wide, self.height)
         return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
 
-    def judged(self, encounter) -> Verdict:
+    def judged(self, encounter: "DeviceEncounter") -> Verdict:
         if encounter.hanging:
             return encounter.verdict(0.0)
         factor, most = self.factor(encounter), self.most(encounter)
@@ -485,11 +512,11 @@ class SteadyJet(Device):
             margin = 0.0 if factor < 1.0 else -UNSURE
         return encounter.verdict(max(margin, -distance))
 
-    def standing(self, track, orientations) -> Standing:
+    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
         room = room_of(orientations)
         return Standing(room, jets=self.jet.jets(0.5 * room, orientations))
 
-    def edge(self, start, length, width) -> np.ndarray:
+    def edge(self, start: float, length: float, width: float) -> Points:
         middle, near = start + 0.5 * length, 0.5 * self.nozzle
         far = near + SPREAD * width
         beam = [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]

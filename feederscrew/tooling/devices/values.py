@@ -1,12 +1,15 @@
 """How the values of devices are written in a bowl file, and their faults."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from feederscrew import units
+from feederscrew.documents import Entry, Node
 from feederscrew.errors import ConfigError
 
+Corner = tuple[float, float]  # [m]
 CORNER_ADVICE = "write [9 mm, 8 mm]"
 POLYGON = "write a list of three or more corners, as [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
 MAX_LENGTH_M = 1000.0  # [m] no bowl reaches so far
@@ -24,7 +27,7 @@ NOZZLE = {  # the same of a jet
 }
 
 
-def length(entry) -> dict[str, Any]:
+def length(entry: Entry) -> dict[str, Any]:
     """Read a length above 0, as {'limit': [m]}."""
     limit = _quantity(entry.value, entry.key, "length")
     if limit <= 0.0:
@@ -33,21 +36,23 @@ def length(entry) -> dict[str, Any]:
     return {"limit": limit}
 
 
-def blade(entry) -> dict[str, Any]:
+def blade(entry: Entry) -> dict[str, Any]:
     """Read a clearance, or {clearance: 6 mm, sweep: 30 deg, friction: 0.2, contour: [[0 mm, 6 mm], ...]}."""
     if entry.value.kind != "mapping":
         return length(entry)
     mend, more = "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour")
     arguments = mapping(entry, ("clearance", *more), mend, more)
     fields: dict[str, Any] = {
-        name: within(arguments, key, *limits) for key, (name, *limits) in BLADE.items() if key in arguments
+        name: within(arguments, key, dimension, low, high)
+        for key, (name, dimension, low, high) in BLADE.items()
+        if key in arguments
     }
     if "contour" in arguments:
         fields["contour"] = tuple(_corners(arguments["contour"].value, "contour"))
     return fields
 
 
-def sensor(entry, views) -> dict[str, Any]:
+def sensor(entry: Entry, views: Sequence[str]) -> dict[str, Any]:
     """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}."""
     names, more = ("of", "play", "sees", "resolution", "jet"), ("sees", "resolution", "jet")
     arguments = mapping(entry, names, "write {of: A@90, play: 0.5 mm, sees: outline}", more)
@@ -67,7 +72,7 @@ def sensor(entry, views) -> dict[str, Any]:
     return fields | (nozzle(arguments["jet"], ("time", "nozzles")) if "jet" in arguments else {})
 
 
-def nozzle(entry, more=(), needed=()) -> dict[str, Any]:
+def nozzle(entry: Entry, more: Sequence[str] = (), needed: Sequence[str] = ()) -> dict[str, Any]:
     """Read {nozzle: 2 mm, pressure: 3 bar, height: 4 mm}, and the time of a pulse where there is one."""
     names = ("nozzle", "pressure", "height", *more)
     optional = [name for name in names if name not in needed]
@@ -75,7 +80,7 @@ def nozzle(entry, more=(), needed=()) -> dict[str, Any]:
     return {name: within(arguments, name, *NOZZLE[name]) for name in names if name in arguments}
 
 
-def within(entry, name, dimension, low, high) -> float:
+def within(entry: dict[str, Entry], name: str, dimension: str, low: float, high: float) -> float:
     """Read one value of a mapping, from ``low`` to ``high`` in SI units."""
     node = entry[name].value
     value = _quantity(node, name, dimension)
@@ -86,7 +91,9 @@ def within(entry, name, dimension, low, high) -> float:
     raise ConfigError(node.where, what, f"give {low / size:.4g} to {high / size:.4g} {unit}".rstrip())
 
 
-def span(entry, more=(), needed=()) -> tuple[dict[str, Any], dict[str, Any]]:
+def span(
+    entry: Entry, more: Sequence[str] = (), needed: Sequence[str] = ()
+) -> tuple[dict[str, Any], dict[str, Entry]]:
     """Read {from: 2 mm, to: 5 mm} with more entries beside it: {'span': (m, m)}, and all by key."""
     names = ("from", "to", *needed, *more)
     arguments = mapping(entry, names, "write {from: 2 mm, to: 5 mm}", more)
@@ -98,7 +105,7 @@ def span(entry, more=(), needed=()) -> tuple[dict[str, Any], dict[str, Any]]:
     return {"span": (first, last)}, arguments
 
 
-def shares(entry) -> dict[str, Any]:
+def shares(entry: Entry) -> dict[str, Any]:
     """Read the share that passes by aspect, as {'shares': ((aspect, 1), ...)}."""
     if entry.value.kind != "mapping" or not entry.value.entries:
         mend = "write below it one line an aspect, as 'A: 0.9'"
@@ -113,7 +120,7 @@ def shares(entry) -> dict[str, Any]:
     return {"shares": tuple(pairs)}
 
 
-def polygon(entry) -> dict[str, Any]:
+def polygon(entry: Entry) -> dict[str, Any]:
     """Read a polygon of lengths, or the file that holds it, as 'corners' and what was assumed of the file."""
     corners: Any
     if entry.value.kind != "mapping":
@@ -149,7 +156,7 @@ def polygon(entry) -> dict[str, Any]:
     return {"corners": tuple(corners), "assumption": assumption}
 
 
-def opening(entry) -> dict[str, Any]:
+def opening(entry: Entry) -> dict[str, Any]:
     """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}, as {'corners': ...} or {'like': ...}."""
     if entry.value.kind != "mapping":
         return polygon(entry)
@@ -157,7 +164,7 @@ def opening(entry) -> dict[str, Any]:
     return {"like": (*_orientation(arguments["of"].value), _play(arguments))}
 
 
-def _orientation(node) -> tuple[str, float]:
+def _orientation(node: Node) -> tuple[str, float]:
     name, at, turn = node.text.partition("@")
     if not at or not name.strip():
         what = f"{units.quantity_text(node.text)} is not an orientation"
@@ -165,17 +172,17 @@ def _orientation(node) -> tuple[str, float]:
     return name.strip(), _parsed(f"{turn.strip().removesuffix('deg')} deg", node.where, "heading", "angle")
 
 
-def _play(entry) -> float:
+def _play(entry: dict[str, Entry]) -> float:
     play = _quantity(entry["play"].value, "play", "length")
     if play < 0.0:
         raise ConfigError(entry["play"].value.where, "play is negative", "give 0 mm or more")
     return play
 
 
-def crossed(corners) -> bool:
+def crossed(corners: Sequence[Corner]) -> bool:
     """Return whether two sides of corners (K, 2) [m] that are no neighbours meet, or two corners coincide."""
 
-    def left(o, p, q) -> float:
+    def left(o: Sequence[float], p: Sequence[float], q: Sequence[float]) -> float:
         return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
 
     sides = list(zip(corners, (*corners[1:], corners[0])))
@@ -192,7 +199,7 @@ def crossed(corners) -> bool:
     return False
 
 
-def written(node) -> str:
+def written(node: Node) -> str:
     """Return a value on one line, as it may be written in a bowl file."""
     if node.kind == "list":
         return f"[{', '.join(map(written, node.items))}]"
@@ -202,7 +209,7 @@ def written(node) -> str:
     return units.quoted(" ".join(node.text.split()))
 
 
-def mapping(entry, names, mend, optional=()) -> dict[str, Any]:
+def mapping(entry: Entry, names: Sequence[str], mend: str, optional: Sequence[str] = ()) -> dict[str, Entry]:
     """Return the entries of a mapping by key; a ConfigError for keys unknown or missing."""
     entries = {item.key: item for item in entry.value.entries} if entry.value.kind == "mapping" else {}
     for item in entries.values():
@@ -215,24 +222,25 @@ def mapping(entry, names, mend, optional=()) -> dict[str, Any]:
     return entries
 
 
-def _corners(node, kind) -> list[tuple[float, ...]]:
+def _corners(node: Node, kind: str) -> list[Corner]:
     if node.kind != "list":
         raise ConfigError(node.where, f"{kind} is not a list of corners", POLYGON)
     corners = []
     for item in node.items:
         if item.kind != "list" or len(item.items) != 2:
             raise ConfigError(item.where, f"is no corner of {kind}", CORNER_ADVICE)
-        corners.append(tuple(_quantity(end, f"corner of {kind}", "length") for end in item.items))
+        x, y = (_quantity(end, f"corner of {kind}", "length") for end in item.items)
+        corners.append((x, y))
     return corners
 
 
-def _quantity(node, name, dimension) -> float:
+def _quantity(node: Node, name: str, dimension: str) -> float:
     if node.kind != "text":
         raise ConfigError(node.where, f"{name} is a {node.kind}", "write one value")
     return _parsed(node.text, node.where, name, dimension)
 
 
-def _parsed(text, where, name, dimension) -> float:
+def _parsed(text: str, where: str, name: str, dimension: str) -> float:
     try:
         return units.quantity(text, dimension)
     except units.QuantityError as fault:
