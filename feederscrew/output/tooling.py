@@ -53,8 +53,8 @@ def document(study: ToolingStudy) -> dict[str, Any]:
     }
     if study.design is None:
         return values
-    (design, wanted), chain = _asked_for(study), []
-    orientation, cuts = study.orientations[wanted], design.cuts
+    (design, wanted_row), chain = _asked_for(study), []
+    orientation, cuts = study.orientations[wanted_row], design.cuts
     for cut in cuts:
         entry = {
             "device": cut.device.kind,
@@ -73,12 +73,12 @@ def document(study: ToolingStudy) -> dict[str, Any]:
             entry["basis"] = QUASI_STATIC
     return values | {
         **row_of(orientation, "aspect heading_deg"),
-        "isolated": study.isolates(wanted),
-        "status": status(study, wanted),
+        "isolated": study.isolates(wanted_row),
+        "status": status(study, wanted_row),
         "isolated_static": design.isolated,
         "steady": design.steady,
         "track_width_mm": study.bowl.track.width / MM,
-        **efficiency_and_purity(design, study.trial_of(wanted)),
+        **efficiency_and_purity(design, study.trial_of(wanted_row)),
         "before": [f"{device.kind}: {device.text}" for device in design.before],
         "chain": chain,
         "quasi_static": [cut.device.kind for cut in cuts if cut.device.turns],
@@ -196,8 +196,8 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     """Return what a reader should know: of one orientation first what becomes of it."""
     if study.design is None:
         return [isolation_words(study, efficiency)]
-    design, wanted = _asked_for(study)
-    orientation, tried = study.orientations[wanted], study.trial_of(wanted)
+    design, wanted_row = _asked_for(study)
+    orientation, tried = study.orientations[wanted_row], study.trial_of(wanted_row)
     at_least = "at least " * (design.least < design.efficiency)
     pure_at_least = "at least " * bool(design.purity_is_least)
     leave = (
@@ -209,7 +209,7 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     if tried is not None and tried.faults:
         lead = f"{orientation.name} is not isolated: {tried.sentence.partition(': ')[2]}"
     elif tried is None:
-        lead = f"{orientation.name} is {'' if study.isolates(wanted) else 'not '}isolated: {leave}"
+        lead = f"{orientation.name} is {'' if study.isolates(wanted_row) else 'not '}isolated: {leave}"
     else:
         lead = (
             f"{orientation.name} is {'' if design.isolated else 'not '}isolated: of {tried.parts} parts "
@@ -261,8 +261,8 @@ def passages(study: PassagesStudy) -> Frame:
 
 def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
     """Return a bowl file: ``settings`` (Setting) that the user gave, and the devices of a ToolingStudy."""
-    design, wanted = _asked_for(study)
-    tried, orientation, width = study.trial_of(wanted), study.orientations[wanted], design.width
+    design, wanted_row = _asked_for(study)
+    tried, orientation, width = study.trial_of(wanted_row), study.orientations[wanted_row], design.width
     check_written(design.devices, "tooling.yaml")
     left_out = (DEVICES_SECTION,) if width is None else (DEVICES_SECTION, "track.width")
     own = [s for s in settings if s.is_own and s.key.field not in left_out]
@@ -316,8 +316,8 @@ def offers(
         words = isolation_words(study)
         drawn = offer.picture("tooling.png", what, lambda: tooling_figures.limits(study, words))
         return marking.pictures([*files, drawn], mark)
-    design, wanted = _asked_for(study)
-    devices, chain = design.devices, (design.devices, study.orientations, study.shares, wanted)
+    design, wanted_row = _asked_for(study)
+    devices, chain = design.devices, (design.devices, study.orientations, study.shares, wanted_row)
 
     def section() -> TrackSection:
         return build_section(study.bowl.track, devices, study.orientations)
@@ -345,11 +345,11 @@ def chain_picture(
 
 
 def solid_picture(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> offer.Offer:
     """Offer the picture of a part over the cuts, in three dimensions."""
     alt, chain = "The part over the cut: what passes, and the nearest that falls", (devices, orientations)
-    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain, shares, wanted))
+    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain, shares, wanted_row))
 
 
 def _draw_section(

@@ -39,11 +39,12 @@ RAIL_FACE, RAIL_DEPTH_MM = "#c3ccd4", 2.0  # [mm] of a rail as drawn
 
 
 def chain(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int | None = None
-) -> Figure:
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats,
+    wanted_row: int | None = None,
+) -> Figure:  # fmt: skip
     """Draw each orientation at the worst place of each device that it meets, the one wanted first."""
     placed = [device for device in devices if device.placed]
-    rows, count = _rows(orientations, shares, wanted), max(len(placed), 1)
+    rows, count = _rows(orientations, shares, wanted_row), max(len(placed), 1)
     room = min(max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count), 420)
     wide = max(900, FATE_COLUMN_PX + room * len(placed) + OUT)  # the lines over the rows need 900
     panels = 2 if len(rows) > MAX_ROWS_OF_ONE_PANEL and 2 * wide <= MAX_TWO_PANELS_PX else 1
@@ -51,8 +52,8 @@ def chain(
     page = style.page(panels * wide, PAGE_HEAD_PX + ROW * high + PAGE_FOOT_PX)
     column = (wide - FATE_COLUMN_PX - OUT) / count
     title = "Each orientation where each device bears least"
-    if wanted is not None:
-        title = f"What lets {orientations[wanted].name} leave: each orientation where each device bears least"
+    if wanted_row is not None:
+        title = f"What lets {orientations[wanted_row].name} leave: {title[0].lower()}{title[1:]}"
     _heading(page, title, orientations, rows)
     for panel in range(panels):
         for place, device in enumerate(placed):
@@ -81,7 +82,7 @@ def chain(
         write_text(page, left + 16, top + 30, orientation.name, size=12, weight="bold", colour=colour)
         write_text(page, left + 16, top + 52, f"{100.0 * shares[k]:.3g} % of the parts")
         texts: list[tuple[str, style.Look]] = [(text, {"colour": colour}) for text in textwrap.wrap(word, 24)]
-        texts += [("wanted", {"weight": "bold"})] if k == wanted else []
+        texts += [("wanted", {"weight": "bold"})] if k == wanted_row else []
         for below, (text, look) in enumerate(texts, start=1):
             write_text(page, left + 16, top + 52 + below * TEXT_LINE_PX, text, **look)
         for step, passage in enumerate(passages):
@@ -257,10 +258,10 @@ def _heading(page: Figure, title: str, orientations: Sequence[Orientation], rows
         write_text(page, 16, 50 + TEXT_LINE_PX * line, text, size=8)
 
 
-def _rows(orientations: Sequence[Orientation], shares: Floats, wanted: int | None) -> list[int]:
-    often = [k for k in range(len(orientations)) if shares[k] >= LEAST_SHARE and k != wanted]
+def _rows(orientations: Sequence[Orientation], shares: Floats, wanted_row: int | None) -> list[int]:
+    often = [k for k in range(len(orientations)) if shares[k] >= LEAST_SHARE and k != wanted_row]
     often.sort(key=lambda k: -round(float(shares[k]), 9))
-    return ([] if wanted is None else [wanted]) + (often or ([] if wanted is not None else [0]))
+    return ([] if wanted_row is None else [wanted_row]) + (often or ([] if wanted_row is not None else [0]))
 
 
 def _fill_area(

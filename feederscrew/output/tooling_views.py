@@ -27,10 +27,10 @@ CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
 
 
 def figure(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> Figure | None:
     """Draw the wanted orientation over its least cut, and the nearest that falls; None without cuts."""
-    views = _views(devices, orientations, shares, wanted)
+    views = _views(devices, orientations, shares, wanted_row)
     if not views:
         return None
     count, high = len(views), VIEW_HEAD_PX + VIEW_HEIGHT_PX
@@ -46,11 +46,11 @@ def figure(
 
 
 def _views(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> list[Any]:
     """What leaves, and what falls by least, of those that come often: passage, lines of text, colour."""
     placed, views, rejected = [device for device in devices if device.placed], [], []
-    passages = _drawable(track_sections.until_returned(placed, orientations[wanted], orientations))
+    passages = _drawable(track_sections.until_returned(placed, orientations[wanted_row], orientations))
     if passages:
         least = min(passages, key=lambda passage: passage.verdict.margin)
         words = _caption(least, "passes")
@@ -59,7 +59,7 @@ def _views(
             least = replace(least, orientation=least.after)
         views.append((least, words, PASSED_COLOUR))
     for k, orientation in enumerate(orientations):
-        if k != wanted and shares[k] >= LEAST_SHARE and not orientation.returned:
+        if k != wanted_row and shares[k] >= LEAST_SHARE and not orientation.returned:
             passages = track_sections.until_returned(placed, orientation, orientations)
             rejected += [last for last in passages[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
     if rejected:
@@ -101,11 +101,11 @@ def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation],
 
 
 def poses(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> list[tuple[Passage, str]]:
     """Return the passages worth a view, each with a few words: 'gap, margin +0.64 mm'."""
     listed = []
-    for passage, _, _ in _views(devices, orientations, shares, wanted):
+    for passage, _, _ in _views(devices, orientations, shares, wanted_row):
         words = f"{passage.device.name}, {margin_words(passage.verdict)}"
         listed.append((passage, "in the rails" if passage.orientation.kind == "hanging" else words))
     return listed

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,8 +27,6 @@ from feederscrew.units import MM
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from feederscrew.thesis.motion import PrintedTrack, TrackAsPublished
 
 shading = heavy("feederscrew.output.shading")
 
@@ -76,7 +74,7 @@ def _instant(motion: TrackMotion) -> dict[str, Any]:
     }
 
 
-def _printed_instant(motion: "PrintedTrack") -> dict[str, Any]:
+def _printed_instant(motion: Any) -> dict[str, Any]:
     """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
@@ -120,9 +118,8 @@ def document(study: TrackStudy) -> dict[str, Any]:
     """
     cycle, seat, opening, values = study.cycle, study.seat, study.opening, {}
     if study.printed is not None:
-        published = cast("TrackAsPublished", study)
-        values = {"instant": _printed_instant(study.printed), "difference": _differences(published)}
-        values["omitted_terms"] = _omitted_terms(published)
+        values = {"instant": _printed_instant(study.printed), "difference": _differences(study)}
+        values["omitted_terms"] = _omitted_terms(study)
     places = seat.walls + np.array([0.0, 0.0, seat.height])
     sigma = np.degrees(np.arcsin(-seat.walls[:, 0] / study.bowl.track.radius))
     at_rest = np.isfinite(cycle.needed).all()
@@ -156,11 +153,11 @@ def document(study: TrackStudy) -> dict[str, Any]:
     }
 
 
-def _differences(study: "TrackAsPublished") -> Frame:
+def _differences(study: Any) -> Frame:
     return floor.difference(_printed_instant(study.printed), _instant(study.now), study.terms)
 
 
-def _omitted_terms(study: "TrackAsPublished") -> Frame:
+def _omitted_terms(study: Any) -> Frame:
     return tables.table_of(study.omitted_terms, "name equation value unit")
 
 

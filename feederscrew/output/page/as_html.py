@@ -290,7 +290,7 @@ def _views(views: kinds.Views) -> str:
             label = f'<div class="{mark}"><span>{escape(bar.label)}</span>'
             texts.append(f"{label}<i>{width}{line}</i><span>{number}</span></div>")
         shares = "\n".join(texts)
-        label = f"{views.of} {escape(name)} in three dimensions; arrow keys turn it"
+        label = f"{views.subject} {escape(name)} in three dimensions; arrow keys turn it"
         figures.append(
             f'<figure class="view">\n'
             f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n{across}'

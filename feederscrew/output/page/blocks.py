@@ -75,7 +75,7 @@ class Views:
     scene: dict[str, Any]
     captions: tuple[tuple[str, str, tuple[ShareBar, ...]], ...]  # name, kind, bars
     name: str = "views"  # of the block; no two of a page have the same
-    of: str = "Aspect"  # what the captions name
+    subject: str = "Aspect"  # what the captions name
     plays: bool = False  # each has a path that the part moves along
     hint: str = ""  # what one can do with it, where it is not the part on a face
     printed: bool = False  # also on paper: no picture stands in for it
