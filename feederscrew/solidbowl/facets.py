@@ -11,7 +11,7 @@ from feederscrew.arrays import Points
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
-from feederscrew.tooling.solid import extruded
+from feederscrew.tooling.solid import extrude
 from feederscrew.units import MM, counted
 
 manifold3d = heavy("manifold3d")
@@ -63,7 +63,7 @@ def turned(profile: Any, segments: int) -> Any:
 
 def patch(ring: Points, low: float, high: float) -> Any:
     """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
-    return extruded(shapely.Polygon(ring), low, high)
+    return extrude(shapely.Polygon(ring), low, high)
 
 
 def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
@@ -73,12 +73,12 @@ def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
     """
     border = shapely.linestrings(np.vstack([ring, ring[:1]]))
     fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(4.0 * path.radius * chord)))[:-1]
-    return extruded(shapely.make_valid(shapely.Polygon(path.plan(fine[:, 0], fine[:, 1]))), low, high)
+    return extrude(shapely.make_valid(shapely.Polygon(path.plan(fine[:, 0], fine[:, 1]))), low, high)
 
 
 def disc(at: Any, size: float, low: float, high: float) -> Any:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
-    return extruded(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
+    return extrude(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
 
 
 def _circle(size: float) -> Points:
@@ -96,7 +96,7 @@ def bore(place: Any, towards: Points, size: float, deep: float) -> Any:
 
 def plank(area: Any, thickness: float, axes: Points, foot: Any) -> Any:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
-    return extruded(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
+    return extrude(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
 
 
 def hull(places: Points) -> Any:
