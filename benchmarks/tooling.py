@@ -64,7 +64,8 @@ def rate(function, items):
 
 def polygons(count, positions, rng):
     print_foot = foot_of(CORNERS)
-    foot, shapes = footprints.standing(print_foot, DISTANCE, RADIUS), [random_hole(rng) for _ in range(count)]
+    foot = footprints.axial_foot(print_foot, DISTANCE, RADIUS)
+    shapes = [random_hole(rng) for _ in range(count)]
     holes = [polygon(corners, RADIUS) for corners in shapes]
     work = footprints.scratch(foot, edges=16, nodes=max(len(hole.nodes) for hole in holes))
     footprints.least(foot, holes[0], work)
@@ -90,7 +91,7 @@ def one_number(count, rng):
         for k in range(len(out)):
             out[k] = kernel.over_ring(foot, low[k], high[k], scratch)
 
-    foot = footprints.standing(foot_of(CORNERS), DISTANCE, RADIUS)
+    foot = footprints.axial_foot(foot_of(CORNERS), DISTANCE, RADIUS)
     widths = rng.uniform(0.002, 0.016, count)
     out = np.empty(count)
     work = footprints.scratch(foot)

@@ -10,7 +10,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.orientations import add_travel, orientations
 
 SETTINGS = (
     "track.radius=150 mm", "track.bank=3 deg", "track.climb=2 deg", "friction.static=0.5",
@@ -48,7 +48,7 @@ def lying(*more):
     """Every orientation of the body on the bowl's track, knowing how it travels."""
     made, found = part()
     own = bowl(*more)
-    return travelling(orientations(made, found, own.track), own)
+    return add_travel(orientations(made, found, own.track), own)
 
 
 def second_moments(one):

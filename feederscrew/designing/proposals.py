@@ -22,7 +22,7 @@ from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
 from feederscrew.tooling.devices.orientation_names import nearest
 from feederscrew.tooling.devices.orientation_names import rows as rows_of
 from feederscrew.tooling.devices.pneumatics import PULSE
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, in_mm, judge_cut, limits, numbered
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, in_mm, judge_cut, limits, numeric_kinds
 from feederscrew.tooling.isolating.design import RAIL
 from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.tooling.verdicts import DeviceEncounter
@@ -400,7 +400,7 @@ def add_drop(
     if not reject_rows or not wanted_rows:
         return None
     best, chosen, own = (0, 0.0), None, {cut.device.kind for cut in proposal.cuts}
-    for kind in (kind for kind in numbered() if kind.carries):
+    for kind in (kind for kind in numeric_kinds() if kind.carries):
         sign = 1.0 if kind.bound == "lower" else -1.0
         values = sign * limits(kind, orientations)
         least = values[wanted_rows].min()

@@ -22,7 +22,7 @@ from feederscrew.mechanics.track_balance import Seat, SeatStack, seat
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.falling import surely_gone
-from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, travel_speed, travelling
+from feederscrew.tooling.orientations import Orientation, add_travel, gyration, travel_speed
 from feederscrew.units import MM, listed
 
 ROCKING_STEPS = 48  # of one period
@@ -212,7 +212,7 @@ def marked(
         is_round = nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max()
         beyond = bowl.friction.wall * one.distance > one.touching[1, 0]
         oriented[k] = replace(one, may_tip=tipped, may_yaw=bool(beyond and not (one.groove or is_round)))
-    return travelling(tuple(oriented), bowl), tips
+    return add_travel(tuple(oriented), bowl), tips
 
 
 def remark(orientations: Sequence[Orientation]) -> tuple[str, ...]:
@@ -345,7 +345,7 @@ def _is_plain(bowl: Bowl) -> bool:
 
 
 def _rolls(orientation: Orientation) -> bool:
-    return orientation.kind != FLAT_KIND and rolls_across(orientation)
+    return orientation.kind != FLAT_KIND and orientation.rolls_across
 
 
 def seat_in_groove(orientation: Orientation, bank: float) -> Seat:
@@ -436,7 +436,7 @@ def _steady(
                 return False
         if hole is None:
             continue
-        support, _ = footprints.least(orientation.standing, hole)
+        support, _ = footprints.least(orientation.axial_foot, hole)
         if support > least:
             continue
         # neither does it rock over the edge that it leaves nor back over the one that it comes to
@@ -458,7 +458,7 @@ def _steady(
 def _foot_beside(orientation: Orientation, span: tuple[float, ...]) -> Floats:
     """Corners (K, 2) [m] of what a span of the track leaves of a foot."""
     foot, radius = orientation.foot, orientation.track.radius
-    return footprints.outside_slot(foot, span, orientation.distance, radius).corners
+    return footprints.rest_beside_slot(foot, span, orientation.distance, radius).corners
 
 
 def _takes(device: Device, orientation: Orientation) -> bool:
@@ -467,9 +467,9 @@ def _takes(device: Device, orientation: Orientation) -> bool:
     if span is not None:
         (first, last), radius = span, orientation.track.radius
         high = radius - first if first > 0.0 else 2.0 * radius
-        left = footprints.over_ring(orientation.standing, max(radius - last, 0.0), high)
+        left = footprints.over_ring(orientation.axial_foot, max(radius - last, 0.0), high)
     elif hole is not None:
-        left, _ = footprints.least(orientation.standing, hole)
+        left, _ = footprints.least(orientation.axial_foot, hole)
     else:
         return False
     return left <= orientation.margin - SUPPORT_LOSS_TOLERANCE_M

@@ -11,7 +11,7 @@ from feederscrew.arrays import Points
 from feederscrew.bowl.record import Track
 from feederscrew.tooling.devices.base import Device, room_of
 from feederscrew.tooling.devices.openings import beyond_borders
-from feederscrew.tooling.fates import leading
+from feederscrew.tooling.fates import leading_devices
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.track_sections import Station, build_section
 
@@ -42,7 +42,7 @@ def banked_height(track: Track, devices: Sequence[Device], orientations: Sequenc
 
 def lean_at_entry(devices: Sequence[Device]) -> tuple[Device, ...]:
     """Return those devices that stand at the track's entry: before what does more than lean it."""
-    return leading([device for device in devices if device.placed])
+    return leading_devices([device for device in devices if device.placed])
 
 
 def laid_out(

@@ -13,7 +13,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
 from feederscrew.solidbowl.plan import BowlPlan, TrackPath
-from feederscrew.tooling.solid import extruded
+from feederscrew.tooling.solid import extrude
 from feederscrew.units import MM, counted
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def turned(profile: ArrayLike, segments: int) -> Body:
 
 def patch(ring: Points, low: float, high: float) -> Body:
     """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
-    return extruded(shapely.Polygon(ring), low, high)
+    return extrude(shapely.Polygon(ring), low, high)
 
 
 def over(path: TrackPath, ring: Points, low: float, high: float, chord: float) -> Body:
@@ -79,12 +79,12 @@ def over(path: TrackPath, ring: Points, low: float, high: float, chord: float) -
     """
     border = shapely.linestrings(np.vstack([ring, ring[:1]]))
     fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(4.0 * path.radius * chord)))[:-1]
-    return extruded(shapely.make_valid(shapely.Polygon(path.plan(fine[:, 0], fine[:, 1]))), low, high)
+    return extrude(shapely.make_valid(shapely.Polygon(path.plan(fine[:, 0], fine[:, 1]))), low, high)
 
 
 def disc(at: ArrayLike, size: float, low: float, high: float) -> Body:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
-    return extruded(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
+    return extrude(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
 
 
 def _circle(size: float) -> Points:
@@ -102,7 +102,7 @@ def bore(place: ArrayLike, towards: Points, size: float, deep: float) -> Body:
 
 def plank(area: shapely.Geometry, thickness: float, axes: Points, foot: ArrayLike) -> Body:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
-    return extruded(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
+    return extrude(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
 
 
 def hull(places: Points) -> Body:

@@ -21,14 +21,7 @@ from feederscrew.resting.posture import Posture
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS, Device, size_of
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M
-from feederscrew.tooling.orientations import (
-    CUT_BORDER_RADIUS_M,
-    Neck,
-    Orientation,
-    neck,
-    rolls_across,
-    shoulder_margin,
-)
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, Neck, Orientation, neck, shoulder_margin
 
 FOREMOST_TOLERANCE = 1e-6  # of the part's height: places so near to the foremost one are met with it
 WALL_CONTACT_SHARE = 1e-2  # of the part's height: places so near to the wall lean on it
@@ -201,13 +194,15 @@ def hangs_free(orientation: Orientation, span: tuple[float, ...]) -> bool:
 
     Source: own; docs/tooling.md, "1. The method": what touches rail and wall at once may wedge.
     """
-    headed = neck(orientation)
-    return headed is not None and too_near(headed, span) <= 0.0 and headed.lever >= LEVER * orientation.length
+    own_neck = neck(orientation)
+    if own_neck is None or too_near(own_neck, span) > 0.0:
+        return False
+    return own_neck.lever >= LEVER * orientation.length
 
 
-def too_near(headed: Neck, span: tuple[float, ...]) -> float:
+def too_near(own_neck: Neck, span: tuple[float, ...]) -> float:
     """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is."""
-    return max(OFF_WALL - span[0] - 0.5 * (headed.shank - headed.widest), 0.0)
+    return max(OFF_WALL - span[0] - 0.5 * (own_neck.shank - own_neck.widest), 0.0)
 
 
 def wall_holds(orientation: Orientation, width: float) -> float:
@@ -228,7 +223,7 @@ def rides_over(orientation: Orientation, width: float, length: float) -> bool:
     Source: own; docs/tooling.md, "1. The method".
     """
     radius = orientation.posture.height
-    if orientation.kind != "rolling" or rolls_across(orientation) or width >= 2.0 * radius:
+    if orientation.kind != "rolling" or orientation.rolls_across or width >= 2.0 * radius:
         return False
     places = orientation.foot.corners[:, 0]
     share = 1.0 - float(places.max()) / length if length < np.ptp(places) else 1.0

@@ -161,7 +161,7 @@ def course(
         verdicts.append(outcomes)
         here = [device.onward(orientation) for orientation in here] + states[len(here) :]
         if device.hangs:
-            here = [astride(orientation, device.span) for orientation in here]
+            here = [stand_astride(orientation, device.span) for orientation in here]
         if rows is None:
             followed = range(len(here))
         else:
@@ -183,12 +183,12 @@ def course(
 
 def at_entry(orientations: Sequence[Orientation], devices: Sequence[Device]) -> tuple[Orientation, ...]:
     """Return orientations as they come: where devices that lean the track come first, they begin there."""
-    for device in leading(devices):
+    for device in leading_devices(devices):
         orientations = tuple(device.onward(orientation) for orientation in orientations)
     return tuple(orientations)
 
 
-def leading(devices: Sequence[Device]) -> tuple[Device, ...]:
+def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
     """Return the devices that come first and lean the track from its entry on, up to the end of a groove."""
     first_devices, grooved = [], False
     for device in devices:
@@ -199,11 +199,11 @@ def leading(devices: Sequence[Device]) -> tuple[Device, ...]:
     return tuple(first_devices)
 
 
-def astride(orientation: Orientation, span: tuple[float, ...]) -> Orientation:
+def stand_astride(orientation: Orientation, span: tuple[float, ...]) -> Orientation:
     """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
     if isinstance(orientation, Hanging) or orientation.falls_off:
         return orientation
-    foot = footprints.outside_slot(orientation.foot, span, orientation.distance, orientation.track.radius)
+    foot = footprints.rest_beside_slot(orientation.foot, span, orientation.distance, orientation.track.radius)
     if not len(foot.corners):  # it fell
         return orientation
     over = replace(orientation)

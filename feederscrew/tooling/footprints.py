@@ -22,7 +22,7 @@ from feederscrew.resting.posture import TOUCHING_SHARE, Posture
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, HoleEdges, gap
 
 if TYPE_CHECKING:
-    from feederscrew.tooling.kernel import Foot, FootArrays
+    from feederscrew.tooling.kernel import Buffers, Foot
 
 kernel = heavy("feederscrew.tooling.kernel")
 
@@ -59,7 +59,7 @@ class Footprint:
 
 
 @lru_cache(maxsize=512)
-def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> "Foot":
+def axial_foot(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> "Foot":
     """Return a foot about the bowl's axis, as the compiled verdict takes it.
 
     ``distance`` [m] is from the wall, of a ``radius`` [m], to the foot of the centre of mass; on a banked
@@ -110,12 +110,12 @@ def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0
     )
 
 
-def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "FootArrays":
+def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "Buffers":
     """Return arrays for the verdict of some feet over a hole of some edges and nodes; by default a ring."""
     rows = 6 * max(len(foot.sides) for foot in feet) * edges + 1
     corners = max(len(foot.corners) for foot in feet)
     points = corners + rows + nodes + edges
-    return kernel.FootArrays(
+    return kernel.Buffers(
         rows=zero_rows(rows, kernel.STRETCH),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
@@ -131,16 +131,12 @@ def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "FootArrays":
     )
 
 
-def _scratch_of(foot: "Foot", hole: HoleEdges) -> "FootArrays":
+def _scratch_of(foot: "Foot", hole: HoleEdges) -> "Buffers":
     return scratch(foot, edges=len(hole.edges), nodes=len(hole.nodes))
 
 
 def least(
-    foot: "Foot",
-    hole: HoleEdges,
-    work: "FootArrays | None" = None,
-    low: float = -np.inf,
-    high: float = np.inf,
+    foot: "Foot", hole: HoleEdges, work: "Buffers | None" = None, low: float = -np.inf, high: float = np.inf
 ) -> tuple[float, float]:
     """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
 
@@ -152,7 +148,7 @@ def least(
     return float(out[0]), float(out[1])
 
 
-def unheld(foot: "Foot", hole: HoleEdges, work: "FootArrays | None" = None, enough: float = np.inf) -> float:
+def unheld(foot: "Foot", hole: HoleEdges, work: "Buffers | None" = None, enough: float = np.inf) -> float:
     """Return the longest way [m] over which a hole leaves a foot without support.
 
     One longer than ``enough`` may be given as any that is longer.
@@ -249,11 +245,11 @@ def find_footprint(posture: Posture, heading: float) -> Footprint:
     ends = edges_of(posture)
     edges = plan[ends[low[ends].all(axis=1)]].reshape(-1, 2, 2)
     edges = edges[np.hypot(*(edges[:, 1] - edges[:, 0]).T) > near]
-    edges = edges[~_covered(edges.mean(axis=1), around)]
+    edges = edges[~_is_covered(edges.mean(axis=1), around)]
     single = np.unique(plan[low], axis=0)
-    single = single[~_covered(single, around)]
+    single = single[~_is_covered(single, around)]
     lines = shapely.union_all(shapely.linestrings(edges)).buffer(near) if len(edges) else shapely.Polygon()
-    single = single[~_covered(single, lines)]
+    single = single[~_is_covered(single, lines)]
     if area.is_empty and len(edges) + len(single) < 1:
         return polygon
     return Footprint(rings(area, SLIVER * size**2), check.frozen(edges), check.frozen(single))
@@ -287,7 +283,7 @@ def edges_of(posture: Posture) -> Ints:
     return check.frozen(np.unique(np.sort(ends, axis=1), axis=0))
 
 
-def _covered(points: Points, area: shapely.Geometry) -> Bools:
+def _is_covered(points: Points, area: shapely.Geometry) -> Bools:
     return shapely.contains_xy(area, points) if not area.is_empty else np.zeros(len(points), dtype=bool)
 
 
@@ -318,15 +314,15 @@ def ring(span: tuple[float, ...], distance: float, radius: float, reach: float) 
     return shapely.Polygon(np.vstack([outer, inner[::-1]]))
 
 
-def outside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radius: float) -> Footprint:
+def rest_beside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radius: float) -> Footprint:
     """Return what of a footprint rests beside a slot; parameters as for ``ring``."""
     if not len(foot.corners):
         return foot
-    return _without(foot, ring(span, distance, radius, 2.0 * np.hypot(*foot.corners.T).max()))
+    return _cut_away(foot, ring(span, distance, radius, 2.0 * np.hypot(*foot.corners.T).max()))
 
 
 @lru_cache(maxsize=512)
-def within(foot: Footprint, distance: float, radius: float, width: float) -> Footprint:
+def clip_to_track(foot: Footprint, distance: float, radius: float, width: float) -> Footprint:
     """Return what of a footprint lies over a track of some width [m]; distance and radius as for ``ring``.
 
     Where none of it does, its corner nearest to the wall, which supports nothing.
@@ -344,11 +340,11 @@ def within(foot: Footprint, distance: float, radius: float, width: float) -> Foo
     turn = np.linspace(-1.0, 1.0, 2001) * min(3.0 * reach / edge, 0.999 * np.pi)
     inner = np.array([[0.0, middle]])
     off = np.concatenate([np.column_stack([edge * np.sin(turn), middle - edge * np.cos(turn)]), inner])
-    left = _without(foot, shapely.Polygon(off))
+    left = _cut_away(foot, shapely.Polygon(off))
     return left if len(left.corners) else Footprint(points=check.frozen(foot.corners[[np.argmax(away)]]))
 
 
-def _without(foot: Footprint, off: shapely.Geometry) -> Footprint:
+def _cut_away(foot: Footprint, off: shapely.Geometry) -> Footprint:
     """What of a footprint lies outside an area."""
     area = shapely.union_all([shapely.Polygon()])
     for border in foot.rings:

@@ -61,7 +61,7 @@ class Line(NamedTuple):
     farthest: float  # ... or farther from it
 
 
-class FootArrays(NamedTuple):
+class Buffers(NamedTuple):
     """Arrays the verdict works in."""
 
     rows: np.recarray  # (N,) STRETCH
@@ -79,7 +79,7 @@ class FootArrays(NamedTuple):
 
 
 @entry
-def least(foot: Foot, hole: HoleEdges, scratch: FootArrays, low: float, high: float, out: Floats) -> None:
+def least(foot: Foot, hole: HoleEdges, scratch: Buffers, low: float, high: float, out: Floats) -> None:
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 
     Into ``out`` (2,) [m, rad]. A margin below ``low`` [m] is as it comes first, not the lowest; one above
@@ -104,7 +104,7 @@ def least(foot: Foot, hole: HoleEdges, scratch: FootArrays, low: float, high: fl
 
 
 @entry
-def longest(foot: Foot, hole: HoleEdges, scratch: FootArrays, enough: float) -> float:
+def longest(foot: Foot, hole: HoleEdges, scratch: Buffers, enough: float) -> float:
     """Return the longest turn of the hole [rad] through which the margin stays below zero.
 
     Between samples the margin is taken to change evenly. A turn longer than ``enough`` [rad] is returned as
@@ -115,7 +115,7 @@ def longest(foot: Foot, hole: HoleEdges, scratch: FootArrays, enough: float) -> 
         step = (scratch.events[i + 1] - scratch.events[i]) / UNHELD_SAMPLES
         if step * UNHELD_SAMPLES <= INSTANT:
             continue
-        if _carried(foot, scratch, i, 0.0):
+        if _is_carried(foot, scratch, i, 0.0):
             turn = 0.0
             continue
         active = _status(foot, hole, scratch, i)
@@ -136,7 +136,7 @@ def longest(foot: Foot, hole: HoleEdges, scratch: FootArrays, enough: float) -> 
 
 
 @entry
-def over_ring(foot: Foot, low: float, high: float, scratch: FootArrays) -> float:
+def over_ring(foot: Foot, low: float, high: float, scratch: Buffers) -> float:
     """Return the margin [m] of a foot over the ring between two radii [m]: a balcony, a canyon, a slot.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -189,7 +189,7 @@ def farthest(places: Points, sides: Floats) -> float:
 
 
 @compiled
-def _events(foot: Foot, hole: HoleEdges, scratch: FootArrays) -> int:
+def _events(foot: Foot, hole: HoleEdges, scratch: Buffers) -> int:
     """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number."""
     for k in range(len(foot.corners)):  # the angles of the hole's edges at its radius
         radius, number = foot.polar[k, 1], 0
@@ -226,10 +226,10 @@ def _events(foot: Foot, hole: HoleEdges, scratch: FootArrays) -> int:
 
 
 @compiled
-def _bound(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int, out: Floats) -> float:
+def _bound(foot: Foot, hole: HoleEdges, scratch: Buffers, i: int, out: Floats) -> float:
     """What the margin in a piece is not below, from its two ends; infinite where it is not below ``out``."""
     low, high = scratch.events[i], scratch.events[i + 1]
-    if high - low <= INSTANT or _carried(foot, scratch, i, out[0]):
+    if high - low <= INSTANT or _is_carried(foot, scratch, i, out[0]):
         return math.inf
     active = _status(foot, hole, scratch, i)
     # the margins at both ends, and how far any point moves between them
@@ -257,7 +257,7 @@ def _lower(out: Floats, margin: float, phi: float) -> None:
 
 
 @compiled
-def _within(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int, out: Floats) -> None:
+def _within(foot: Foot, hole: HoleEdges, scratch: Buffers, i: int, out: Floats) -> None:
     """Look for a lower margin within a piece: some samples, then the golden section about the lowest."""
     _keep_corners(foot, scratch, i, foot.all_corners)
     active = _status(foot, hole, scratch, i)
@@ -279,14 +279,7 @@ def _within(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int, out: Float
 
 @compiled
 def _section(
-    foot: Foot,
-    hole: HoleEdges,
-    scratch: FootArrays,
-    i: int,
-    start: float,
-    end: float,
-    active: int,
-    out: Floats,
+    foot: Foot, hole: HoleEdges, scratch: Buffers, i: int, start: float, end: float, active: int, out: Floats
 ) -> None:
     """Put into ``out`` the least margin between two shifts of piece ``i``, by the golden section."""
     low, high = start, end
@@ -311,13 +304,13 @@ def _section(
 
 
 @outlined
-def _margin(foot: Foot, hole: HoleEdges, scratch: FootArrays, phi: float, active: int, moving: bool) -> float:
+def _margin(foot: Foot, hole: HoleEdges, scratch: Buffers, phi: float, active: int, is_moving: bool) -> float:
     count = _gather(foot, hole, scratch, phi, active, scratch.points)
-    return _inset_beside(scratch.points, count, foot, scratch.keep, moving)
+    return _inset_beside(scratch.points, count, foot, scratch.keep, is_moving)
 
 
 @compiled
-def _status(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int) -> int:
+def _status(foot: Foot, hole: HoleEdges, scratch: Buffers, i: int) -> int:
     """Fill which corners of the hole are below the foot and which stretches are crossed; their number."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in range(len(hole.nodes)):
@@ -335,7 +328,7 @@ def _status(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int) -> int:
 
 
 @compiled
-def _gather(foot: Foot, hole: HoleEdges, scratch: FootArrays, phi: float, active: int, points: Points) -> int:
+def _gather(foot: Foot, hole: HoleEdges, scratch: Buffers, phi: float, active: int, points: Points) -> int:
     """Fill the points whose hull is the supported area: crossings first; return their number."""
     for k in range(active):
         row = scratch.rows[scratch.active[k]]
@@ -390,7 +383,7 @@ def _add(points: Points, count: int, x: float, y: float) -> int:
 
 
 @outlined
-def _carried(foot: Foot, scratch: FootArrays, i: int, margin: float) -> bool:
+def _is_carried(foot: Foot, scratch: Buffers, i: int, margin: float) -> bool:
     """Whether the corners that have track below in a piece carry a foot by a margin [m] for certain.
 
     More track can only carry it better, so the few corners of its hull are asked first; with all of them it
@@ -408,7 +401,7 @@ def _carried(foot: Foot, scratch: FootArrays, i: int, margin: float) -> bool:
 
 
 @outlined
-def _kept_inset(foot: Foot, scratch: FootArrays, corners: Ints) -> float:
+def _kept_inset(foot: Foot, scratch: Buffers, corners: Ints) -> float:
     """The margin [m] on no more than those of some corners of a foot that have track below."""
     count = 0
     for k in corners:
@@ -418,7 +411,7 @@ def _kept_inset(foot: Foot, scratch: FootArrays, corners: Ints) -> float:
 
 
 @compiled
-def _keep_corners(foot: Foot, scratch: FootArrays, i: int, corners: Ints) -> None:
+def _keep_corners(foot: Foot, scratch: Buffers, i: int, corners: Ints) -> None:
     """Fill which of some corners of the foot have track below in a piece between two events."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in corners:
@@ -481,10 +474,10 @@ def _next(points: Points, count: int, ax: float, ay: float) -> int:
 
 
 @compiled
-def _inset_beside(points: Points, count: int, foot: Foot, keep: Ints, moving: bool = False) -> float:
+def _inset_beside(points: Points, count: int, foot: Foot, keep: Ints, is_moving: bool = False) -> float:
     """The same [m] of a foot of which some corners are kept, its own hull known.
 
-    ``points``: the corners kept and those that replace the others. ``moving``: leave out the sides of the
+    ``points``: the corners kept and those that replace the others. ``is_moving``: leave out the sides of the
     foot's own hull, which hide how the others move; infinite without others.
     """
     total, first = len(foot.hull), -1
@@ -503,9 +496,9 @@ def _inset_beside(points: Points, count: int, foot: Foot, keep: Ints, moving: bo
         while not keep[foot.hull[last % total]]:
             last += 1
         own = last == k + 1
-        if own and moving:
+        if own and is_moving:
             continue
-        own_inset = foot.insets[k] if own else _between(points, count, foot, k, last, moving)
+        own_inset = foot.insets[k] if own else _inset_between(points, count, foot, k, last, is_moving)
         if own_inset < 0.0:
             return _inset(points, count, foot.reach)
         line = min(line, own_inset)
@@ -513,7 +506,7 @@ def _inset_beside(points: Points, count: int, foot: Foot, keep: Ints, moving: bo
 
 
 @compiled
-def _between(points: Points, count: int, foot: Foot, k: int, last: int, moving: bool) -> float:
+def _inset_between(points: Points, count: int, foot: Foot, k: int, last: int, is_moving: bool) -> float:
     """The least line distance along the hull from one kept corner of the foot to the next, or less than 0."""
     total = len(foot.hull)
     aside, behind = foot.insets[k], foot.insets[(last - 1) % total]
@@ -527,7 +520,7 @@ def _between(points: Points, count: int, foot: Foot, k: int, last: int, moving: 
             return -1.0
         bx, by = points[there, 0], points[there, 1]
         distance = (ax * (by - ay) - ay * (bx - ax)) / math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
-        if not moving or (
+        if not is_moving or (
             abs(distance - aside) > LINE_TOLERANCE_M and abs(distance - behind) > LINE_TOLERANCE_M
         ):
             line = min(line, distance)

@@ -110,6 +110,12 @@ class Orientation:
         return bool(along >= across)
 
     @property
+    def rolls_across(self) -> bool:
+        """Whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
+        is_round = bool(np.isfinite(self.posture.rolling_circle))
+        return self.kind == "rolling" and (is_round or not self.rolls_along)
+
+    @property
     def along_a_bank(self) -> bool:
         """Whether it rolls along a banked track, which does not bring it to the wall: it does not slip."""
         return self.kind == "rolling" and self.track.bank > 0.0 and not (self.rolls_along or self.groove)
@@ -129,17 +135,17 @@ class Orientation:
     def foot(self) -> Footprint:
         """What of it touches the track."""
         whole = footprints.find_footprint(self.posture, self.heading)
-        return footprints.within(whole, self.distance, self.track.radius, self.track.width)
+        return footprints.clip_to_track(whole, self.distance, self.track.radius, self.track.width)
 
     @cached_property
-    def standing(self) -> "Foot":
+    def axial_foot(self) -> "Foot":
         """Its foot as the compiled verdict takes it."""
-        return footprints.standing(self.foot, self.distance, self.track.radius, self.shift)
+        return footprints.axial_foot(self.foot, self.distance, self.track.radius, self.shift)
 
     @cached_property
     def margin(self) -> float:
         """How far the foot of the centre of mass lies inside the supported hull on the whole track [m]."""
-        return footprints.over_ring(self.standing, 0.0, 0.0)
+        return footprints.over_ring(self.axial_foot, 0.0, 0.0)
 
     @cached_property
     def outline(self) -> Points:
@@ -167,12 +173,12 @@ class Orientation:
     @cached_property
     def balcony(self) -> float:
         """Least width of track that carries it [m]; infinite where none does."""
-        return footprints.balcony(self.standing, self.track.radius)
+        return footprints.balcony(self.axial_foot, self.track.radius)
 
     @cached_property
     def canyon(self) -> float:
         """Greatest width of a strip removed along the wall that it passes [m]; 0 for none."""
-        return footprints.canyon(self.standing, self.track.radius)
+        return footprints.canyon(self.axial_foot, self.track.radius)
 
     @cached_property
     def gap(self) -> float:
@@ -182,7 +188,7 @@ class Orientation:
 
 @lru_cache(maxsize=512)
 def _longest_gap(foot: Footprint, distance: float, radius: float, shift: float) -> float:
-    return footprints.longest_gap(footprints.standing(foot, distance, radius, shift), radius)
+    return footprints.longest_gap(footprints.axial_foot(foot, distance, radius, shift), radius)
 
 
 STILL: dict[str, Any] = dict.fromkeys(
@@ -214,37 +220,37 @@ def orientations(part: Part, aspects: Aspects, track: Track) -> tuple[Orientatio
     """
     orientations: list[Orientation] = []
     for row in np.flatnonzero(aspects.stable):
-        lying = posture(part, aspects, aspects.names[row])
+        resting = posture(part, aspects, aspects.names[row])
         chances = {rule: float(chance[row]) for rule, chance in aspects.chances.items()}
-        stable = headings(lying, track)
+        stable = headings(resting, track)
         rows = range(len(stable.headings))
-        orientations += (orientation_at(lying, stable, k, chances, track) for k in rows)
+        orientations += (orientation_at(resting, stable, k, chances, track) for k in rows)
     return tuple(orientations)
 
 
 def orientation_at(
-    lying: Posture, headings_of: Headings, row: int, chances: dict[str, float], track: Track
+    posture: Posture, headings: Headings, row: int, chances: dict[str, float], track: Track
 ) -> Orientation:
     """Return a Posture at row ``row`` of its Headings, with the chances of its aspect by rule."""
-    share = float(headings_of.shares[row])
+    share = float(headings.shares[row])
     return Orientation(
-        posture=lying,
+        posture=posture,
         track=track,
-        aspect=lying.name,
-        heading=float(headings_of.headings[row]),
+        aspect=posture.name,
+        heading=float(headings.headings[row]),
         heading_share=share,
         chances={rule: chance * share for rule, chance in chances.items()},
-        length=float(headings_of.lengths[row]),
-        width=float(headings_of.widths[row]),
-        height=float(cast(Points, lying.corners)[:, 2].max()),
-        distance=float(headings_of.distances[row]),
-        falls_off=bool(headings_of.falls_off[row] and headings_of.overhangs[row] > 0.0),  # what rolls stays
-        kind=lying.kind,
-        touching=headings_of.touching[row],
+        length=float(headings.lengths[row]),
+        width=float(headings.widths[row]),
+        height=float(cast(Points, posture.corners)[:, 2].max()),
+        distance=float(headings.distances[row]),
+        falls_off=bool(headings.falls_off[row] and headings.overhangs[row] > 0.0),  # what rolls stays
+        kind=posture.kind,
+        touching=headings.touching[row],
     )
 
 
-def travelling(orientations: Sequence[Orientation], bowl: Bowl) -> tuple[Orientation, ...]:
+def add_travel(orientations: Sequence[Orientation], bowl: Bowl) -> tuple[Orientation, ...]:
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
     The velocity of the Bowl is that of the point mass; one that does not convey carries nothing. A part
@@ -279,16 +285,9 @@ def travelling(orientations: Sequence[Orientation], bowl: Bowl) -> tuple[Orienta
             gravity=gravity,
             wall_grip=float(bowl.friction.wall),
             climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
-            may_roll_back=bool(not held and rolls_across(o)),
+            may_roll_back=not held and o.rolls_across,
         )
         for o in orientations
-    )
-
-
-def rolls_across(orientation: Orientation) -> bool:
-    """Return whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
-    return orientation.kind == "rolling" and bool(
-        np.isfinite(orientation.posture.rolling_circle) or not orientation.rolls_along
     )
 
 
@@ -401,14 +400,14 @@ def _about_centre(orientation: Orientation, axes: Floats) -> Floats:
     return vectors.product(orientation.solid.corners, axes.T)
 
 
-class _Lying:
+class _Pose:
     """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
 
     def __init__(self, orientation: Orientation) -> None:
         self.orientation, self.key = orientation, (id(orientation.posture.solid), orientation.axes.tobytes())
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Lying) and self.key == other.key
+        return isinstance(other, _Pose) and self.key == other.key
 
     def __hash__(self) -> int:
         return hash(self.key)
@@ -420,12 +419,12 @@ def neck(orientation: Orientation) -> "Neck | None":
 
     None where no end is wider than the rest of the part, or its long axis does not lie along the track.
     """
-    return _neck(_Lying(orientation))
+    return _neck(_Pose(orientation))
 
 
 @lru_cache(maxsize=512)
-def _neck(lying: _Lying) -> Neck | None:
-    orientation = lying.orientation
+def _neck(pose: _Pose) -> Neck | None:
+    orientation = pose.orientation
     # the part's own long axis: the principal one nearest to that of its outline
     units, extents = _extents(orientation.outline)
     narrow = units[int(np.argmin(extents))]
@@ -485,8 +484,8 @@ def _extents(ring: Points) -> tuple[Floats, list[float]]:
 
 def head_first(orientation: Orientation) -> bool:
     """Return whether a part with a head that lies along the track comes with its head ahead of its shank."""
-    headed = neck(orientation)
-    return headed is not None and bool(vectors.dot(orientation.axes[0], headed.down) < 0.0)
+    own_neck = neck(orientation)
+    return own_neck is not None and bool(vectors.dot(orientation.axes[0], own_neck.down) < 0.0)
 
 
 @lru_cache(maxsize=512)
@@ -499,15 +498,13 @@ def shoulders(orientation: Orientation, width: float) -> Shoulders | None:
     """
     if isinstance(orientation, Hanging) or orientation.kind == "rolling" or neck(orientation) is not None:
         return None
-    lying, radius = _Lying(orientation), orientation.track.radius
-    return _shoulders(lying, orientation.posture.height, radius, orientation.distance, width)
+    pose, radius = _Pose(orientation), orientation.track.radius
+    return _shoulders(pose, orientation.posture.height, radius, orientation.distance, width)
 
 
 @lru_cache(maxsize=512)
-def _shoulders(
-    lying: _Lying, height: float, radius: float, distance: float, width: float
-) -> Shoulders | None:
-    orientation, faces = lying.orientation, lying.orientation.posture.facets
+def _shoulders(pose: _Pose, height: float, radius: float, distance: float, width: float) -> Shoulders | None:
+    orientation, faces = pose.orientation, pose.orientation.posture.facets
     points = _about_centre(orientation, orientation.axes) + [0.0, 0.0, height]
     size, half = float(np.ptp(points, axis=0).max()), 0.5 * width
     flat = footprints.TOUCHING_SHARE * size
@@ -561,22 +558,22 @@ def hang(orientation: Orientation, span: tuple[float, ...], hanging: Sequence[Ha
     they are turned about the vertical.
     """
     stemmed, half = shoulders(orientation, span[1] - span[0]), 0.5 * (span[1] - span[0])
-    lying = _about_centre(orientation, orientation.axes)
+    corners = _about_centre(orientation, orientation.axes)
     if stemmed is None:
-        headed = cast(Neck, neck(orientation))
+        own_neck = cast(Neck, neck(orientation))
     else:  # its shoulders hold it as it lies: its stem is the shank
         rail = stemmed.drop - orientation.posture.height
-        top = lying[lying[:, 2] > rail - footprints.TOUCHING_SHARE * np.ptp(lying, axis=0).max()]
-        wide, lever = float(np.ptp(top[:, 1])), float(lying[:, 2].max())
+        top = corners[corners[:, 2] > rail - footprints.TOUCHING_SHARE * np.ptp(corners, axis=0).max()]
+        wide, lever = float(np.ptp(top[:, 1])), float(corners[:, 2].max())
         down = check.frozen(np.einsum("ij,i->j", orientation.axes, [0.0, 0.0, -1.0]))
-        headed = Neck(stemmed.stem, wide, wide, stemmed.middle, 0.0, lever, down)
+        own_neck = Neck(stemmed.stem, wide, wide, stemmed.middle, 0.0, lever, down)
     for other in hanging:
-        if vectors.dot(headed.down, other.neck.down) > SAME_HEAD_COSINE:
+        if vectors.dot(own_neck.down, other.neck.down) > SAME_HEAD_COSINE:
             return other
     if stemmed is not None:
-        axes, points, shank = orientation.axes, lying, stemmed.middle
+        axes, points, shank = orientation.axes, corners, stemmed.middle
     else:  # its shank turns down
-        up = -headed.down
+        up = -own_neck.down
         across = vectors.unit(orientation.axes[1] - up * vectors.dot(orientation.axes[1], up))
         axes = np.array([np.cross(across, up), across, up])
         points = _about_centre(orientation, axes)
@@ -611,7 +608,7 @@ def hang(orientation: Orientation, span: tuple[float, ...], hanging: Sequence[Ha
         distance=float(distance),
         falls_off=False,
         kind=HANGING,
-        neck=headed,
+        neck=own_neck,
         span=tuple(span),
         lies_on=(shank, float(0.5 * (head.min() + head.max()))),
     )

@@ -51,8 +51,8 @@ def difference(orientation: Orientation, other: Orientation, sees: str) -> float
 def _difference(lies: View, wanted_lies: View, sees: str) -> float:
     wanted = _outline_border(wanted_lies, sees)
     if sees == "outline":
-        return _fitted(_outline_border(lies, sees), wanted, 0.0)
-    return min(border_distance(_outline_border(lies, sees, by), wanted) for by in VIEW_TURNS_RAD)
+        return _fit_difference(_outline_border(lies, sees), wanted, 0.0)
+    return min(border_distance(_outline_border(lies, sees, turn), wanted) for turn in VIEW_TURNS_RAD)
 
 
 def askew(orientation: Orientation, sees: str) -> float:
@@ -65,7 +65,7 @@ def askew(orientation: Orientation, sees: str) -> float:
 @functools.lru_cache(maxsize=512)
 def _askew(lies: View, sees: str) -> float:
     straight = _outline_border(lies, sees)
-    return max(border_distance(_outline_border(lies, sees, by), straight) for by in VIEW_TURNS_RAD)
+    return max(border_distance(_outline_border(lies, sees, turn), straight) for turn in VIEW_TURNS_RAD)
 
 
 def _lies(orientation: Orientation, line: float, sees: str) -> View:
@@ -73,16 +73,16 @@ def _lies(orientation: Orientation, line: float, sees: str) -> View:
     return orientation.posture, orientation.heading, orientation.distance - line if sees == "relief" else 0.0
 
 
-def fitted(view: shapely.Geometry, wanted: shapely.Geometry, enough: float = 0.0) -> float:
+def fit_difference(view: shapely.Geometry, wanted: shapely.Geometry, enough: float = 0.0) -> float:
     """Return by how much [m] an area seen from above differs from another one, turned until it fits best.
 
     Once they differ by no more than ``enough`` [m], or by more at any turn, no better fit is sought.
     """
-    return _fitted(border(view), border(wanted), enough)
+    return _fit_difference(border(view), border(wanted), enough)
 
 
-def _fitted(view: Border, wanted: Border, enough: float) -> float:
-    def off(turn: float) -> float:
+def _fit_difference(view: Border, wanted: Border, enough: float) -> float:
+    def misfit(turn: float) -> float:
         # turned about the middle, its front and its side laid where they were
         places, sides = view.places, view.sides
         if turn:
@@ -92,29 +92,29 @@ def _fitted(view: Border, wanted: Border, enough: float) -> float:
         corner = np.array([places[:, 0].max(), places[:, 1].min()])
         return border_distance(Border(places - corner, sides - [*corner, 0.0, 0.0]), wanted)
 
-    best = off(0.0)
+    best = misfit(0.0)
     if best <= enough:
         return best
     turns = np.linspace(-MAX_VIEW_TURN_RAD, MAX_VIEW_TURN_RAD, COARSE)
-    tried = [off(turn) for turn in turns]
-    k = int(np.argmin(tried))
+    misfits = [misfit(turn) for turn in turns]
+    k = int(np.argmin(misfits))
     # between turns it may fit better by no more than this: half a step moves no place by more than its
     # distance from the middle times that, and its front and its side, to which it is laid, as far again
     far = np.sqrt((view.places**2).sum(axis=1)).max()
-    if tried[k] - float((1.0 + np.sqrt(2.0)) * far * 0.5 * (turns[1] - turns[0])) > enough > 0.0:
-        return min(best, tried[k])
+    if misfits[k] - float((1.0 + np.sqrt(2.0)) * far * 0.5 * (turns[1] - turns[0])) > enough > 0.0:
+        return min(best, misfits[k])
     low, high = turns[max(k - 1, 0)], turns[min(k + 1, COARSE - 1)]
     first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    here, there = off(first), off(second)
+    here, there = misfit(first), misfit(second)
     for _ in range(SHRINKS):
         if here < there:
             high, second, there = second, first, here
             first = high - GOLDEN * (high - low)
-            here = off(first)
+            here = misfit(first)
         else:
             low, first, here = first, second, there
             second = low + GOLDEN * (high - low)
-            there = off(second)
+            there = misfit(second)
     return min(best, here, there)
 
 
@@ -146,13 +146,13 @@ def outline(orientation: Orientation, sees: str, line: float = 0.0) -> shapely.G
 
 
 @functools.lru_cache(maxsize=2048)
-def _outline_border(lies: View, sees: str, by: float = 0.0) -> Border:
-    return border(_outline(lies, sees, by))
+def _outline_border(lies: View, sees: str, turn: float = 0.0) -> Border:
+    return border(_outline(lies, sees, turn))
 
 
 @functools.lru_cache(maxsize=2048)
-def _outline(lies: View, sees: str, by: float = 0.0) -> shapely.Geometry:
+def _outline(lies: View, sees: str, turn: float = 0.0) -> shapely.Geometry:
     posture, heading, away = lies
     points, faces = posture.surface, posture.facets
-    plan = turned(points[:, :2], heading + by)
+    plan = turned(points[:, :2], heading + turn)
     return visible_area(np.column_stack([plan + [0.0, away], points[:, 2]]), faces, sees)

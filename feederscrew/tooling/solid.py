@@ -44,22 +44,22 @@ def triangles(section: TrackSection) -> Floats:
     radius, pieces = section.track.radius, section_pieces(section, SEAM_WIDTH_M)
     low, high = pieces.wall_heights
     bodies = [
-        _leaning(radius, start, stop, lean, high) if lean else extruded(_bent(ring, radius), low, high)
+        _revolve_leaning(radius, start, stop, lean, high) if lean else extrude(_bend(ring, radius), low, high)
         for start, stop, lean, ring in pieces.walls
     ]
     body = sum(bodies[1:], bodies[0])
-    holes = shapely.union_all([_bent(hole, radius) for hole in pieces.holes])
+    holes = shapely.union_all([_bend(hole, radius) for hole in pieces.holes])
     for ring, bottom, top in pieces.plates:
-        body += extruded(_bent(ring, radius).difference(holes), bottom, top)
+        body += extrude(_bend(ring, radius).difference(holes), bottom, top)
     for ring, bottom, top in pieces.risers:
-        body += extruded(_bent(ring, radius), bottom, top)
+        body += extrude(_bend(ring, radius), bottom, top)
     for place, level, area, thick, lean in pieces.gates:
         angle, far = place / radius, radius / MM
         ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
         inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
         foot = [far * np.sin(angle), far - far * np.cos(angle), 0.0]
         across = np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, foot])
-        body += extruded(area, 0.0, thick).transform(across).translate((0.0, 0.0, level / MM))
+        body += extrude(area, 0.0, thick).transform(across).translate((0.0, 0.0, level / MM))
     points, faces = whole_surface.mesh(body)
     # each from its first corner on, in the order of the corners
     corners = points[faces]
@@ -135,7 +135,7 @@ def leaning_wall(
 
     Source: own; docs/tooling.md, "A groove".
     """
-    return _surface(_leaning(radius, start, stop, lean, high))
+    return _surface(_revolve_leaning(radius, start, stop, lean, high))
 
 
 def leaning_profile(radius: float, lean: float, high: float) -> Points:
@@ -145,7 +145,7 @@ def leaning_profile(radius: float, lean: float, high: float) -> Points:
     return np.array([low, low + WALL * out, top + WALL * out, top]) + [radius, 0.0]
 
 
-def _leaning(radius: float, start: float, stop: float, lean: float, high: float) -> "Manifold":
+def _revolve_leaning(radius: float, start: float, stop: float, lean: float, high: float) -> "Manifold":
     """A body [mm]: a wall from the track's outer edge on, as wide as ``high`` [m] up its slope."""
     across = leaning_profile(radius, lean, high)
     round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_CHORD_M / radius)))
@@ -159,7 +159,7 @@ def prism(area: shapely.Geometry, low: float, high: float) -> tuple[Points, Tria
 
     Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside.
     """
-    return _surface(extruded(area, low, high))
+    return _surface(extrude(area, low, high))
 
 
 def _surface(body: "Manifold") -> tuple[Points, Triangles]:
@@ -167,11 +167,11 @@ def _surface(body: "Manifold") -> tuple[Points, Triangles]:
     return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
 
 
-def _bent(ring: Points, radius: float) -> shapely.Geometry:
+def _bend(ring: Points, radius: float) -> shapely.Geometry:
     return shapely.make_valid(shapely.Polygon(bend_ring(np.asarray(ring), radius)))
 
 
-def extruded(area: shapely.Geometry, low: float, high: float) -> "Manifold":
+def extrude(area: shapely.Geometry, low: float, high: float) -> "Manifold":
     """Return a body [mm] over a shapely area [m] of the plane between two heights [m]."""
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]

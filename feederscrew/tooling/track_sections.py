@@ -13,7 +13,7 @@ from feederscrew.bowl.record import Track
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import BLADE, GATE_FRAME_M, Device, Standing, Verdict, room_of
 from feederscrew.tooling.devices.openings import through_the_wall
-from feederscrew.tooling.fates import astride, leading
+from feederscrew.tooling.fates import leading_devices, stand_astride
 from feederscrew.tooling.orientations import Orientation, hang
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
@@ -58,7 +58,7 @@ class TrackSection:
     @property
     def walls(self) -> list[tuple[float, float, float]]:
         """Stretches of the wall, (from, to, lean) [m, m, rad]; a groove listed first begins at the entry."""
-        first = leading([station.device for station in self.stations])
+        first = leading_devices([station.device for station in self.stations])
         turns = [
             (0.0 if place < len(first) else station.start, station.wall)
             for place, station in enumerate(self.stations)
@@ -168,7 +168,7 @@ def worst_passage(device: Device, orientation: Orientation, orientations: Sequen
     """Return an orientation at the place of a device where its margin is least."""
     outcome = verdict(device, orientation, orientations)
     touching, weight = foot_area(orientation), (0.0, orientation.distance - orientation.shift)
-    holes = [_hole(device, orientation, by) for by in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
+    holes = [_hole(device, orientation, turn) for turn in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
     hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
     point = shapely.Point(weight)
     within = [h.boundary.distance(point) if h.contains(point) else -h.distance(point) for h in hulls]
@@ -179,7 +179,7 @@ def worst_passage(device: Device, orientation: Orientation, orientations: Sequen
         after = hang(orientation, device.span)
     else:
         rails = device.hangs and outcome.passes > 0.0
-        after = astride(orientation, device.span) if rails else device.onward(orientation)
+        after = stand_astride(orientation, device.span) if rails else device.onward(orientation)
     return Passage(
         device=device,
         orientation=orientation,
@@ -235,15 +235,15 @@ def until_returned(
 def _hole_shift(device: Device, orientation: Orientation) -> float | None:
     """By how much [rad] a hole with an edge across the track is ahead of the part where it bears least."""
     hole = device.hole_on(orientation.track)
-    return None if hole is None else footprints.least(orientation.standing, hole)[1]
+    return None if hole is None else footprints.least(orientation.axial_foot, hole)[1]
 
 
-def _hole(device: Device, orientation: Orientation, by: float) -> shapely.Geometry | None:
+def _hole(device: Device, orientation: Orientation, turn: float) -> shapely.Geometry | None:
     """What a device cuts away where the margin is least, about the radial line of the foot."""
     track, length = orientation.track, SHOWN_HOLE_LENGTHS * orientation.length
     ring, shift = device.outline_on(track, length), _hole_shift(device, orientation)
     if ring is None:
         return None
-    shift = -0.5 * length / track.radius if shift is None else shift + by
+    shift = -0.5 * length / track.radius if shift is None else shift + turn
     ring = bend_ring(np.array(through_the_wall(ring.tolist())), track.radius, shift, PASSAGE_CHORD_M)
     return shapely.make_valid(shapely.Polygon(ring))

@@ -166,7 +166,7 @@ def over_step(
         rear = left * max(fell, 0.0)
     stays = min(turn.lift - height, turn.rear_lift - rear, _skew_lift(orientation) - height)
     margin = max(stays, _certain(orientation, orientations, turn, height))
-    return _turned(turn, min(max(share, 0.0), 1.0), height), margin
+    return _split_turn(turn, min(max(share, 0.0), 1.0), height), margin
 
 
 def beyond_ledge(
@@ -179,7 +179,7 @@ def beyond_ledge(
     """
     turn, drop = turn_over(orientation, tuple(orientations), True), below_ledge(orientations)
     if drop >= turn.sure:
-        return _turned(turn, 1.0, drop), _certain(orientation, orientations, turn, drop)
+        return _split_turn(turn, 1.0, drop), _certain(orientation, orientations, turn, drop)
     over, height, corners = orientation.distance - width, orientation.posture.height, orientation.foot.corners
     reach = (corners[:, 1].max() if len(corners) else 0.0) + over
     tilt = math.asin(min(drop / reach, 1.0)) if reach > 0.0 else 0.5 * math.pi
@@ -190,7 +190,7 @@ def beyond_ledge(
     if missed > 0.0:
         pitch = turn_over(orientation, tuple(orientations), False).lift - (drop - fell)
         return (), min(missed, pitch, _skew_lift(orientation) - drop)
-    return _turned(turn, 0.5, drop), drop - turn.sure
+    return _split_turn(turn, 0.5, drop), drop - turn.sure
 
 
 def _certain(orientation: Orientation, orientations: Sequence[Orientation], turn: Turn, drop: float) -> float:
@@ -214,7 +214,7 @@ def _skew_lift(orientation: Orientation) -> float:
     return float(lifts[askew].min(initial=math.inf))
 
 
-def _turned(turn: Turn, share: float, drop: float) -> PlaceShares:
+def _split_turn(turn: Turn, share: float, drop: float) -> PlaceShares:
     """Orientations it is turned into, with their shares: half of them further where momentum may carry on."""
     if not share > 0.0:
         return ()
@@ -247,7 +247,7 @@ def turn_over(orientation: Orientation, orientations: tuple[Orientation, ...], i
     hull = convex_hull(cast(Points, solid.vertices), solid.centre_of_mass, solid.source)
     x, y, z = orientation.axes
     lying = (y, x, -z) if inwards else (x, y, -z)
-    angle, height, landed = _tipped(hull, lying, inwards)
+    angle, height, landed = _tip_over(hull, lying, inwards)
     lift = max(height - high, 0.0)
     behind = barrier(vectors.product(hull.vertices, np.column_stack([-lying[0], lying[2]])))[1]
     foot = orientation.foot.corners[:, int(inwards)]
@@ -264,12 +264,12 @@ def turn_over(orientation: Orientation, orientations: tuple[Orientation, ...], i
         rear_lift=max(behind - high, 0.0),
         sure=max(long * math.sin(min(angle, 0.5 * math.pi)), lift),
         holds=max(rise / left + low - high, 0.0) if left > 0.0 else math.inf,
-        onto=_landed(orientation, hull, landed, inwards, orientations),
-        beyond=_landed(orientation, hull, _tipped(hull, landed, inwards)[2], inwards, orientations),
+        onto=_find_landing(orientation, hull, landed, inwards, orientations),
+        beyond=_find_landing(orientation, hull, _tip_over(hull, landed, inwards)[2], inwards, orientations),
     )
 
 
-def _tipped(hull: Hull, frame: Frame, inwards: bool) -> tuple[float, float, Frame]:
+def _tip_over(hull: Hull, frame: Frame, inwards: bool) -> tuple[float, float, Frame]:
     """The barrier's angle, its height, and the frame a part tips into: to the side, along its axis, down."""
     side, rear, down = frame
     angle, height = barrier(vectors.product(hull.vertices, np.column_stack([side, down])))
@@ -282,7 +282,7 @@ def _tipped(hull: Hull, frame: Frame, inwards: bool) -> tuple[float, float, Fram
     return angle, height, (np.cross(rear, rests) if inwards else np.cross(rests, rear), rear, rests)
 
 
-def _landed(
+def _find_landing(
     orientation: Orientation, hull: Hull, frame: Frame, inwards: bool, orientations: Sequence[Orientation]
 ) -> int:
     """Place of the orientation that a part takes against the wall, set down in a frame."""
@@ -291,16 +291,16 @@ def _landed(
     corners = vectors.product(hull.vertices, axes.T)
     height = -corners[:, 2].min()
     corners[:, 2] += height
-    lying = replace(
+    posture = replace(
         orientation.posture,
         height=float(height),
         outline=outline(corners[:, :2]),
         corners=check.frozen(corners),
         axes=check.frozen(axes),
     )
-    stable = wall.headings(lying, orientation.track)
+    stable = wall.headings(posture, orientation.track)
     turn = stable.headings[wall.settled(stable, 0.0)]
-    (supports,), _ = sameness.looks(lying, [turn])
+    (supports,), _ = sameness.looks(posture, [turn])
     differences = [np.abs(_look(other) - supports[0]).max() for other in orientations]
     return int(np.argmin(np.round(differences, 6)))
 
@@ -383,16 +383,16 @@ def _turns(step: float) -> Floats:
 @functools.lru_cache(maxsize=2048)
 def _reach_in_groove(posture: Posture, heading: float, angle: float) -> Floats:
     """What one that comes with a heading reaches (REACH_DIRECTIONS,) [m] as it lies in a groove."""
-    return _reach(settled_in_groove(_standing(posture, heading), angle))
+    return _reach(settled_in_groove(_corners_from_centre(posture, heading), angle))
 
 
 @functools.lru_cache(maxsize=2048)
 def _reaches(posture: Posture, heading: float) -> Floats:
     """What an orientation reaches (N, REACH_DIRECTIONS) [m], turned a little."""
-    return np.array([_reach(_standing(posture, heading + by)) for by in HEADING_OFFSETS])
+    return np.array([_reach(_corners_from_centre(posture, heading + by)) for by in HEADING_OFFSETS])
 
 
-def _standing(posture: Posture, heading: float) -> Floats:
+def _corners_from_centre(posture: Posture, heading: float) -> Floats:
     """A part (V, 3) [m] from its centre of mass as it lies on the track at a heading [rad]."""
     c, s = np.cos(heading), np.sin(heading)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -446,10 +446,10 @@ class DeviceEncounter:
         """Return the verdict of a margin [m]; ``shift`` [rad] and ``hangs`` as in Verdict."""
         return Verdict(self.share(margin), float(margin), float(shift), hangs)
 
-    def turning(self, turned: PlaceShares, margin: float) -> Verdict:
+    def turning(self, shares: PlaceShares, margin: float) -> Verdict:
         """Return the verdict of a device that turns shares of it into others: (place, share) each."""
-        here, stays = self.place, 1.0 - sum(part for _, part in turned)
-        return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + tuple(turned))
+        here, stays = self.place, 1.0 - sum(part for _, part in shares)
+        return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + tuple(shares))
 
     def share(self, margin: float) -> float:
         """Return the share that passes at a margin [m]."""
@@ -459,15 +459,15 @@ class DeviceEncounter:
         """Return its margin [m] on a track without what lies between two distances off the wall."""
         radius, (first, last) = self.orientation.track.radius, span
         high = radius - first if first > 0.0 else 2.0 * radius
-        return footprints.over_ring(self.orientation.standing, max(radius - last, 0.0), high)
+        return footprints.over_ring(self.orientation.axial_foot, max(radius - last, 0.0), high)
 
     def over_slot(self, span: tuple[float, ...]) -> float:
         """Return the same, unless it may ride over the hole on its sides: it is then not sure."""
         margin = self.over_span(span)
         return max(margin, -UNSURE) if self.rides(span[1] - span[0], np.inf) else margin
 
-    over_hole = _asks(lambda orientation, hole: footprints.least(orientation.standing, hole))
-    unheld = _asks(lambda orientation, hole: footprints.unheld(orientation.standing, hole))
+    over_hole = _asks(lambda orientation, hole: footprints.least(orientation.axial_foot, hole))
+    unheld = _asks(lambda orientation, hole: footprints.unheld(orientation.axial_foot, hole))
     leans = _asks(falling.wall_holds)  # (width)
     rides = _asks(falling.rides_over)  # (width, length)
     falls_through = _asks(falling.falls_through)  # (cut)
@@ -481,22 +481,22 @@ class DeviceEncounter:
 
     def held_by_head(self, width: float, widest: float) -> float:
         """Return by how much [m] a slot of some width lets the shank down and, ``widest``, holds the head."""
-        headed = neck(self.orientation)
-        return -np.inf if headed is None else min(width - headed.shank, headed.head - widest)
+        own_neck = neck(self.orientation)
+        return -np.inf if own_neck is None else min(width - own_neck.shank, own_neck.head - widest)
 
     def may_catch(self, entry: tuple[float, ...], span: tuple[float, ...]) -> bool:
         """Return whether its head may stick between rails as a wedge, or its shank not turn down.
 
         The rails begin with an ``entry`` and have a ``span``: each is from and to, off the wall [m].
         """
-        own, headed = self.orientation, neck(self.orientation)
+        own, own_neck = self.orientation, neck(self.orientation)
         if own.grip <= 0.0:
             return False
-        if headed is None or (head_first(own) and falling.may_wedge(own, entry)):
+        if own_neck is None or (head_first(own) and falling.may_wedge(own, entry)):
             return True
-        is_straight = abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank
-        beyond = own.distance + headed.tip - entry[0]
-        goes_down = is_straight or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * headed.shank
+        is_straight = abs(own_neck.tip) <= STRAIGHT_SHANK_SHARE * own_neck.shank
+        beyond = own.distance + own_neck.tip - entry[0]
+        goes_down = is_straight or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * own_neck.shank
         return not (goes_down and falling.hangs_free(own, span))
 
     def blown(self, force: float, down: float, seconds: float) -> float:

@@ -43,7 +43,7 @@ def _surface(body: Any, simpler: float) -> tuple[Points, Triangles]:
     The library's own simplifying takes whole wedges off some bodies, whatever the length.
     """
     surface = (body.simplify(simpler) if simpler else body).to_mesh64()
-    points = _single(np.asarray(surface.vert_properties)[:, :3])
+    points = _round_to_single(np.asarray(surface.vert_properties)[:, :3])
     faces = np.asarray(surface.tri_verts).astype(int)
     # without shells of next to no volume, but for the largest
     i, j = np.concatenate([faces[:, :2], faces[:, 1:]]).T
@@ -51,7 +51,7 @@ def _surface(body: Any, simpler: float) -> tuple[Points, Triangles]:
     own = shells[faces[:, 0]]
     volumes = np.abs(np.bincount(own, _volumes(points, faces), count))
     faces = faces[(volumes[own] > MIN_VOID_VOLUME_MM3) | (own == np.argmax(volumes))]
-    points, faces = closed(points, faces)
+    points, faces = close_surface(points, faces)
     change = abs(float(_volumes(points, faces).sum()) - body.volume())
     if change > MIN_VOID_VOLUME_MM3 + VOLUME_ROUNDING * body.volume():
         raise FeederError("the body", "its surface closes another volume", "take other sizes")
@@ -62,7 +62,7 @@ def _surface(body: Any, simpler: float) -> tuple[Points, Triangles]:
     return check.frozen(points * MM), check.frozen(faces[np.lexsort(faces.T[::-1])])
 
 
-def closed(points: Points, faces: Triangles) -> tuple[Points, Triangles]:
+def close_surface(points: Points, faces: Triangles) -> tuple[Points, Triangles]:
     """Return points and faces of a surface that is closed by the places of its corners alone.
 
     ``points`` (V, 3) [mm] are in single precision, several may lie at one place; each edge of the ``faces``
@@ -71,7 +71,7 @@ def closed(points: Points, faces: Triangles) -> tuple[Points, Triangles]:
     """
     points = np.array(points, float)
     for _ in range(MAX_MERGE_ROUNDS):
-        faces, stuck = _with_area(points, _collapsed(points, faces))
+        faces, stuck = _drop_flat_facets(points, _collapse_edges(points, faces))
         used = np.unique(faces)  # of them those that lie at the place of another
         shared = used[np.unique(cKDTree(points[used]).query_pairs(MERGE_DISTANCE_MM, output_type="ndarray"))]
         coincident = np.union1d(shared, stuck).astype(int)
@@ -84,13 +84,13 @@ def closed(points: Points, faces: Triangles) -> tuple[Points, Triangles]:
             sizes = np.sqrt((offsets**2).sum(axis=1, keepdims=True))
             direction = np.divide(offsets, sizes, out=np.zeros_like(offsets), where=sizes > 0.0).sum(axis=0)
             size = np.sqrt((direction**2).sum())
-            moved[corner] = _single(points[corner] + SEPARATION_MM * direction / max(size, 1e-3))
+            moved[corner] = _round_to_single(points[corner] + SEPARATION_MM * direction / max(size, 1e-3))
         points = moved
     what = f"{len(coincident)} corners of its surface lie on others"
     raise FeederError("the body", what, "move its cuts apart, or take other sizes")
 
 
-def _single(points: Points) -> Points:
+def _round_to_single(points: Points) -> Points:
     return np.asarray(points).astype(np.float32).astype(float) + 0.0  # no -0
 
 
@@ -100,7 +100,7 @@ def _volumes(points: Points, faces: Triangles) -> Floats:
     return (a * np.cross(b, c)).sum(axis=1) / 6.0
 
 
-def _collapsed(points: Points, faces: Triangles) -> Triangles:
+def _collapse_edges(points: Points, faces: Triangles) -> Triangles:
     """The faces, each edge of next to no length taken away where that does not join two sheets."""
     faces, before = np.array(faces), np.inf
     while len(faces) < before:
@@ -116,19 +116,19 @@ def _collapsed(points: Points, faces: Triangles) -> Triangles:
     return faces
 
 
-def _with_area(points: Points, faces: Triangles) -> tuple[Triangles, Ints]:
+def _drop_flat_facets(points: Points, faces: Triangles) -> tuple[Triangles, Ints]:
     """The facets without those that rounding left no area, and the corners where that cannot be."""
     stuck = set()
     for _ in range(MAX_MERGE_ROUNDS * MAX_MERGE_ROUNDS):
-        flat = [row for row in _flat(points, faces) if row[2] not in stuck]
+        flat = [row for row in _find_flat_facets(points, faces) if row[2] not in stuck]
         if not flat:
             break
-        faces, turned = _turned(faces, *flat[0])
+        faces, turned = _turn_edge(faces, *flat[0])
         stuck |= set() if turned else {flat[0][2]}
     return faces, np.array(sorted(stuck), int)
 
 
-def _flat(points: Points, faces: Triangles) -> list[tuple[int, int, int]]:
+def _find_flat_facets(points: Points, faces: Triangles) -> list[tuple[int, int, int]]:
     """The facets whose three places lie on a line, as (one end, other end, corner between)."""
     a, b, c = points[faces].transpose(1, 0, 2)
     slivers = []
@@ -140,7 +140,7 @@ def _flat(points: Points, faces: Triangles) -> list[tuple[int, int, int]]:
     return slivers
 
 
-def _turned(faces: Triangles, a: int, b: int, c: int) -> tuple[Triangles, bool]:
+def _turn_edge(faces: Triangles, a: int, b: int, c: int) -> tuple[Triangles, bool]:
     """The faces without the flat one (a, b, c), and whether that could be."""
     following = np.roll(faces, -1, axis=1)
     own = (faces == a) & (following == b)

@@ -343,7 +343,7 @@ def blows_off(sensor: Sensor, part_in_bowl: BowlOfPart, states: States, level: f
         area = sensor_views.visible_area(spots, faces, sensor.sees, fine, view.distance)
         wanted = sensor_views.outline(view, sensor.sees, view.distance)
         if sensor.sees == "outline":
-            differs = sensor_views.fitted(area, wanted, sensor.play)
+            differs = sensor_views.fit_difference(area, wanted, sensor.play)
         else:
             differs = sensor_views.outline_distance(area, wanted)
         if not differs > sensor.play:

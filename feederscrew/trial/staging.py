@@ -16,7 +16,7 @@ from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.geometry.polygons import cross
 from feederscrew.tooling.devices.base import Blade, Device, Sensor, Slope, Standing
 from feederscrew.tooling.devices.openings import beyond_borders
-from feederscrew.tooling.fates import leading
+from feederscrew.tooling.fates import leading_devices
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, Orientation
 from feederscrew.tooling.track_sections import bend_ring
 from feederscrew.trial.kernel.workspace import BORDER, JET, PLATE_RECORD, Rows
@@ -150,7 +150,7 @@ def entry_slopes(
 ) -> tuple[Slope, ...]:
     """Return the slopes of the devices that come first and lean the track: they begin at its entry."""
     return tuple(
-        slope for device in leading(devices) for slope in device.standing(track, orientations).slopes
+        slope for device in leading_devices(devices) for slope in device.standing(track, orientations).slopes
     )
 
 

@@ -25,7 +25,7 @@ from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.orientations import add_travel, orientations
 from feederscrew.tooling.track_sections import bend_ring, build_section
 from feederscrew.tooling.verdicts import verdict
 
@@ -224,7 +224,7 @@ def test_what_leaves_is_drawn_as_it_leaves(lying):
 def test_rails_are_cut_across_under_what_hangs():
     screw = parts.load(ROOT / "docs/tutorial/countersunk_m4x12.stl")
     bowl = bowls.read(None, ["track.width=15 mm"])
-    every = travelling(orientations(screw, find(screw), bowl.track), bowl)
+    every = add_travel(orientations(screw, find(screw), bowl.track), bowl)
     along = next(one for one in every if one.length > 0.011 and one.height < 0.009)
     page = tooling_figures.chain([make_device("rails", "here", span=(2.1e-3, 6.6e-3))], [along], np.ones(1))
     near, far, part = (patch.get_path().get_extents() for patch in page.axes[-1].patches)

@@ -343,7 +343,7 @@ def test_tips_in_one_place_part_each_into_its_own_body():
     upper = np.array([[0.0, 0.0, 0.0], [9.0, 0.0, 9.0], [0.0, 9.0, 9.0], [-9.0, -9.0, 9.0]])
     points = np.concatenate([upper, -upper]) + [5.0, 5.0, -20.0]
     faces = np.array([(0, 2, 1), (0, 3, 2), (0, 1, 3), (1, 2, 3)])
-    parted, _ = whole_surface.closed(points, np.concatenate([faces, faces[:, ::-1] + 4]))
+    parted, _ = whole_surface.close_surface(points, np.concatenate([faces, faces[:, ::-1] + 4]))
     assert parted[[0, 4], 2] - points[[0, 4], 2] == pytest.approx([1e-3, -1e-3], rel=0.01)
 
 

@@ -21,7 +21,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling import verdicts
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.devices.pneumatics import thrust
-from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.orientations import add_travel, orientations
 from feederscrew.tooling.verdicts import verdict
 
 BOWL = """\
@@ -117,7 +117,7 @@ def test_a_trial_scales_with_gravity(files):
 def lying(*settings):
     """A box that travels in a bowl with some settings, in all its orientations."""
     bowl = bowls.read(None, ["track.width=30 mm", *settings])
-    return travelling(orientations(PART, find(PART), bowl.track), bowl)
+    return add_travel(orientations(PART, find(PART), bowl.track), bowl)
 
 
 def device_of(kind, states):

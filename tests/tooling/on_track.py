@@ -12,7 +12,7 @@ from feederscrew.bowl.record import Track
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.orientations import add_travel, orientations
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)  # as good as straight
@@ -39,7 +39,7 @@ def lying(body, track=LEVEL):
 
 def coming(body, bowl=WIDE):
     """Orientations of a part or mesh as they travel on the track of a bowl."""
-    return travelling(lying(body, bowl.track), bowl)
+    return add_travel(lying(body, bowl.track), bowl)
 
 
 def pick(every, length=None, height=None):

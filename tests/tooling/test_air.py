@@ -162,12 +162,12 @@ def test_an_outline_is_turned_until_it_fits_and_no_further():
         return shapely.affinity.translate(area, -area.bounds[2], -area.bounds[1])
 
     for degrees in (-9.0, -2.2, 0.0, 3.4, 9.9):
-        assert sensor_views.fitted(askew(degrees), bar) < 3e-5
+        assert sensor_views.fit_difference(askew(degrees), bar) < 3e-5
     assert sensor_views.outline_distance(askew(3.4), bar) > 1e-3  # what it was without
     left = sensor_views.outline_distance(askew(5.0), bar)
-    assert sensor_views.fitted(askew(15.0), bar) == pytest.approx(left, abs=2e-4)
+    assert sensor_views.fit_difference(askew(15.0), bar) == pytest.approx(left, abs=2e-4)
     other = shapely.box(-0.023, 0.0, 0.0, 0.007)
-    assert sensor_views.fitted(askew(3.0), other) == pytest.approx(1e-3, abs=5e-5)
+    assert sensor_views.fit_difference(askew(3.0), other) == pytest.approx(1e-3, abs=5e-5)
     # From the side a block is longer by l cos 4 deg + w sin 4 deg - l: what is that much longer may be it.
     turn = np.radians(4.0)
     longer = FLAT.length * (np.cos(turn) - 1.0) + FLAT.width * np.sin(turn)

@@ -105,7 +105,7 @@ def test_a_convex_hole_says_what_any_hole_does():
 
 def test_three_points_do_not_carry_a_part_over_a_hole_larger_than_itself():
     points = 1e-3 * np.array([[-7.0, -4.0], [7.0, -4.0], [0.0, 4.0]])
-    foot = footprints.standing(Footprint((), np.empty((0, 2, 2)), points), 6e-3, 0.15)
+    foot = footprints.axial_foot(Footprint((), np.empty((0, 2, 2)), points), 6e-3, 0.15)
     large, small = (openings.polygon(rectangle(*size), 0.15) for size in ((60, 38.7, 0.3), (5, 9, 30)))
     assert footprints.least(foot, large)[0] < 0.0
     whole = shapely.Polygon(points).exterior.distance(shapely.Point(0, 0))

@@ -78,7 +78,7 @@ def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking():
 def test_a_cut_is_not_eased_without_end_for_what_falls_off_at_any_width():
     """It was infinitely wide where a shank, which rolls off, was all that a narrowed track had to return."""
     study = tooling(load("hexbolt_m8x25"), BOWL, "B", verdicts=1, without=SENSOR, vary=False)
-    every, narrow = study.orientations, next(k for k in chain.numbered() if k.kind == "narrowed_track")
+    every, narrow = study.orientations, next(k for k in chain.numeric_kinds() if k.kind == "narrowed_track")
     needed = chain.limits(narrow, every)
     cut = narrow("own").valued(float(needed[study.wanted]) + 5e-4)
     (placed,) = chain.place_devices(every, study.wanted, [cut], [np.isinf(needed)], least=2.5e-4)
@@ -109,7 +109,7 @@ def test_every_cut_holds_what_it_says_holes_part_mirror_images_and_enough_purity
     assert repeat.device == cut.device
     # One that the count of verdicts ends is made once: the same again needs no hole to start from.
     first = HoleSearch(verdicts=300)
-    again = first.started()
+    again = first.start()
     hole_search.cut_out(every, wanted, [partner], MARGIN, first)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hole_search, "STARTS", 0)
@@ -255,7 +255,9 @@ def test_the_design_of_a_dowel_begins_with_its_bank(dowel):
     shares = np.array([one.chances["csa"] for one in every])
     bank = slanted("bank", 6.0, "6 deg")
     grooves = {angle: slanted("groove", angle, f"{{angle: {angle} deg}}") for angle in (15.0, 45.0, 55.0)}
-    lying_along = {angle: design.coming(every, shares, (one, bank))[0] for angle, one in grooves.items()}
+    lying_along = {
+        angle: design.coming_shares(every, shares, (one, bank))[0] for angle, one in grooves.items()
+    }
     assert lying_along[45.0] == pytest.approx(shares[0])  # there what lies across stands on its end
     assert lying_along[15.0] == pytest.approx(shares[0], abs=8e-3)  # and there it rolls back first
     returned = shares[[one.returned for one in every]].sum()

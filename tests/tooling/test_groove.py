@@ -16,7 +16,7 @@ from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import velocity
 from feederscrew.studies.rate import rate, shares
 from feederscrew.tooling import solid
-from feederscrew.tooling.fates import at_entry, course, leading
+from feederscrew.tooling.fates import at_entry, course, leading_devices
 from feederscrew.tooling.track_sections import build_section, worst_passage
 from feederscrew.tooling.verdicts import becomes_in_groove, groove_height, settled_in_groove, verdict
 
@@ -70,9 +70,9 @@ def test_what_lies_flat_stays_what_is_round_lies_along_and_a_queue_travels_as_in
     assert stream.needed_spacing([groove(40.0)], in_groove, WIDE) == 0.0
     # A groove begins at the entry, and a bank ends it.
     bank, steep = slanted("bank", 6.0), slanted("separation", -4.0)
-    assert leading([groove(30.0), steep, bank]) == (groove(30.0), steep)
-    assert leading([bank, groove(30.0), bank]) == (bank, groove(30.0))
-    assert leading([device("gap", limit=1e-3), bank]) == ()
+    assert leading_devices([groove(30.0), steep, bank]) == (groove(30.0), steep)
+    assert leading_devices([bank, groove(30.0), bank]) == (bank, groove(30.0))
+    assert leading_devices([device("gap", limit=1e-3), bank]) == ()
 
 
 def test_a_round_part_is_sure_in_a_groove_and_no_bank_brings_it_to_the_wall():

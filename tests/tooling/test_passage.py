@@ -17,7 +17,7 @@ STRAIGHT, CURVED = 100.0, 0.15  # [m]
 def standing(distance, radius, *rings):
     """What stands on rings of corners (K, 2) about its weight, so far off the wall."""
     foot = Footprint(tuple(np.array(ring, float) for ring in rings), np.empty((0, 2, 2)), np.empty((0, 2)))
-    return footprints.standing(foot, distance, radius)
+    return footprints.axial_foot(foot, distance, radius)
 
 
 def rectangle(length, width, x=0.0, y=0.0):

@@ -110,7 +110,7 @@ def test_what_travels_is_carried_and_what_is_beyond_the_free_edge_meets_no_gate(
     assert over.passes == 0.0 and -1e-8 < over.margin < 0.0
     assert verdict(written("gap: 14 mm"), one).margin == pytest.approx(-2e-3, rel=1e-3)
     hole = openings.gap(14e-3, LEVEL.radius, 0.02)
-    assert footprints.unheld(one.standing, hole) == pytest.approx(4e-3, rel=1e-3)
+    assert footprints.unheld(one.axial_foot, hole) == pytest.approx(4e-3, rel=1e-3)
     cut = written("cut_out: [[0 mm, 0 mm], [14 mm, 0 mm], [14 mm, 15 mm], [0 mm, 15 mm]]")
     assert verdict(cut, one).margin == pytest.approx(-2e-3, rel=2e-2)
     # What is beyond the free edge meets no gate.

@@ -20,7 +20,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.fates import at_entry
-from feederscrew.tooling.orientations import Hanging, orientations, travelling
+from feederscrew.tooling.orientations import Hanging, add_travel, orientations
 from feederscrew.tooling.verdicts import DeviceEncounter
 from feederscrew.trial import course, long_ride, part_poses, queue, runs, shape, staging
 from feederscrew.trial.long_ride import LEFT, RideOfTrack
@@ -175,7 +175,7 @@ def in_groove(angle, radius=50.0, bowl=GROOVE_BOWL):
     """A bowl, the dowel's orientations in a groove, its state against the leaning wall, and how it rides."""
     bowl = replace(bowl, track=replace(bowl.track, radius=radius))
     chain = (make_device("groove", "g", angle=angle * DEG),)
-    every = at_entry(travelling(orientations(DOWEL, find(DOWEL), bowl.track), bowl), chain)
+    every = at_entry(add_travel(orientations(DOWEL, find(DOWEL), bowl.track), bowl), chain)
     one = next(one for one in every if one.name == "A@0")
     solid, length, principal = shape.solid_of(DOWEL)
     solid = shape.round_circles(solid, course.roll_axes(every, principal))

@@ -23,7 +23,7 @@ from feederscrew.rates import stream
 from feederscrew.running import RunSettings
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.orientations import travelling
+from feederscrew.tooling.orientations import add_travel
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import course, looks, part_poses, runs, shape, staging
 from feederscrew.trial.queue import QueuePlan, queue_of
@@ -180,7 +180,7 @@ def test_a_hole_whose_corners_run_slanting_into_the_wall_is_the_one_that_is_draw
     part = shapes.part(shapes.box(21.62, 11.89, 7.12))
     text = ", ".join(f"[{x} mm, {y} mm]" for x, y in SLANTED)
     slanted = bowl(f"cut_out: [{text}]", own=["track.width=25 mm"])
-    track, every = slanted.track, travelling(lying(part, slanted), slanted)
+    track, every = slanted.track, add_travel(lying(part, slanted), slanted)
     stage = staging.stage_device(slanted.devices[0], track, every)
     borders = stage.borders[stage.plates[0].begin : stage.plates[0].end]
     x, y = borders.start_x, track.radius - borders.start_y

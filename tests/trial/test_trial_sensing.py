@@ -11,14 +11,14 @@ from feederscrew.dropping.kernel import body
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles, thrust
-from feederscrew.tooling.orientations import orientations, travel_speed, travelling
+from feederscrew.tooling.orientations import add_travel, orientations, travel_speed
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import course, queue, runs, staging
 from feederscrew.trial.kernel import jets
 from feederscrew.trial.queue import QueuePlan, queue_of
 
 BOWL = bowls.read(None, ["track.width=40 mm"])
-EVERY = travelling(orientations(PART, ASPECTS, BOWL.track), BOWL)
+EVERY = add_travel(orientations(PART, ASPECTS, BOWL.track), BOWL)
 ALONG = next(one for one in EVERY if one.length > 0.0199 and one.height < 0.0051)
 SORTER = make_device("sorter", "here", like=(ALONG.aspect, ALONG.heading, 5e-4))
 SORTING = replace(BOWL, devices=(SORTER,))

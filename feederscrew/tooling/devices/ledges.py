@@ -90,7 +90,7 @@ class _Ledge(Device):
 
     def ledge_margin(self, encounter: "DeviceEncounter") -> float:
         needed = encounter.orientation.balcony
-        return self.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
+        return self.limit - needed if math.isfinite(needed) else -encounter.orientation.axial_foot.reach
 
 
 class Tip(_Ledge, _Turner):

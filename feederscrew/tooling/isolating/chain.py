@@ -91,12 +91,12 @@ class DesignConstraints:
     @property
     def sensed(self) -> bool:
         """Whether a sensor may be used."""
-        return any(self.allows(kind.kind) for kind in values_around())
+        return any(self.allows(kind.kind) for kind in sensing_kinds())
 
     @property
     def clearing(self) -> bool:
         """Whether a blade that clears itself may be used."""
-        return any(self.allows(kind.kind) for kind in numbered() if kind.overhead)
+        return any(self.allows(kind.kind) for kind in numeric_kinds() if kind.overhead)
 
 
 # -- the devices that may do it
@@ -122,7 +122,7 @@ def candidates(
     """
     devices: list[Device] = []
     constraints = constraints or DesignConstraints()
-    for kind in numbered():
+    for kind in numeric_kinds():
         values, lower = limits(kind, orientations), kind.bound == "lower"
         first = pivot(kind, orientations, wanted, same)
         allowed = constraints.allows(kind.kind) and (clearing or not kind.overhead)
@@ -148,7 +148,7 @@ def candidates(
         equals = [encounters[k] for k in same if k != wanted]
         return [one.orientation for one in equals if one.differs(orientations[wanted], view) > margin]
 
-    for kind in values_around() if sensed else ():
+    for kind in sensing_kinds() if sensed else ():
         if constraints.allows(kind.kind):
             devices += kind.around(encounters[wanted], margin, DESIGN_KEY, unlike)
     return {device: margins_at(device, tuple(orientations)) for device in devices}
@@ -163,12 +163,12 @@ def pivot(
     return (max if kind.bound == "upper" else min)(rows, key=lambda k: values[k])
 
 
-def values_around() -> list[Any]:
+def sensing_kinds() -> list[Any]:
     """Return the kinds that a design tries with the wanted orientation's own outline."""
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
 
 
-def numbered() -> list[type[Device]]:
+def numeric_kinds() -> list[type[Device]]:
     """Return the kinds of one number that a design tries, in the order of their ranks: drops first."""
     kinds = [kind for kind in KINDS.values() if kind.proposed and kind.bound]
     return sorted(kinds, key=lambda kind: kind.rank)
@@ -221,18 +221,18 @@ def fewest(
     for count in range(1, len(devices) + 1):
         if total - weight <= enough:
             break
-        for chosen in itertools.combinations(devices, count):
-            returned = np.any([margins[device] <= -margin for device in chosen], axis=0)
-            held = float(competitors[returned].sum())
-            if held > weight + 1e-12 and not jams(margins, chosen, competitors, margin):
-                best, weight = chosen, held
+        for combination in itertools.combinations(devices, count):
+            is_returned = np.any([margins[device] <= -margin for device in combination], axis=0)
+            held = float(competitors[is_returned].sum())
+            if held > weight + 1e-12 and not jams(margins, combination, competitors, margin):
+                best, weight = combination, held
     return best
 
 
-def jams(margins: dict[Device, Floats], chosen: Sequence[Device], competitors: Floats, margin: float) -> bool:
+def jams(margins: dict[Device, Floats], devices: Sequence[Device], weights: Floats, margin: float) -> bool:
     """Return whether an orientation that weighs comes to stand at a device, not returned before it."""
-    gone = np.asarray(competitors) <= 0.0
-    for device in chosen:
+    gone = np.asarray(weights) <= 0.0
+    for device in devices:
         if np.any(np.isnan(margins[device]) & ~gone):
             return True
         gone = gone | (margins[device] <= -margin)
@@ -275,16 +275,16 @@ def _place_number(
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
 
-    def at(value: float) -> Device:
+    def make(value: float) -> Device:
         value = snap_to_shop_step(value, step, up=not upper) if step > SHOP_ROUNDING_M else value
         return device.valued(round_finely(value))
 
-    chosen = _surest(orientations, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
+    surest = _surest(orientations, must, make, middle if np.isfinite(nearest) else device.limit, device.limit)
     if device.carries and least < np.inf and np.isfinite(nearest):
-        eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
-        chosen = _surest(orientations, must, at, float(eased), chosen.limit, least - 2.0 * SHOP_ROUNDING_M)
+        eased = max(surest.limit, nearest - least) if upper else min(surest.limit, nearest + least)
+        surest = _surest(orientations, must, make, float(eased), surest.limit, least - 2.0 * SHOP_ROUNDING_M)
     ends = [device.valued(float(end)) for end in (nearest, values[wanted])]
-    return judge_cut(orientations, wanted, chosen, must, *ends)
+    return judge_cut(orientations, wanted, surest, must, *ends)
 
 
 def _place_sensor(
@@ -294,33 +294,33 @@ def _place_sensor(
     seen = [device.differs(DeviceEncounter(orientation, orientations)) for orientation in orientations]
     widest = min((differs for differs, some in zip(seen, must) if some), default=2.0 * play)
 
-    def at(value: float) -> Device:
+    def make(value: float) -> Device:
         return device.with_play(round_finely(max(snap_to_shop_step(value, step, up=False), play)))
 
-    chosen = _surest(orientations, must, at, 0.5 * (seen[wanted] + widest), play)
-    return judge_cut(orientations, wanted, chosen, must, at(widest), at(play))
+    surest = _surest(orientations, must, make, 0.5 * (seen[wanted] + widest), play)
+    return judge_cut(orientations, wanted, surest, must, make(widest), make(play))
 
 
 def _surest(
     orientations: Sequence[Orientation],
     must: Bools,
-    at: Callable[[float], Device],
+    make: Callable[[float], Device],
     middle: float,
     near: float,
-    by: float = UNSURE,
+    margin: float = UNSURE,
 ) -> Device:
     """The device of a value midway, or as near to that as it still returns what it has to, by a margin."""
     others = [orientation for orientation, some in zip(orientations, must) if some]
 
     def returns(device: Device) -> bool:
-        return all(margin_at(device, orientation, orientations) < -by for orientation in others)
+        return all(margin_at(device, orientation, orientations) < -margin for orientation in others)
 
-    if returns(at(middle)):
-        return at(middle)
+    if returns(make(middle)):
+        return make(middle)
     for _ in range(10):
         half = 0.5 * (near + middle)
-        near, middle = (half, middle) if returns(at(half)) else (near, half)
-    return at(near)
+        near, middle = (half, middle) if returns(make(half)) else (near, half)
+    return make(near)
 
 
 def judge_cut(
@@ -360,7 +360,7 @@ def inseparable_reason(wanted: Orientation, other: Orientation, margin: float) -
         for kind in KINDS.values()
         if hasattr(kind, "free")
     ]
-    for kind in numbered():
+    for kind in numeric_kinds():
         first, second = limits(kind, (wanted, other))
         step = second - first if kind.bound == "upper" else first - second
         differences.append((float(step) if np.isfinite(step) else -np.inf, kind.kind, kind.feature))
@@ -543,15 +543,15 @@ def weights(task: DesignTask) -> Floats:
     return np.where(task.stays, weight, 0.0)
 
 
-def propose(task: DesignTask, cuts: Sequence[Cut], returned: Bools, same: Bools | None = None) -> Design:
+def propose(task: DesignTask, cuts: Sequence[Cut], is_returned: Bools, same: Bools | None = None) -> Design:
     """Return the record of a chain, by what all of its devices do with every orientation.
 
-    ``cuts`` are those of a DesignTask without turning devices; ``returned`` (M,) bool says which are returned
-    by the margin, ``same`` which leave like the wanted one, hanging; only itself without it.
+    ``cuts`` are those of a DesignTask without turning devices; ``is_returned`` (M,) bool is by the margin,
+    ``same`` which leave like the wanted one, hanging; only itself without it.
     """
     orientations, shares, wanted = task.orientations, task.shares, task.wanted
     same = task.same if same is None else same
-    cuts = (*task.turners, *_separated(task, cuts))
+    cuts = (*task.turners, *_add_spacing(task, cuts))
     flow = course((*task.before, *(cut.device for cut in cuts)), orientations)
     # what comes to stand at each
     first, names = 1 + len(task.before), [orientation.name for orientation in orientations]
@@ -572,7 +572,7 @@ def propose(task: DesignTask, cuts: Sequence[Cut], returned: Bools, same: Bools 
     against = np.array(names)[(unsure > 0.0) & task.often]
     if len(against):
         remarks.append(f"no verdict is sure to return {' '.join(against)}: the purity counts it as leaving")
-    left = [k for k in np.flatnonzero(~returned & ~same) if task.often[k]]
+    left = [k for k in np.flatnonzero(~is_returned & ~same) if task.often[k]]
     clean = not left or bool(task.coming[left].sum() <= task.allowed_beside(same))
     margins = [end for cut in cuts for end in (cut.margin_pass, cut.margin_reject) if np.isfinite(end)]
     # what lies still on its way: what is on a round side with nothing that holds it at the wall may roll,
@@ -604,7 +604,7 @@ def propose(task: DesignTask, cuts: Sequence[Cut], returned: Bools, same: Bools 
     )
 
 
-def _separated(task: DesignTask, cuts: Sequence[Cut]) -> tuple[Cut, ...]:
+def _add_spacing(task: DesignTask, cuts: Sequence[Cut]) -> tuple[Cut, ...]:
     """Cuts with a stretch that separates parts before the first of them that needs gaps."""
     steeper, own = task.constraints.separation, task.orientations[task.wanted]
     first = next((k for k, cut in enumerate(cuts) if cut.device.gap(own, own.speed) > 0.0), None)
@@ -622,20 +622,20 @@ def plain_cut(device: Device) -> Cut:
     return Cut(device, np.nan, np.nan, device, device, ())
 
 
-def without_device(task: DesignTask, why: str) -> Design:
+def propose_nothing(task: DesignTask, why: str) -> Design:
     """Return the record of an orientation that nothing isolates, and why."""
     remark = f"{task.orientations[task.wanted].name} {why}"
     return Design(wanted=task.wanted, before=task.before, remarks=(remark,))
 
 
 def propose_needed(
-    task: DesignTask, cuts: Sequence[Cut], returned: Bools, same: Bools | None = None
+    task: DesignTask, cuts: Sequence[Cut], is_returned: Bools, same: Bools | None = None
 ) -> Design:
     """Return the record of a chain as ``propose`` does, without the devices that change nothing of it.
 
     Isolation, efficiency and purity [1] stay. The last ones are left out first: what drops parts stands
-    before what has to clear itself or to see. Rails are what parts leave in, and stay. ``returned`` (M,) bool
-    is by the track and the devices of the bowl too.
+    before what has to clear itself or to see. Rails are what parts leave in, and stay. ``is_returned`` (M,)
+    bool is by the track and the devices of the bowl too.
     Source: own; docs/tooling.md, "What a design takes".
     """
 
@@ -646,13 +646,13 @@ def propose_needed(
     def stopped(design: Design) -> set[str]:
         return {name for cut in design.cuts for name in cut.stops}
 
-    cuts, proposal = list(cuts), propose(task, cuts, returned, same)
+    cuts, proposal = list(cuts), propose(task, cuts, is_returned, same)
     # which orientations each cut returns by the margin
-    by = {id(cut): margins_at(cut.device, task.orientations) <= -task.margin for cut in cuts}
-    gone = returned & ~np.any(list(by.values()), axis=0) if cuts else returned
+    returned_by = {id(cut): margins_at(cut.device, task.orientations) <= -task.margin for cut in cuts}
+    gone = is_returned & ~np.any(list(returned_by.values()), axis=0) if cuts else is_returned
     for cut in [cut for cut in reversed(cuts) if not cut.device.hangs]:
         rest = [other for other in cuts if other is not cut]
-        other = propose(task, rest, np.any([gone, *(by[id(one)] for one in rest)], axis=0), same)
+        other = propose(task, rest, np.any([gone, *(returned_by[id(one)] for one in rest)], axis=0), same)
         alike = (np.abs(numbers(other) - numbers(proposal)) < PRINTED_SHARE_STEP).all()
         if alike and other.isolated >= proposal.isolated and stopped(other) <= stopped(proposal):
             cuts, proposal = rest, other

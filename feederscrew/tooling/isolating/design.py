@@ -18,25 +18,7 @@ from feederscrew.tooling.devices.ledges import Rails
 from feederscrew.tooling.devices.orientation_names import place_of, rows
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.isolating import chain, hole_search
-from feederscrew.tooling.isolating.chain import (
-    DESIGN_KEY,
-    LEAST_SHARE,
-    Cut,
-    Design,
-    DesignConstraints,
-    DesignTask,
-    design_task,
-    margins_at,
-    plain_cut,
-    propose,
-    propose_needed,
-    round_finely,
-    snap_to_shop_step,
-    stands_on_all,
-    values_around,
-    weights,
-    without_device,
-)
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, Design, DesignConstraints, DesignTask
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.orientations import Neck, Orientation, neck
 from feederscrew.tooling.orientations import place as placed
@@ -106,16 +88,16 @@ def design(
     Source: own; docs/tooling.md, "1. The method".
     """
     search = search or hole_search.HoleSearch()
-    task = design_task(orientations, shares, wanted, margin, purity, before, constraints=constraints)
-    proposal = _returning(task, search.started())
+    task = chain.design_task(orientations, shares, wanted, margin, purity, before, constraints=constraints)
+    proposal = _design_returning(task, search.start())
     if task.constraints.turn and not (proposal.isolated and proposal.efficiency >= efficiency > 0.0):
         # turning devices before all others, where that delivers enough more
         enough = GAIN if efficiency <= 0.0 else 1.0
         for cuts in turning_chains(task):
-            behind = design_task(
+            behind_turners = chain.design_task(
                 task.orientations, task.shares, wanted, margin, purity, before, cuts, task.constraints
             )
-            other = _returning(behind, search.started())
+            other = _design_returning(behind_turners, search.start())
             more = other.efficiency > enough * proposal.efficiency + 1e-12
             if other.isolated and (more or not proposal.isolated):
                 proposal = other
@@ -139,21 +121,21 @@ def design(
     return replace(proposal, remarks=(*proposal.remarks, *reasons)) if reasons else proposal
 
 
-def _returning(task: DesignTask, search: HoleSearch) -> Design:
+def _design_returning(task: DesignTask, search: HoleSearch) -> Design:
     """The best chain of devices that only return parts: they leave lying, or hanging."""
     if any(device.hangs for device in task.before):
-        return propose(task, (), np.zeros(len(task.orientations), dtype=bool))
+        return chain.propose(task, (), np.zeros(len(task.orientations), dtype=bool))
     outcome = task.constraints.outcome
     hung = design_rails(task) if outcome != "lying" and task.constraints.allows(*names(hangs=True)) else None
     if outcome == "hanging":
-        return without_device(task, "does not hang between rails") if hung is None else hung
-    lying = _plain(task, search)
+        return chain.propose_nothing(task, "does not hang between rails") if hung is None else hung
+    lying = _design_lying(task, search)
     if hung is None or (hung.isolated, hung.efficiency) <= (lying.isolated, lying.efficiency):
         return lying
     return hung
 
 
-def _plain(task: DesignTask, search: HoleSearch) -> Design:
+def _design_lying(task: DesignTask, search: HoleSearch) -> Design:
     """The chain of devices that return the others and leave the wanted one lying."""
     wanted, own = task.wanted, task.orientations[task.wanted]
     why = {
@@ -165,36 +147,36 @@ def _plain(task: DesignTask, search: HoleSearch) -> Design:
     }
     for reason, holds in why.items():
         if holds:
-            return without_device(task, reason)
-    weight = weights(task)
+            return chain.propose_nothing(task, reason)
+    weight = chain.weights(task)
     weight[task.same] = 0.0
     counted = np.where(weight > 0.0, task.coming, 0.0) if task.purity < 1.0 else weight
     gone = ~task.stays | ((task.coming <= 0.0) & (task.shares > 0.0))
     least = task.margin if task.constraints.gentle else np.inf
     problem = task.same & task.often, counted, gone, task.allowed, least
     for stage in STAGES[: 2 if task.constraints.clearing else 1]:
-        cuts, returned = _chosen(task, stage, *problem)
-        left = ~returned & task.often & ~task.same
+        cuts, is_returned = _choose_cuts(task, stage, *problem)
+        left = ~is_returned & task.often & ~task.same
         if not task.coming[left].sum() > task.allowed:
             break
-    proposal = propose_needed(task, cuts, returned)
+    proposal = chain.propose_needed(task, cuts, is_returned)
     sensed = {"sensed": task.constraints.sensed}
     for stage in ({"air": task.constraints.air}, sensed, sensed | {"varied": task.constraints.vary}):
         if proposal.isolated or not any(stage.values()):
             continue
-        other = propose_needed(task, *_chosen(task, stage, *problem))
+        other = chain.propose_needed(task, *_choose_cuts(task, stage, *problem))
         purer = stage.get("varied") and other.purity > proposal.purity + PURITY_GAIN
         proposal = other if other.isolated or purer else proposal
     # holes are for one orientation alone, and by far the longest search: only where nothing simpler isolates
     if task.constraints.allows(*names(searched=True)) and task.same.sum() == 1 and not proposal.isolated:
-        more = propose_needed(task, *_with_holes(task, cuts, returned, search))
+        more = chain.propose_needed(task, *_add_holes(task, cuts, is_returned, search))
         purer = np.nan_to_num(proposal.purity) > np.nan_to_num(more.purity) + PURITY_GAIN
         if more.isolated or (not more.stands and (proposal.stands or not purer)):
             proposal = more
     return replace(proposal, late=search.late)
 
 
-def _chosen(
+def _choose_cuts(
     task: DesignTask, stage: Stage, equals: Bools, weight: Floats, gone: Bools, enough: float, least: float
 ) -> tuple[tuple[Cut, ...], Bools]:
     """Cuts of the fewest devices of a stage, and which orientations are returned, those that are gone too."""
@@ -227,28 +209,28 @@ def varied_devices(
     Source: own; docs/tooling.md, "What a design takes".
     """
     margins: dict[Device, Floats] = {}
-    for kind in (kind for kind in chain.numbered() if kind.overhead and constraints.allows(kind.kind)):
+    for kind in (kind for kind in chain.numeric_kinds() if kind.overhead and constraints.allows(kind.kind)):
         highest = orientations[chain.pivot(kind, orientations, wanted, same)].height
         proposal: Any = kind.proposal(
-            DESIGN_KEY, snap_to_shop_step(highest + margin, constraints.step, up=True)
+            DESIGN_KEY, chain.snap_to_shop_step(highest + margin, constraints.step, up=True)
         )
         for degrees in VARIED_SWEEPS_DEG:
             device = replace(proposal, sweep=math.radians(degrees))
             if device.clear_of(orientations[wanted].grip):
-                margins[device] = margins_at(device, tuple(orientations))
+                margins[device] = chain.margins_at(device, tuple(orientations))
     return margins
 
 
-def _with_holes(
-    task: DesignTask, cuts: tuple[Cut, ...], returned: Bools, search: HoleSearch
+def _add_holes(
+    task: DesignTask, cuts: tuple[Cut, ...], is_returned: Bools, search: HoleSearch
 ) -> tuple[tuple[Cut, ...], Bools]:
     """Add cut-outs for those that are left, as long as one returns any."""
-    returned, own = returned.copy(), task.orientations[task.wanted]
+    is_returned, own = is_returned.copy(), task.orientations[task.wanted]
     for _ in range(MOST_HOLES):
-        left = [k for k in np.flatnonzero(~returned).tolist() if k != task.wanted and task.often[k]]
+        left = [k for k in np.flatnonzero(~is_returned).tolist() if k != task.wanted and task.often[k]]
         if task.coming[left].sum() <= task.allowed:
             break
-        unreachable = [k for k in left if stands_on_all(task.orientations[k], own, task.margin)]
+        unreachable = [k for k in left if chain.stands_on_all(task.orientations[k], own, task.margin)]
         if task.constraints.isolating and task.coming[unreachable].sum() > task.allowed:
             break  # no hole returns these, whatever it does with the others
         left = [k for k in left if k not in unreachable]
@@ -258,8 +240,8 @@ def _with_holes(
             hole = hole_search.round_corners(task, hole, task.constraints.cutter)
         if hole is None:
             break
-        cuts, returned[hole[1]] = (*cuts, hole[0]), True
-    return cuts, returned
+        cuts, is_returned[hole[1]] = (*cuts, hole[0]), True
+    return cuts, is_returned
 
 
 def place(orientations: Sequence[Orientation], aspect: str, heading: float | None, source: str) -> int:
@@ -283,58 +265,60 @@ def design_rails(task: DesignTask) -> Design | None:
     None where the part has no head, lies elsewhere than over the slot, or others are left over.
     """
     orientations, wanted, margin, step = task.orientations, task.wanted, task.margin, task.constraints.step
-    own, headed = orientations[wanted], neck(orientations[wanted])
-    if headed is None or headed.head - headed.shank < 2.0 * margin:
+    own, own_neck = orientations[wanted], neck(orientations[wanted])
+    if own_neck is None or own_neck.head - own_neck.shank < 2.0 * margin:
         return None
-    play = min(max(PLAY, margin), 0.5 * (headed.head - headed.shank), MOST)
-    device = _rails(own, headed, headed.shank + play, step)
+    play = min(max(PLAY, margin), 0.5 * (own_neck.head - own_neck.shank), MOST)
+    device = _rails(own, own_neck, own_neck.shank + play, step)
     if device is None or own.returned:
         return None
     outcomes = [verdict(device, orientation, orientations) for orientation in orientations]
     same = np.array([outcome.hangs and outcome.margin >= margin for outcome in outcomes])
     if not same[wanted]:
         return None
-    at_rails = margins_at(device, orientations)  # NaN of what stands there
+    at_rails = chain.margins_at(device, orientations)  # NaN of what stands there
     gone = (at_rails <= -margin) | ~task.stays | (task.coming <= 0.0)
     passed = gone | same
     for stage in STAGES:  # before the rails, of what they neither let hang nor return
         if all(getattr(task.constraints, name) for name in ("air", "sensed") if stage.get(name)):
-            weight = np.where(passed, 0.0, weights(task))
-            cuts, returned = _chosen(task, stage, same & task.often, weight, passed, 0.0, np.inf)
-        left = ~returned & task.often
+            weight = np.where(passed, 0.0, chain.weights(task))
+            cuts, is_returned = _choose_cuts(task, stage, same & task.often, weight, passed, 0.0, np.inf)
+        left = ~is_returned & task.often
         jams = (left & np.isnan(at_rails)).any()  # however seldom it comes, it blocks the rails
         if not jams and task.coming[left].sum() <= task.allowed_beside(same):
             break
     else:
         return None
     must = np.array([outcome.margin for outcome in outcomes]) <= -margin
-    ends = (_rails(own, headed, width, step) or device for width in (headed.shank, headed.head))
+    ends = (_rails(own, own_neck, width, step) or device for width in (own_neck.shank, own_neck.head))
     last = chain.judge_cut(orientations, wanted, device, must, *ends)
-    return propose_needed(task, (*cuts, last), (returned & ~same) | gone, same)
+    return chain.propose_needed(task, (*cuts, last), (is_returned & ~same) | gone, same)
 
 
-def _rails(orientation: Orientation, headed: Neck, width: float, step: float) -> Device | None:
+def _rails(orientation: Orientation, own_neck: Neck, width: float, step: float) -> Device | None:
     """Rails about the foot of the centre of mass, as practice has them.
 
     None where the head, clear of the wall, leaves the weight beside the slot, or no rail at the free edge.
     """
-    width, weight = snap_to_shop_step(width, step, up=True), orientation.distance - orientation.shift
-    middle = max(weight, 0.5 * headed.widest + HEAD_WALL_CLEARANCE_M, 0.5 * width + RAIL)
-    first = snap_to_shop_step(middle - 0.5 * width, step, up=True)
-    span = round_finely(first), round_finely(first + width)
+    width, weight = chain.snap_to_shop_step(width, step, up=True), orientation.distance - orientation.shift
+    middle = max(weight, 0.5 * own_neck.widest + HEAD_WALL_CLEARANCE_M, 0.5 * width + RAIL)
+    first = chain.snap_to_shop_step(middle - 0.5 * width, step, up=True)
+    span = chain.round_finely(first), chain.round_finely(first + width)
     # the lead-in, from under the tip of a shank that lies askew to as far beyond its middle. It is so narrow
     # that a head with a flat underside rests on both rails wherever the shank stands in it: with its shank at
     # one rail and none under its head at the other it hangs askew and stays; a cone does not
-    tip = weight + headed.tip - SINKS * 0.5 * headed.shank
+    tip = weight + own_neck.tip - SINKS * 0.5 * own_neck.shank
     near = max(min(tip, span[0] - WIDER), RAIL)
-    near = min(snap_to_shop_step(near, step, up=True), span[0])
+    near = min(chain.snap_to_shop_step(near, step, up=True), span[0])
     # its middle as clear of the wall
-    far = max(span[1] + WIDER, headed.widest + 2.0 * HEAD_WALL_CLEARANCE_M - near)
-    held = 0.2 if headed.rise > CONE else 0.5
-    far = min(far, near + headed.head - max(LEAD_IN_MARGIN_M, held * (headed.head - headed.shank)))
-    far = max(snap_to_shop_step(far, step, up=False), span[1])
-    sizes = (snap_to_shop_step(share * orientation.length, step, up=True) for share in (STRAIGHT, TAPER))
-    lead = tuple(round_finely(size) for size in (near, far, *sizes))
+    far = max(span[1] + WIDER, own_neck.widest + 2.0 * HEAD_WALL_CLEARANCE_M - near)
+    held = 0.2 if own_neck.rise > CONE else 0.5
+    far = min(far, near + own_neck.head - max(LEAD_IN_MARGIN_M, held * (own_neck.head - own_neck.shank)))
+    far = max(chain.snap_to_shop_step(far, step, up=False), span[1])
+    sizes = (
+        chain.snap_to_shop_step(share * orientation.length, step, up=True) for share in (STRAIGHT, TAPER)
+    )
+    lead = tuple(chain.round_finely(size) for size in (near, far, *sizes))
     if lead[1] >= orientation.track.width - RAIL or not lead[0] < weight < lead[1]:
         return None
     return Rails(DESIGN_KEY, span=span, lead=lead).rewritten()
@@ -395,9 +379,9 @@ def _turning_cuts(
             (orientations[k].name, orientations[onto].name, float(share))
             for k, outcome in enumerate(outcomes)
             for onto, share in outcome.onto
-            if onto != k and coming[k] >= LEAST_SHARE
+            if onto != k and coming[k] >= chain.LEAST_SHARE
         ]
-        often = [outcome.margin for outcome, share in zip(outcomes, coming) if share >= LEAST_SHARE]
+        often = [outcome.margin for outcome, share in zip(outcomes, coming) if share >= chain.LEAST_SHARE]
         # the values nearest to its own at which what it does changes; itself where there is none
         kind, heights = type(device), changes[type(device)]
         below = max((height for height in heights if height <= device.limit), default=device.limit)
@@ -439,7 +423,7 @@ def design_with_track(
     """
     cache, constraints = {} if cache is None else cache, options["constraints"]
 
-    def behind(stretch: Stretch) -> Sequence[Orientation]:
+    def orientations_behind(stretch: Stretch) -> Sequence[Orientation]:
         """Orientations behind some stretches of track."""
         key = tuple((device.kind, device.angle) for device in stretch)
         if key not in cache:
@@ -449,14 +433,12 @@ def design_with_track(
             cache[key] = onward
         return cache[key]
 
-    def on_stretch(
-        stretch: Stretch, finding: Callable[[Sequence[Orientation], Floats], Design]
-    ) -> Design | None:
+    def design_on(stretch: Stretch, find: Callable[[Sequence[Orientation], Floats], Design]) -> Design | None:
         """The design on a track that leans, by what comes on so."""
-        come = coming(orientations, shares, stretch)
+        come = coming_shares(orientations, shares, stretch)
         if not come[wanted] > 0.0:
             return None
-        proposal = finding(behind(stretch), come)
+        proposal = find(orientations_behind(stretch), come)
         proposal = replace(proposal, efficiency=proposal.efficiency * float(come.sum() / shares.sum()))
         return _with_stretches(proposal, stretch if proposal.cuts else stretch[:1])
 
@@ -464,7 +446,7 @@ def design_with_track(
     best = None
     holding = holding_stretches(orientations[wanted], bowl.friction.wall, options["before"], constraints)
     if holding:
-        proposal = _on_this_track(behind(holding), shares, wanted, bowl, steady, options)
+        proposal = _on_this_track(orientations_behind(holding), shares, wanted, bowl, steady, options)
         best = _with_stretches(proposal, holding) if proposal.isolated or proposal.cuts else None
     best = best or _on_this_track(orientations, shares, wanted, bowl, steady, options)
     if not constraints.vary or options["before"] or orientations[wanted].returned:
@@ -473,9 +455,9 @@ def design_with_track(
     quick = replace(constraints, turn=False, without=(*constraints.without, *names(searched=True)))
     brief = options | {"constraints": quick}
     for stretch in other_stretches(orientations[wanted], best, constraints):
-        other = on_stretch(stretch, lambda lying, come: design(lying, come, wanted, **brief))
+        other = design_on(stretch, lambda lying, come: design(lying, come, wanted, **brief))
         if gains(other, best):
-            other = on_stretch(
+            other = design_on(
                 stretch, lambda lying, come: _on_this_track(lying, come, wanted, bowl, steady, brief)
             )
             best = other if other is not None and gains(other, best) and other.steady >= best.steady else best
@@ -495,7 +477,7 @@ def holding_stretches(
     if orientation.kind != "rolling" or leans:
         return ()
     stretches = (kind.holding(orientation, wall_friction, DESIGN_KEY) for kind in leaning())
-    return min(_allowed(stretches, constraints), key=len, default=())
+    return min(_keep_allowed(stretches, constraints), key=len, default=())
 
 
 def other_stretches(
@@ -509,23 +491,23 @@ def other_stretches(
     if orientation.track.bank > 0.0:
         return []
     present = {(cut.device.kind, cut.device.text) for cut in proposal.cuts}
-    stretches = _allowed(
+    stretches = _keep_allowed(
         (stretch for kind in leaning() for stretch in kind.leanings(orientation, DESIGN_KEY)), constraints
     )
     stretches = [stretch for stretch in stretches if (stretch[0].kind, stretch[0].text) not in present]
     return sorted((stretch for stretch in stretches if stretch[0].grooved or not proposal.isolated), key=len)
 
 
-def _allowed(stretches: Iterable[Stretch], constraints: DesignConstraints) -> list[Stretch]:
+def _keep_allowed(stretches: Iterable[Stretch], constraints: DesignConstraints) -> list[Stretch]:
     """Those that are any, and whose kinds of devices may be used."""
     return [one for one in stretches if one and constraints.allows(*(device.kind for device in one))]
 
 
 def _with_stretches(proposal: Design, stretch: Stretch) -> Design:
-    return replace(proposal, cuts=(*map(plain_cut, stretch), *proposal.cuts))
+    return replace(proposal, cuts=(*map(chain.plain_cut, stretch), *proposal.cuts))
 
 
-def coming(orientations: Sequence[Orientation], shares: Floats, stretch: Stretch) -> Floats:
+def coming_shares(orientations: Sequence[Orientation], shares: Floats, stretch: Stretch) -> Floats:
     """Return the share (M,) [1] of the parts that comes in each orientation behind stretches of track.
 
     What rolls back in a groove before it turns does not come.
@@ -556,8 +538,10 @@ def widths(orientations: Sequence[Orientation], shares: Floats, wanted: int, mar
     own, widths = orientations[wanted], []
     if own.falls_off:
         widths.append(WHOLE * math.ceil((own.width + BESIDE) / WHOLE))
-    sensors = [kind(DESIGN_KEY, like=(own.aspect, own.heading, float(margin))) for kind in values_around()]
-    competitors = [k for k, share in enumerate(shares) if share >= LEAST_SHARE and k != wanted]
+    sensors = [
+        kind(DESIGN_KEY, like=(own.aspect, own.heading, float(margin))) for kind in chain.sensing_kinds()
+    ]
+    competitors = [k for k, share in enumerate(shares) if share >= chain.LEAST_SHARE and k != wanted]
     others = [orientations[k] for k in competitors if not orientations[k].returned]
     narrow = math.inf  # how far from the wall the pulse of each sensor's nozzles carries each of the others
     for sensor in sensors:
@@ -586,13 +570,13 @@ def _on_this_track(
         lying = [orientations[proposal.wanted]]
         return not proposal.cuts or bool(steady(proposal.devices, lying, bowl, options["margin"])[0])
 
-    proposal = _isolating(orientations, shares, wanted, options)
+    proposal = _isolate(orientations, shares, wanted, options)
     if stays(proposal):
         return proposal
     gentle = proposal
     if not any(cut.device.corners for cut in proposal.cuts):
         eased = options | {"constraints": replace(options["constraints"], gentle=True)}
-        gentle = _isolating(orientations, shares, wanted, eased)
+        gentle = _isolate(orientations, shares, wanted, eased)
     first, second = ((one.isolated, one.efficiency, one.purity) for one in (gentle, proposal))
     if first == second and stays(gentle):
         return gentle
@@ -600,7 +584,7 @@ def _on_this_track(
     return replace(proposal, steady=False, remarks=(*proposal.remarks, reason))
 
 
-def _isolating(
+def _isolate(
     orientations: Sequence[Orientation], shares: Floats, wanted: int, options: dict[str, Any]
 ) -> Design:
     """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""

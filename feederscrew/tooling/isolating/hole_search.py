@@ -23,7 +23,7 @@ from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.verdicts import verdict
 
 if TYPE_CHECKING:
-    from feederscrew.tooling.kernel import Foot, FootArrays
+    from feederscrew.tooling.kernel import Buffers, Foot
 
 STARTS = 220  # random holes tried
 IMPROVED_HOLES = 6  # the best of them are improved
@@ -51,7 +51,7 @@ class HoleSearch:
     spent: int = 0  # verdicts so far
     memo: dict = field(default_factory=dict)  # what whole searches gave, and the verdicts each took
 
-    def started(self) -> "HoleSearch":
+    def start(self) -> "HoleSearch":
         """Return the same search for another orientation."""
         return replace(self, spent=0, late=False)
 
@@ -95,20 +95,20 @@ def cut_out(
     held = [k for k, reached in zip(competitors, margins) if reached <= -margin]
     must, middle = np.isin(np.arange(len(orientations)), held), corners.mean(axis=0)
 
-    def scaled(share: float) -> Points:
+    def scale(share: float) -> Points:
         shape = middle + share * (corners - middle)
         shape[:, 1] = np.maximum(shape[:, 1], 0.0)
         return shape
 
     def passes(share: float) -> bool:
-        hole = openings.polygon(scaled(share), orientations[wanted].track.radius)
-        return footprints.least(orientations[wanted].standing, hole)[0] >= 0.0
+        hole = openings.polygon(scale(share), orientations[wanted].track.radius)
+        return footprints.least(orientations[wanted].axial_foot, hole)[0] >= 0.0
 
     def returns(share: float) -> bool:
-        device = device_of(scaled(share))
+        device = device_of(scale(share))
         return all(verdict(device, orientations[k], orientations).margin < 0.0 for k in held)
 
-    ends = (device_of(scaled(_border(*task))) for task in ((returns, 0.0), (passes, 2.0)))
+    ends = (device_of(scale(_border(*task))) for task in ((returns, 0.0), (passes, 2.0)))
     return judge_cut(orientations, wanted, device_of(corners), must, *ends), held
 
 
@@ -137,10 +137,10 @@ class _Judge:
         self.search, self.radius, self.margin = search, orientations[wanted].track.radius, margin
         self.places = wanted, *competitors
         self.orientations = wanted_orientation, *self.others = [orientations[k] for k in self.places]
-        self.foot = wanted_orientation.standing
+        self.foot = wanted_orientation.axial_foot
         self.length = HOLE_REACH_FACTOR * max(orientation.length for orientation in self.orientations)
         self.width = max(orientation.width for orientation in self.orientations)
-        self.scratch: dict[tuple[int, int], FootArrays] = {}
+        self.scratch: dict[tuple[int, int], Buffers] = {}
         self.order = list(range(len(competitors)))  # those that spoiled a hole last come first
 
     def find_best(self) -> ScoredHole | None:
@@ -161,41 +161,42 @@ class _Judge:
             search.memo[key, left if search.over() else None] = best, search.spent - before
         return best
 
-    def score(self, corners: Points, beaten: float = -math.inf) -> tuple[float, list[float] | None]:
+    def score(self, corners: Points, least_score: float = -math.inf) -> tuple[float, list[float] | None]:
         """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
         hole = openings.polygon(corners, self.radius)
         self.search.spent += 1
-        passing = self._least(self.foot, hole, -self.margin, 2.0 * self.margin)[0]
-        if passing < -self.margin:
+        pass_margin = self._least(self.foot, hole, -self.margin, 2.0 * self.margin)[0]
+        if pass_margin < -self.margin:
             return -math.inf, None
         self.search.spent += len(self.others)  # also of those that need not be asked for
         margins = [-2.0 * self.margin] * len(self.others)
-        if self._worth(passing, margins) <= beaten:
+        if self._worth(pass_margin, margins) <= least_score:
             return -math.inf, None
         for place, k in enumerate(self.order):
             # from which margin on the hole is not better, whatever the rest may add
             spoilt = math.inf
-            if beaten > -math.inf:
+            if least_score > -math.inf:
                 nearly = [*margins[:k], math.nextafter(-self.margin, 0.0), *margins[k + 1 :]]
-                spoilt = -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + SCORE_TOLERANCE_M
+                better = max(self._worth(pass_margin, nearly) - least_score, 0.0)
+                spoilt = -self.margin + better + SCORE_TOLERANCE_M
             # of one that travels; what fails by too little anyway is left as it is placed
             orientation, enough = self.others[k], 2.0 * self.margin
-            margins[k], work = self._least(orientation.standing, hole, -enough, spoilt)
+            margins[k], work = self._least(orientation.axial_foot, hole, -enough, spoilt)
             if margins[k] <= -self.margin and orientation.carry > 0.0:
-                unheld = footprints.unheld(orientation.standing, hole, work, orientation.carry + enough)
+                unheld = footprints.unheld(orientation.axial_foot, hole, work, orientation.carry + enough)
                 margins[k] = carried(margins[k], unheld, orientation.carry)
-            if margins[k] > -2.0 * self.margin and self._worth(passing, margins) <= beaten:
+            if margins[k] > -2.0 * self.margin and self._worth(pass_margin, margins) <= least_score:
                 self.order.insert(0, self.order.pop(place))
                 return -math.inf, None
-        return self._worth(passing, margins), margins
+        return self._worth(pass_margin, margins), margins
 
-    def _worth(self, passing: float, margins: Sequence[float]) -> float:
+    def _worth(self, pass_margin: float, margins: Sequence[float]) -> float:
         """The score of a hole: the worse of passing and of returning, at most the margin twice."""
         returned = sum(margin <= -self.margin for margin in margins)
-        ready = passing >= self.margin
+        ready = pass_margin >= self.margin
         total = sum(min(-margin, 2.0 * self.margin) for margin in margins)
-        gain = min(passing, 2.0 * self.margin) * max(len(margins), 1) + total
-        nearest = min(passing - self.margin, max(-margin for margin in margins) - self.margin)
+        gain = min(pass_margin, 2.0 * self.margin) * max(len(margins), 1) + total
+        nearest = min(pass_margin - self.margin, max(-margin for margin in margins) - self.margin)
         return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain
 
     def _search(self, rng: np.random.Generator) -> ScoredHole | None:
@@ -211,8 +212,8 @@ class _Judge:
             middle = np.array([0.0, rng.uniform(0.0, self.width)])
             corners = self._tidy(middle + 0.5 * far * np.column_stack([np.cos(turn), np.sin(turn)]))
             if corners is not None:
-                beaten = holes[-1][0] if len(holes) == IMPROVED_HOLES else -math.inf
-                holes.append((*self.score(corners, beaten), corners))
+                least_score = holes[-1][0] if len(holes) == IMPROVED_HOLES else -math.inf
+                holes.append((*self.score(corners, least_score), corners))
                 holes = sorted(holes, key=lambda hole: -hole[0])[:IMPROVED_HOLES]
         climbed = []
         for score, margins, corners in holes:  # improved by moving a corner, or all of it, at random
@@ -248,11 +249,11 @@ class _Judge:
         area = 0.5 * abs(sum(x0 * y1 - y0 * x1 for (x0, y0), (x1, y1) in sides))
         return None if area < (4.0 * self.margin) ** 2 or crossed(pairs) else corners
 
-    def _least(self, foot: "Foot", hole: HoleEdges, low: float, high: float) -> tuple[float, "FootArrays"]:
+    def _least(self, foot: "Foot", hole: HoleEdges, low: float, high: float) -> tuple[float, "Buffers"]:
         """Least margin as far as it lies between two values, and the arrays for holes of that size."""
         key = edges, nodes = 8 * (1 + len(hole.edges) // 8), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
-            feet = (self.foot, *(orientation.standing for orientation in self.others))
+            feet = (self.foot, *(orientation.axial_foot for orientation in self.others))
             self.scratch[key] = footprints.scratch(*feet, edges=edges, nodes=nodes)
         return footprints.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
 
