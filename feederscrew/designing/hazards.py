@@ -22,7 +22,7 @@ from feederscrew.part.record import Part
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial import part_poses, queue, runs, staging
-from feederscrew.trial.kernel.workspace import JOURNAL, Crowd, TrueSolid
+from feederscrew.trial.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
 from feederscrew.trial.shape import solid_of
 from feederscrew.units import counted
 
@@ -383,7 +383,7 @@ class PullTest:
             states[:, 2] += HIGH - states[:, 2].mean()
             states[0, 3:6] -= PULL * away
             states[1, 3:6] += PULL * away
-            runs.move_crowd(self.setting, pair.surface, arrays, Crowd(pair.is_on, 0.0, steps, journals))
+            runs.move_crowd(self.setting, pair.surface, arrays, QueueSteps(pair.is_on, 0.0, steps, journals))
             # whether they overlapped at first, or have come through each other since
             first, second = arrays.states
             separation = second[:3] - first[:3]

@@ -116,7 +116,7 @@ class PartsOnTrack:
         """Move all through one period of the drive, the ``turn``-th; how deep anything was in anything."""
         journals = zero_rows(1, workspace.JOURNAL)
         steps = round(self.period / self.part_in_bowl.floor.step)
-        crowd = workspace.Crowd(self.is_on, turn * self.period, steps, journals)
+        crowd = workspace.QueueSteps(self.is_on, turn * self.period, steps, journals)
         runs.move_crowd(self.part_in_bowl, self.surface, self.arrays, crowd)
         return float(journals.depth[0])
 

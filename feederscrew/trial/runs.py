@@ -24,7 +24,7 @@ from feederscrew.trial import part_poses, staging
 from feederscrew.trial.kernel import travel, workspace
 from feederscrew.trial.kernel.plate_views import BLOCK
 from feederscrew.trial.kernel.track_contacts import WAYS
-from feederscrew.trial.kernel.workspace import Crowd, Limits, Rows, Solo, Surface, TrueSolid, Workspace
+from feederscrew.trial.kernel.workspace import Limits, QueueSteps, Rows, Solo, Surface, TrueSolid, Workspace
 from feederscrew.trial.part_poses import States
 from feederscrew.trial.staging import Stage
 
@@ -41,7 +41,7 @@ MAX_TRACK_CONTACTS = 96  # of a part with the track at a time
 MAX_PAIR_CONTACTS = 400  # contacts between parts at a time
 MAX_NEAR_EDGES = 4000  # edges near borders at a time, and faces near their corners
 MEAN_BORDERS_PER_CORNER = 12  # borders near a corner, in the mean
-NO_CROWD = Crowd(active=np.zeros(0, bool), time=0.0, steps=0, journals=zero_rows(1, workspace.JOURNAL))
+NO_CROWD = QueueSteps(active=np.zeros(0, bool), time=0.0, steps=0, journals=zero_rows(1, workspace.JOURNAL))
 NO_PARTS_SENT = Solo(
     limits=Limits(*(0.0 for _ in Limits._fields)),
     states=np.zeros((0, body.STATE)), times=np.zeros(0), stride=1, paths=np.zeros((0, 0, 8)),
@@ -272,7 +272,7 @@ def forget(work: Workspace, n: int | slice) -> None:
     work.list_states["reach"][n] = work.last_steps[n] = work.jets_until[n] = -1.0
 
 
-def move_crowd(part_in_bowl: BowlOfPart, surface: Surface, work: Workspace, crowd: Crowd) -> None:
+def move_crowd(part_in_bowl: BowlOfPart, surface: Surface, work: Workspace, crowd: QueueSteps) -> None:
     """Move a crowd on, all of it at once; fills ``work.strains`` and the journal of ``crowd``."""
     work.strains[:] = 0.0
     travel.ride(surface, part_in_bowl.solid, part_in_bowl.floor, work, NO_PARTS_SENT, crowd)

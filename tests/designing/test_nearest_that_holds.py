@@ -193,7 +193,7 @@ def test_a_queue_names_what_left_by_aspect_and_heading(block):
     whole = np.zeros((len(names) + 1, len(aspects.names) + 1), int)
     whole[0, own], whole[1, other], whole[-1, own], whole[-1, -1] = 4, 2, 5, 1
     leaving, lying = whole.sum(axis=1), whole.sum(axis=0)
-    seen = SimpleNamespace(leaving=leaving, aspects=lying, whole=whole)
+    seen = SimpleNamespace(leaving_counts=leaving, aspects=lying, whole=whole)
     row = queues.FollowedRow(PART, BOWL, aspects, ways, None, (0,), seed=1)
     found = dict(row.left_instead(seen))
     assert found == {f"{aspects.names[own]}, heading off": 5, names[1]: 2, "in no known pose": 1}

@@ -9,7 +9,7 @@ from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, entry, outlined
 from feederscrew.trial.kernel import pairs, steps
 from feederscrew.trial.kernel.track_contacts import find_contacts
-from feederscrew.trial.kernel.workspace import Crowd, Island, Limits, Solo, Surface, TrueSolid, Workspace
+from feederscrew.trial.kernel.workspace import Island, Limits, QueueSteps, Solo, Surface, TrueSolid, Workspace
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 BACKWARDS = 5.0  # times as far as a part must get on: so far back in that time it rolls back
@@ -128,7 +128,9 @@ def _find_islands(solid: TrueSolid, work: Workspace, active: Bools, dt: float) -
 
 
 @entry
-def ride(surface: Surface, solid: TrueSolid, floor: Floor, work: Workspace, solo: Solo, crowd: Crowd) -> None:
+def ride(
+    surface: Surface, solid: TrueSolid, floor: Floor, work: Workspace, solo: Solo, crowd: QueueSteps
+) -> None:
     """Follow every part that is sent from its start, one at a time; where none is, move a crowd on.
 
     One entry and one function for both: what they share is most of it, and is compiled once. The time step is

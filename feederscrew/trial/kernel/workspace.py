@@ -161,7 +161,7 @@ class Solo(NamedTuple):
     outcomes: Ints  # (N,) filled with what became of each
 
 
-class Crowd(NamedTuple):
+class QueueSteps(NamedTuple):
     """How a crowd of N parts moves on, all at once."""
 
     active: Bools  # (N,) which of them are on the track
