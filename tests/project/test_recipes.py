@@ -94,5 +94,6 @@ def test_after_a_recipe_types_and_docstrings_hold(copy, name):
     follow(copy, name)
     names = ("project/test_docstrings", "test_layers", "bowl/test_bowl", "bowl/test_json_schema")
     tests = [f"tests/{name}.py" for name in (*names, "test_api_settings")]
-    run(copy, sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests)
+    own = ("--basetemp", str(copy / "temporary"))  # else two runs at once clear away each other's
+    run(copy, sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *own, *tests)
     run(copy, sys.executable, "-m", "mypy", "--cache-dir", str(copy / ".mypy_cache"))
