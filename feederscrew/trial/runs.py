@@ -88,7 +88,7 @@ class RideLimits(NamedTuple):
     longest: float  # [s] after which it is given up
     patience: float  # [s] in which it must get on ...
     progress: float  # [m] ... so far
-    back: float  # [m] it may go back from where it began
+    retreat: float  # [m] it may go back from where it began
     interval: float  # [s] from one place noted to the next, in whole steps
     places: int  # noted at most
 
@@ -163,7 +163,7 @@ def make_plain_follower(part_in_bowl: BowlOfPart, station: Stage, limits: RideLi
         longest=limits.longest / unit,
         patience=limits.patience / unit,
         progress=limits.progress / length,
-        back_limit=(station.begin - limits.back) / length,
+        back_limit=(station.begin - limits.retreat) / length,
         edge=width,
         free=width + OVER_EDGE_SHARE * part_in_bowl.solid.radius,
     )
