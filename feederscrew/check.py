@@ -1,13 +1,16 @@
 """Checks of what a caller hands to a numerics function; each names the argument."""
 
+import enum
 from os import PathLike
-from typing import Any, SupportsFloat
+from typing import Any, SupportsFloat, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from feederscrew.arrays import Array
 from feederscrew.errors import ArgumentError
+
+Chosen = TypeVar("Chosen", bound=enum.StrEnum)
 
 
 def shaped(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
@@ -107,3 +110,25 @@ def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) 
     raise ArgumentError(
         name, f"is {number:g}", f"give a number {' '.join(ends)}" if ends else "give a number"
     )
+
+
+def choice(name: str, value: str, kinds: type[Chosen]) -> Chosen:
+    """Return the member of an enumeration that a word names.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the message.
+    value : str
+        As the user gave it.
+    kinds : type of enum.StrEnum
+        The words that there are.
+
+    Raises
+    ------
+    ArgumentError
+        If it is none of them.
+    """
+    if value not in list(kinds):
+        raise ArgumentError(name, f"is {value!r}", f"give {' or '.join(kinds)}")
+    return kinds(value)

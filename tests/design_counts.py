@@ -6,7 +6,46 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import short_trials
+from feederscrew.designing.findings import End, Fault, FaultKind, LeavingPose, PoseKind
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.trial.course import Fate
+
+TURNED_ON_TRACK = End(Fate.TURNED)
+
+
+def end_at(fate, kind, station=1):
+    """An end at a device of a kind, the first of its chain."""
+    return End(fate, station, kind, kind.replace("_", " "))
+
+
+def stopped_at(kind, station=1):
+    """The end of a part that stands at a device of a kind."""
+    return end_at(Fate.STOPPED, kind, station)
+
+
+def lost(name, *ends, row=0):
+    """A wanted orientation of which parts ended so."""
+    return Fault(FaultKind.LOST, name, row, ends)
+
+
+def carried(name, row=1):
+    """Another orientation that leaves."""
+    return Fault(FaultKind.CARRIED, name, row)
+
+
+def stays(name, *ends, row=1):
+    """Another orientation of which parts stay so."""
+    return Fault(FaultKind.STAYS, name, row, ends)
+
+
+def heading_off(aspect):
+    """The pose of parts that left on an aspect at no known heading."""
+    return LeavingPose(PoseKind.HEADING_OFF, aspect)
+
+
+def orientation(name):
+    """The pose of parts that left in another orientation, 'B@0'."""
+    return LeavingPose(PoseKind.ORIENTATION, name.partition("@")[0], name)
 
 
 def queue(right=45, left=None, returned=5, jams=0, fill="normal", gaps=0.2, **more):
@@ -19,9 +58,11 @@ def queue(right=45, left=None, returned=5, jams=0, fill="normal", gaps=0.2, **mo
 
 def design_study(part, *queues, target=40.0, held=20, bowl=None, **more):
     """A design for so many a minute that holds where its queues and 20 draws do."""
-    lost = "" if held == 20 else "A@0 is lost (turned on the track) in 5 of 20"
-    own = {"queues": queues or (queue(),), "robust": RobustRun(20, held, lost)} | more
-    return DesignStudy(part, DesignRequest(target / 60.0), bowl or bowls.default(), "A@0", 0, **own)
+    worst = None if held == 20 else lost("A@0", TURNED_ON_TRACK).counted_in_draws(20 - held, 20)
+    own = {"queues": queues or (queue(),), "robust": RobustRun(20, held, worst)} | more
+    return DesignStudy(
+        part, DesignRequest(target / 60.0), bowl or bowls.default(), "A@0", 0, **{"wanted_aspect": "A"} | own
+    )
 
 
 def proved(part, bowl, **more):
@@ -35,7 +76,7 @@ def short_trial(ways, right, wrong=(), held=(), *, each=2, row=0, **more):
     count = len(ways.lying)
     own = [np.array([each * (k in some) for k in range(count)]) for some in (right, wrong, held)]
     known = {
-        "places": tuple({"stopped at gap": each} if k in held else {} for k in range(count)),
+        "ends": tuple({stopped_at("gap"): each} if k in held else {} for k in range(count)),
         "velocity": 0.05, "states": (row,),
     }  # fmt: skip
     shares, parts = np.full(count, 1.0 / count), np.full(count, each)

@@ -110,7 +110,7 @@ WRONG = {
     "aspects(p, surface='icy')": "surface: is 'icy' - give soft, medium and hard or an exponent",
     "tooling(p, b, purity=2)": "purity: is 2 - give a number from 0 to 1",
     "tooling(p, b, aspect_shares=4)": "aspect_shares: is 4 - give what shares returned",
-    "design(p, '60/min', outcome='round')": "outcome: is 'round' - give any, lying and hanging",
+    "design(p, '60/min', outcome='round')": "outcome: is 'round' - give any or lying or hanging",
     "design(p, '60/min', diameter=(2, 1))": "diameter: is from 2 to 1 - give the smaller and the larger",
     "design([], '60/min')": "part: is [] - give a Part, as load returns it",
     "report(p, fill=3)": "fill: is 3 - give a number from 1e-06 to 1",

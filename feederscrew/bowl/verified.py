@@ -1,6 +1,7 @@
 """The ``verified`` block of a bowl file: what a trial of exactly this bowl with this part has shown."""
 
 import datetime
+import enum
 import hashlib
 import math
 import re
@@ -18,7 +19,6 @@ from feederscrew.tooling.devices.base import Device
 
 VERIFIED_SECTION = "verified"
 SHARED = {field.name for field in fields(Device)}  # what every device has
-HOLDS, FALLS_SHORT = "holds", "falls short"  # what a trial may come to
 RATE_KEPT, PURE, DRAWS_HELD = 0.9, 0.98, 0.95  # [1] of the target, of what leaves, of the draws
 VERIFIED_TOLERANCE = 1e-3  # [1] of a number as the file writes it
 NOTHING_LEFT = "none"  # the purity of a queue that nothing left
@@ -32,6 +32,16 @@ VERSION = re.compile(r"\d+(\.[0-9A-Za-z]+){1,5}([+-][0-9A-Za-z.]+)?", re.ASCII)
 MAX_CLOCK_SKEW = datetime.timedelta(days=1)  # by which the clock of another machine may be wrong
 LYING, HANGING = "lying", "hanging"  # how parts leave
 AMONG = " or "  # between the names of what counts as one
+
+
+class Status(enum.StrEnum):
+    """What a design or its trial comes to; files print the word."""
+
+    HOLDS = "holds"
+    FALLS_SHORT = "falls short"
+    NONE = "none"  # nothing delivers anything
+    NOT_PROVED = "not proved"  # stopped by the user
+    NOT_TRIED = "not tried"
 
 
 @dataclass(frozen=True)
@@ -230,7 +240,10 @@ _SHARE = _number("number", 0.0, 1.0)
 _TEXT = _form(lambda text: text.strip() and text.isprintable(), MAX_TEXT)
 _HASH = _form(HASH.fullmatch, 64)
 READERS: dict[str, tuple[Callable[[str], Any], str]] = {  # by key: how it is read, and what it must be
-    "status": (_form((HOLDS, FALLS_SHORT).__contains__, MAX_TEXT), f"'{HOLDS}' or '{FALLS_SHORT}'"),
+    "status": (
+        _form((Status.HOLDS, Status.FALLS_SHORT).__contains__, MAX_TEXT),
+        f"'{Status.HOLDS}' or '{Status.FALLS_SHORT}'",
+    ),
     "wanted": (_TEXT, "the name of an orientation"),
     "target": _RATE,
     "delivered": _RATE,
@@ -275,5 +288,5 @@ def _contradictions(block: Verified) -> Iterator[str]:
         "too few draws held": block.held < DRAWS_HELD * block.draws or not block.draws,
     }
     why = " and ".join(text for text, is_so in shortfalls.items() if is_so)
-    if block.status == HOLDS and why:
-        yield f"its status is '{HOLDS}', and {why}"
+    if block.status == Status.HOLDS and why:
+        yield f"its status is '{Status.HOLDS}', and {why}"

@@ -1,5 +1,6 @@
 """The bowl and the track for a part, and the calmest drive that is fast enough for it."""
 
+import enum
 import functools
 import itertools
 import math
@@ -20,7 +21,6 @@ from feederscrew.machine.springs import analyse_springs, greatest_amplitude
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 
-LEAF_SPRING, TWO_AXIS, ANY = DRIVES = ("leaf-spring", "two-axis", "any")  # kinds that may be asked for
 CALM_THROW_NUMBER = 0.9  # throw number below which no part hops, with a reserve for the drive's own scatter
 # of leaf-spring drives; above 3.3 flights last longer
 THROW_NUMBERS = (CALM_THROW_NUMBER, 1.3, 1.5, 1.8, 2.0, 2.3, 2.6, 3.0)
@@ -51,13 +51,25 @@ ELLIPTIC = tuple(
 )
 
 
+class DriveKind(enum.StrEnum):
+    """Kinds of drive that may be asked for."""
+
+    LEAF_SPRING = "leaf-spring"  # one magnet along one set of springs
+    TWO_AXIS = "two-axis"  # two magnets
+    ANY = "any"  # leaf springs first
+
+
 @dataclass(frozen=True)
 class PlainBowl:
     """A bowl without devices, and which of its keys the user gave."""
 
     bowl: Bowl
     kept_keys: frozenset[str]
-    drive: str = LEAF_SPRING  # kind of drive that is asked for, of DRIVES
+    drive: DriveKind = DriveKind.LEAF_SPRING  # that is asked for
+
+    def keeps(self, key: str) -> bool:
+        """Return whether the user gave a key of the bowl file, by its name."""
+        return key in self.kept_keys
 
     @property
     def has_stroke(self) -> bool:
@@ -73,31 +85,40 @@ def section(
     *,
     diameter: tuple[float, float] | None = None,
     bank: float = BANKS[0],
-    drive: str = LEAF_SPRING,
+    drive: DriveKind = DriveKind.LEAF_SPRING,
 ) -> PlainBowl:
     """Return a bowl that is large enough for every way a part lies, within two diameters [m].
 
     ``plain`` is what the user gave, completed by the defaults; ``kept_keys``, names of keys, are kept of it.
-    ``bank`` [rad] is that of the track where the user gave none, ``drive`` the kind of DRIVES asked for.
+    ``bank`` [rad] is that of the track where the user gave none, ``drive`` the kind asked for.
     """
     rules = plain.sizing
     if diameter is not None:
         rules = replace(rules, least_diameter=diameter[0], greatest_diameter=diameter[1])
-    keys = {"diameter": "track.radius", "width": "track.width", "climb": "track.climb"}
-    values = {"diameter": 2.0 * plain.track.radius, "width": plain.track.width, "climb": plain.track.climb}
-    own = {name: values[name] for name, key in keys.items() if key in kept_keys}
-    size = sizing.size_bowl(sizing.find_lying(part, aspects), part.source, rules, sorts=True, **own)
+    given = PlainBowl(plain, frozenset(kept_keys), drive)
+    diameter_given = 2.0 * plain.track.radius if given.keeps("track.radius") else None
+    width_given = plain.track.width if given.keeps("track.width") else None
+    climb_given = plain.track.climb if given.keeps("track.climb") else None
+    size = sizing.size_bowl(
+        sizing.find_lying(part, aspects),
+        part.source,
+        rules,
+        sorts=True,
+        diameter=diameter_given,
+        width=width_given,
+        climb=climb_given,
+    )
 
     def tenths(value: float, step: float) -> float:
         return float(np.ceil(value / step - 1e-9) * step)
 
     track = Track(
-        climb=size.climb if "climb" in own else tenths(size.climb, np.radians(0.1)),
-        bank=plain.track.bank if "track.bank" in kept_keys else bank,
+        climb=tenths(size.climb, np.radians(0.1)) if climb_given is None else size.climb,
+        bank=plain.track.bank if given.keeps("track.bank") else bank,
         radius=0.5 * size.diameter,
-        width=size.track_width if "width" in own else tenths(size.track_width, 1e-4),
+        width=tenths(size.track_width, 1e-4) if width_given is None else size.track_width,
     )
-    return PlainBowl(replace(plain, track=track, devices=()), frozenset(kept_keys), drive)
+    return replace(given, bowl=replace(plain, track=track, devices=()))
 
 
 @functools.lru_cache(maxsize=256)
@@ -179,12 +200,13 @@ def find_livelier(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
 def _levels(plain_bowl: PlainBowl, hops: bool) -> list[list[Bowl]]:
     """Drives of the kinds that are asked for, of each in groups of about the same hop, the calmest first."""
     drive, levels = plain_bowl.drive, list[list[Bowl]]()
-    if "drive.phase" in plain_bowl.kept_keys:
-        drive = TWO_AXIS if is_two_axis(plain_bowl.bowl.drive) else LEAF_SPRING
-    if drive in (LEAF_SPRING, ANY):
+    if plain_bowl.keeps("drive.phase"):
+        two_axis = is_two_axis(plain_bowl.bowl.drive)
+        drive = DriveKind.TWO_AXIS if two_axis else DriveKind.LEAF_SPRING
+    if drive in (DriveKind.LEAF_SPRING, DriveKind.ANY):
         order = sorted(set(_leaf_spring_drives(plain_bowl)), key=_calmness)
         levels += [list(group) for _, group in itertools.groupby(order, key=lambda bowl: _calmness(bowl)[0])]
-    if drive in (TWO_AXIS, ANY):
+    if drive in (DriveKind.TWO_AXIS, DriveKind.ANY):
         levels += [[bowl] for bowl in dict.fromkeys(_two_axis_drives(plain_bowl, hops))]
     return levels
 
@@ -200,9 +222,9 @@ def _leaf_spring_drives(plain_bowl: PlainBowl) -> Iterator[Bowl]:
     rules, own_drive = plain.sizing, plain.drive
     # frequencies [Hz] that the supply makes, or the one that the user gave
     frequencies = tuple(wave * rules.mains_frequency for wave in WAVES)
-    if "drive.frequency" in kept_keys:
+    if plain_bowl.keeps("drive.frequency"):
         frequencies = (own_drive.frequency,)
-    elif rules.control == "frequency" and "machine.leaves" not in kept_keys:
+    elif rules.control == "frequency" and not plain_bowl.keeps("machine.leaves"):
         frequencies = CONTROLLED_HZ
     elif rules.control == "frequency":
         # a controller runs a machine that has its leaves below its natural frequency
@@ -212,12 +234,12 @@ def _leaf_spring_drives(plain_bowl: PlainBowl) -> Iterator[Bowl]:
         frequencies = (plain.machine.supply,)
     # vibration angles at the track [rad], or the one that the user's drive or springs make
     angles = TRACK_ANGLES
-    if "drive.vibration_angle" in kept_keys:
+    if plain_bowl.keeps("drive.vibration_angle"):
         angles = (own_drive.vibration_angle,)
-    elif "machine.spring_angle" in kept_keys:
+    elif plain_bowl.keeps("machine.spring_angle"):
         machine = drive_sizing.machine_on(plain, kept_keys)
         angles = (float(vibration_angle(machine, plain.track.radius, plain.track.climb)),)
-    phase = own_drive.phase if "drive.phase" in kept_keys else 0.0
+    phase = own_drive.phase if plain_bowl.keeps("drive.phase") else 0.0
     for frequency, angle in itertools.product(frequencies, angles):
         drive = replace(own_drive, frequency=frequency, vibration_angle=angle, phase=phase)
         bowl = replace(plain, drive=drive)
@@ -246,7 +268,7 @@ def _set_throw_number(bowl: Bowl, throw: float) -> Bowl:
 
 def _can_build(plain_bowl: PlainBowl, bowl: Bowl) -> bool:
     """Whether a machine of usual springs and magnets makes the drive; what the user owns counts as built."""
-    if is_two_axis(bowl.drive) or plain_bowl.has_stroke or "machine.leaves" in plain_bowl.kept_keys:
+    if is_two_axis(bowl.drive) or plain_bowl.has_stroke or plain_bowl.keeps("machine.leaves"):
         return True
     return not drive_sizing.drive_shortfall(bowl, frozenset(plain_bowl.kept_keys))
 

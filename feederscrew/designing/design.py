@@ -8,16 +8,19 @@ from typing import Any, Unpack, overload
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew import units
+from feederscrew import check, units
 from feederscrew.bowl import schema
+from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.reading import Setting, of_device
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
+from feederscrew.bowl.verified import Status
 from feederscrew.designing import families, loop
+from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.nearest import nearest_from_study
-from feederscrew.designing.record import DESIGN_OUTCOMES, HOLDS, DesignRequest, DesignStudy
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.designing.record import DesignRequest, DesignStudy
+from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sizing
 from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.part.record import Part
@@ -28,7 +31,7 @@ from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, wit
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
 from feederscrew.studies.tooling import listed as names_of
-from feederscrew.units import listed
+from feederscrew.tooling.isolating.chain import OutcomeKind
 
 
 class DesignOptions(BowlSettings, total=False):
@@ -152,11 +155,11 @@ def design(
         aspect=arguments.an_aspect(aspect),
         heading=arguments.angle("heading", heading),
         up=names_of(up),
-        outcome=outcome,
+        outcome=check.choice("outcome", outcome, OutcomeKind),
         without=names_of(without),
         diameter=None if diameter is None else arguments.pair("diameter", diameter, "length"),
         rule=rule,
-        drive=drive,
+        drive=check.choice("drive", drive, DriveKind),
         tolerance=arguments.amount("tolerance", tolerance, "length", 0.0),
         budget=arguments.whole("budget", budget),
         alternatives=bool(alternatives),
@@ -164,8 +167,6 @@ def design(
         seed=arguments.whole("seed", seed, 0),
         jobs=arguments.whole("jobs", jobs),
     )
-    if request.outcome not in DESIGN_OUTCOMES:
-        raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(DESIGN_OUTCOMES))}")
     plain = arguments.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
     kept_keys = frozenset(kept_keys) | {setting.key.name for setting in plain.settings if setting.is_own}
     kept_settings = settings_of(plain, kept_keys)
@@ -188,7 +189,6 @@ DESIGNED_TEXTS = (
     ("track", "radius", 1e-3, "mm"),
     ("track", "width", 1e-3, "mm"),
 )
-FIGURES = ": asked for "  # between what is wrong with a drive and its figures, in a DriveMismatch
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,7 +209,7 @@ def build_machine(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     """
     if study.bowl is None:
         return Built()
-    listed = [s for s in settings if s.is_own and not s.key.name.startswith("devices")]
+    listed = [s for s in settings if s.is_own and s.key.field != DEVICES_SECTION]
     # what the user gave, then drive and track of the design
     own = [
         f"{section}.{name}={getattr(getattr(study.bowl, section), name) / unit:.9g} {text}"
@@ -246,22 +246,25 @@ def build_machine(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     # what `feeder bowl` with the part and the rate warns of besides: it takes the drive that was tried
     target, warned = study.request.target, {*study.warnings, *checks.remarks(sheet)}
     try:
-        remarks = machines.bowl(own_settings, study.part, target, as_tried=True).remarks
+        sized_again = machines.bowl(own_settings, study.part, target, as_tried=True)
+        remarks = _new_remarks(sized_again, sheet, warned)
     except FeederError as fault:
         rate = f"{target * units.MINUTE:.4g}/min"
         remarks = (f"feeder bowl finds no machine of this file for {rate}: {fault}",)
-    drives = {warning.partition(FIGURES)[0] for warning in warned if FIGURES in warning}
-    remarks = tuple(
-        remark
-        for remark in remarks
-        if remark not in warned and not (FIGURES in remark and remark.partition(FIGURES)[0] in drives)
-    )
     drawn = None
     if sized.solid is not None:  # how the mass of the solid lies about the axis goes with it
         heavy = replace(sheet.bowl.machine, unbalance=sized.bowl.machine.unbalance)
         bowl = replace(sheet.bowl, machine=heavy)
         drawn = replace(sheet, bowl=bowl, order=sized.order, solid=sized.solid)
     return Built(sheet, drawn, why, remarks, lacks)
+
+
+def _new_remarks(sheet: MachineSheet, known: MachineSheet, warned: Collection[str]) -> tuple[str, ...]:
+    """The remarks on a machine that are not among some; a drive that both do not make is said once."""
+    other, own = sheet.mismatch, known.mismatch
+    again = other is not None and own is not None and other.reasons == own.reasons
+    said = {*warned, *(map(str, checks.find_drive_faults(sheet)) if again else ())}
+    return tuple(remark for remark in sheet.remarks if remark not in said)
 
 
 def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, ...]:
@@ -314,7 +317,7 @@ def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
         machine_warnings=tuple(dict.fromkeys(warnings)),
         machine_lacks=tuple(lacking),
     )
-    if study.status != HOLDS or not lacking or other is None:
+    if study.status != Status.HOLDS or not lacking or other is None:
         return completed
     change = f"springs that stand at {np.degrees(other.wanted.spring_angle):.3g} deg"
     changed_springs = nearest_from_study(study, study.request.target, change, trials=len(study.attempts))
@@ -339,7 +342,7 @@ def _size_bowl(
     try:
         return machines.bowl(settings, study.part, target), why
     except FeederError:
-        plain = [s for s in settings if not s.key.name.startswith("devices.")]
+        plain = [s for s in settings if s.key.field != DEVICES_SECTION]
         return machines.bowl(plain, study.part, MIN_POSITIVE), why
 
 

@@ -14,9 +14,10 @@ import numpy as np
 from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.designing import calm_drive, proposals, short_trials
+from feederscrew.designing import calm_drive, proposals, short_trials, texts
+from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.proposals import Proposal
-from feederscrew.designing.record import DEVICE, DRIVE, PART, RATE_KEPT, Attempt, DesignRequest, RobustRun
+from feederscrew.designing.record import RATE_KEPT, Attempt, DesignRequest, RobustRun
 from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING, find_denials, robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.part.record import Part
@@ -28,7 +29,8 @@ from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.orientations import Orientation, neck
+from feederscrew.tooling.isolating.chain import OutcomeKind
+from feederscrew.tooling.orientations import Hanging, Orientation, neck
 from feederscrew.trial import runs
 
 SHORT_TRIAL_PARTS = 2  # parts of each orientation in a short trial
@@ -53,7 +55,7 @@ AVOIDED = 2  # times that a device is left out at which what is wanted was lost
 HANGS_BELOW = np.radians(5.0)  # bank above which a part askew comes to rails beside its slot
 ASKED_STEP = 1.2  # between the velocities at which chains are looked for
 SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
-LYING = proposals.Recipe(1, proposals.MARGINS[0], "any", ())  # of what a part may do at best
+LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
 Progress = Callable[[str, int, int, float, float], None]
 Place = tuple[float, int]  # bank [rad] of a track, and row of an orientation on it
 ChainKey = tuple[Track, str, tuple[tuple[str, str], ...]]
@@ -95,6 +97,10 @@ class Search:
     progress: Progress | None = None  # told what is done, how many of how many, seconds gone and to go
     nearest_limit: int | None = None  # trials at most, where the nearest that holds is looked for
     clock: "Clock" = field(default_factory=lambda: Clock())
+
+    def keeps(self, key: str) -> bool:
+        """Return whether the user gave a key of the bowl file, by its name."""
+        return key in self.kept_keys
 
     @property
     def limit(self) -> int:
@@ -162,7 +168,7 @@ class Search:
         if self.attempts:
             last = self.attempts[-1]
             clean = f"clean, {60.0 * last.rate:.3g}/min" if last.clean else "nothing leaves"
-            text = f"; trial {len(self.attempts)}: {', '.join(last.faults[:2]) or clean}"
+            text = f"; trial {len(self.attempts)}: {', '.join(texts.fault_texts(last.faults, 2)) or clean}"
         if not self.clock.durations:
             return text
         rest = self._rest()  # on steps of 10 s above 20 s
@@ -191,6 +197,11 @@ class Candidate:
         """Return its bowl without devices, with the keys that the user gave."""
         bare = replace(self.bowl, devices=())
         return calm_drive.PlainBowl(bare, search.kept_keys, search.request.drive)
+
+    @property
+    def worst(self) -> Fault | None:
+        """The fault that some draws show most often; None where it was not drawn, or all of them held."""
+        return None if self.robust is None else self.robust.worst
 
     @property
     def is_nearly_robust(self) -> bool:
@@ -386,7 +397,7 @@ def _tracks(search: Search) -> list[_BankedTrack]:
     chances = np.nan_to_num(aspects.chances[search.request.rule])
     rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
     banks = calm_drive.STEEP_BANKS if rolling > ROLLS * chances.sum() else calm_drive.BANKS
-    if "track.bank" in search.kept_keys:
+    if search.keeps("track.bank"):
         banks = (search.plain.track.bank,)
     for number, bank in enumerate(banks):
         plain_bowl = calm_drive.section(
@@ -413,7 +424,7 @@ def _bound(search: Search, idea: _Idea) -> float:
     recipe, track = idea.recipe, idea.track
     rate = min(_promise(search, track, idea.row, recipe) / (search.reserve * search.request.target), 1.0)
     flat = track.plain_bowl.bowl.track.bank <= HANGS_BELOW
-    rank = track.rank if recipe.outcome == "lying" else 1.0 if flat else BANK_RANK**2
+    rank = track.rank if recipe.outcome == OutcomeKind.LYING else 1.0 if flat else BANK_RANK**2
     simplicity = (TURNED if recipe.turns else 1.0) * (HOLED if recipe.holes else 1.0)
     share = _share(search, track, idea.row) ** OFTENER
     margin = LEAST_OF_MARGIN + (1.0 - LEAST_OF_MARGIN) * min(recipe.margin / proposals.MARGINS[0], 1.0)
@@ -449,7 +460,7 @@ def _is_alike(key: ChainKey, other: ChainKey) -> bool:
 
 def _promise(search: Search, track: _BankedTrack, row: int, recipe: proposals.Recipe) -> float:
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
-    if recipe.outcome != "lying" and neck(track.orientations.lying[row]) is not None:
+    if recipe.outcome != OutcomeKind.LYING and neck(track.orientations.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = short_trials.GAP * float((track.weights * track.orientations.lengths).sum())
     share = 1.0 if recipe.turns else _share(search, track, row)
@@ -536,7 +547,7 @@ def _try_and_mend(
         if after == before or lost == LOST_TRIALS or search.is_spent:  # what was changed made no difference
             break
         before = after
-        changed = proposals.mend_proposal(proposal, candidate.trial, lying, candidate.robust)
+        changed = proposals.mend_proposal(proposal, candidate.trial, lying, candidate.worst)
         if changed is None or chain_key(plain_bowl.bowl.track, changed, lying) in search.chains:
             break
         proposal = changed
@@ -550,12 +561,17 @@ def _try_and_mend(
     kinds = sorted(kind for kind in lost_at if proposals.lost_at(trial, kind))
     search.avoided_kinds[place] = tuple(dict.fromkeys((*search.avoided_kinds.get(place, ()), *kinds)))
     # where all of it ended at one of them: another chain that begins so does no better
-    ends = {end for n, k in enumerate(trial.rows) if k == proposal.row for end in trial.places[n]}
+    ends = {end for n, k in enumerate(trial.rows) if k == proposal.row for end in trial.ends[n]}
     if not trial.efficiency > 0.0 and len(ends) == 1:
-        end = ends.pop()
-        heads = [k for k, device in enumerate(proposal.devices) if end.endswith(f" at {device.name}")]
-        if len(heads) == 1:
-            search.lost_behind.append((place, proposal.chain[: heads[0] + 1]))
+        count = devices_to(ends.pop(), proposal)
+        if count:
+            search.lost_behind.append((place, proposal.chain[:count]))
+
+
+def devices_to(end: End, proposal: Proposal) -> int:
+    """Return how many devices of a chain stand along the track up to an end; 0 on the bare track."""
+    placed = [k for k, device in enumerate(proposal.devices) if device.placed]
+    return 0 if end.on_bare_track else placed[end.station - 1] + 1
 
 
 def _find_livelier(search: Search, candidate: Candidate) -> Candidate | None:
@@ -581,30 +597,30 @@ def _find_livelier(search: Search, candidate: Candidate) -> Candidate | None:
 def try_livelier(search: Search, candidate: Candidate) -> Candidate | None:
     """Return the same chain screened at a livelier drive than that at which parts stay; None without one."""
     bowl = calm_drive.find_livelier(candidate.plain_bowl(search), candidate.bowl)
-    other = _at_drive(search, candidate, bowl, "livelier")
+    other = _at_drive(search, candidate, bowl, MoveKind.LIVELIER_DRIVE)
     return None if other is None else _screen(search, other)
 
 
-def _at_drive(search: Search, candidate: Candidate, bowl: Bowl | None, word: str) -> Candidate | None:
+def _at_drive(search: Search, candidate: Candidate, bowl: Bowl | None, kind: MoveKind) -> Candidate | None:
     """The chain of a candidate tried at the drive of a bowl; None without one."""
     if bowl is None:
         return None
-    step = f"{word} drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-    return try_again(search, candidate, replace(candidate.proposal, step=step), bowl)
+    move = Move(kind, 2.0 * bowl.drive.amplitude)
+    return try_again(search, candidate, replace(candidate.proposal, move=move), bowl)
 
 
-def stays_at_steel(proposal: Proposal, faults: Iterable[str]) -> bool:
-    """Return whether faults, sentences of a trial or of draws, name a blade or rails at which parts stay."""
-    names = [cut.device.name for cut in proposal.cuts if cut.device.overhead or cut.device.hangs]
-    return any(f"stopped at {name}" in fault for fault in faults for name in names)
+def stays_at_steel(proposal: Proposal, faults: Iterable[Fault]) -> bool:
+    """Return whether parts stay at a blade or at rails of a chain, as faults of a trial or of draws show."""
+    steel = {cut.device.kind for cut in proposal.cuts if cut.device.overhead or cut.device.hangs}
+    return any(fault.stops_at(steel) for fault in faults)
 
 
 def _find_calmer(search: Search, first: Candidate) -> Candidate:
     """The candidate at a calmer drive that is clean, where the one it had turns or loses what is wanted."""
     candidate = first
     for _ in range(CALMER_TRIALS):
-        robust = candidate.robust  # in a trial on the track, or in draws by turning it
-        turned = robust is not None and "is lost (" in robust.worst and "on the track" in robust.worst
+        worst = candidate.worst  # in a trial on the track, or in draws by turning it
+        turned = worst is not None and worst.kind is FaultKind.LOST and worst.is_on_bare_track
         moved_out = turned or bool(short_trials.lost_by_motion(candidate.trial))
         if candidate.attempt.clean or search.is_spent or not moved_out:
             break
@@ -619,7 +635,7 @@ def _find_calmer(search: Search, first: Candidate) -> Candidate:
 def try_calmer(search: Search, candidate: Candidate) -> Candidate | None:
     """Return the same chain tried at a calmer drive than that which lost parts; None without one."""
     bowl = calm_drive.find_calmer(candidate.plain_bowl(search), candidate.bowl)
-    return _at_drive(search, candidate, bowl, "calmer")
+    return _at_drive(search, candidate, bowl, MoveKind.CALMER_DRIVE)
 
 
 def _screen(search: Search, candidate: Candidate) -> Candidate:
@@ -637,7 +653,7 @@ def _screen(search: Search, candidate: Candidate) -> Candidate:
         raise KeyboardInterrupt
     if robust.held == robust.draws:
         return candidate
-    attempt = replace(candidate.attempt, faults=(f"in draws {robust.worst}",))
+    attempt = replace(candidate.attempt, faults=() if robust.worst is None else (robust.worst,))
     search.attempts[-1] = attempt
     return replace(candidate, attempt=attempt, robust=robust)
 
@@ -654,7 +670,7 @@ def try_proposal(
     Weights are shares (M,) [1] of the orientations.
     """
     check_written(proposal.devices, "design.yaml")
-    if "track.climb" not in search.kept_keys and any(device.leans for device in proposal.devices):
+    if not search.keeps("track.climb") and any(device.leans for device in proposal.devices):
         # as steep as a spacing section that leads down needs the track: else it has no solid
         bowl = replace(plain_bowl.bowl, devices=proposal.devices)
         climb = solidbowl.drawable_climb(bowl, search.part, search.through(bowl))
@@ -665,19 +681,21 @@ def try_proposal(
     bowl = replace(own, track=plain_bowl.bowl.track, devices=proposal.devices)
     orientations = search.orientations_along(bowl)
     search.chains.add(chain_key(bowl.track, proposal, orientations.lying))
-    search.begin_trial(f"{orientations.lying[proposal.row].name}, {proposal.step}")
+    search.begin_trial(f"{orientations.lying[proposal.row].name}, {texts.move_text(proposal.move)}")
     trial = _short(search, bowl, orientations, weights, proposal)
     faults = tuple(find_denials(trial))
     # which fault it shows: what loses the wanted orientation first, then what lets others leave
-    cause = ""
+    cause = Cause.UNKNOWN
     if faults and (short_trials.lost_by_motion(trial) or not trial.velocity > 0.0):
-        cause = DRIVE
+        cause = Cause.DRIVE
     elif faults:
-        cause = DEVICE if trial.loses_wanted or proposal.devices else PART
+        cause = Cause.DEVICE if trial.loses_wanted or proposal.devices else Cause.PART
+    state = orientations.states[trial.states[0]]
     attempt = Attempt(
-        wanted=orientations.states[trial.states[0]].name,
+        wanted=state.name,
+        aspect="" if isinstance(state, Hanging) else state.aspect,
         chain=proposal.chain,
-        step=proposal.step,
+        move=proposal.move,
         bank=bowl.track.bank,
         velocity=trial.velocity,
         parts=int(trial.parts.sum()),

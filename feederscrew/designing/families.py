@@ -5,10 +5,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.verified import Status
 from feederscrew.designing import calm_drive, exploring, loop, proposals
 from feederscrew.designing.exploring import Search
+from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.loop import merit
-from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, DesignRequest, DesignStudy
+from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
@@ -32,9 +34,9 @@ class FamilyStudy(ReadableRecord):
     def status(self) -> str:
         """The worst word of its parts: holds where each does; not proved where the user stopped it."""
         if self.partial:
-            return NOT_PROVED
+            return Status.NOT_PROVED
         words = {member.status for member in self.members}
-        return next(word for word in (NONE, FALLS_SHORT, HOLDS) if word in words)
+        return next(word for word in (Status.NONE, Status.FALLS_SHORT, Status.HOLDS) if word in words)
 
     @property
     def shared(self) -> bool:
@@ -100,14 +102,14 @@ def family(
 
     def member(part: Part, lead: DesignStudy | None) -> DesignStudy:
         # with what the first one has where it holds so, else its own
-        if lead is None or lead.bowl is None or lead.status != HOLDS:
+        if lead is None or lead.bowl is None or lead.status != Status.HOLDS:
             return loop.design(part, plain, keys, request, **own)
         used = {device.kind for device in lead.devices}
         unused = tuple(name for name in PROPOSED if name not in used)
         less = replace(request, without=(*request.without, *unused))
         tracked = replace(plain, track=lead.bowl.track)
         design = loop.design(part, tracked, keys | set(SHARED_TRACK_KEYS), less, **own, with_nearest=False)
-        if design.status == HOLDS or design.partial:
+        if design.status == Status.HOLDS or design.partial:
             return replace(design, request=request)
         other = loop.design(part, plain, keys, request, **own)
         return replace(max((design, other), key=merit), partial=other.partial)
@@ -136,7 +138,7 @@ def _unify_chains(
 ) -> tuple[DesignStudy, ...]:
     """The members with values that suit all, where there are such and each holds with them."""
     kinds = {tuple(device.kind for device in member.devices) for member in members}
-    if len(kinds) > 1 or any(member.status != HOLDS for member in members):
+    if len(kinds) > 1 or any(member.status != Status.HOLDS for member in members):
         return members
     limits = common_limits([member.cuts for member in members])
     if limits is None:
@@ -156,7 +158,7 @@ def _unify_chains(
             changed = prove_with_cuts(member, cuts, request, kept_keys, tell=tell, before=before)
         if changed is not None and changed.partial:
             raise KeyboardInterrupt
-        if changed is None or changed.status != HOLDS:
+        if changed is None or changed.status != Status.HOLDS:
             return members
         changed_members.append(changed)
     return tuple(changed_members)
@@ -207,7 +209,7 @@ def prove_with_cuts(
     search.shares = exploring.entry_shares(search, plain_bowl)
     orientations, weights = exploring.weigh_orientations(search, plain_bowl)
     own = proposals.find_equivalents(orientations.lying, study.turn, request)
-    proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", *own)
+    proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, Move(MoveKind.VALUES_OF_ALL), *own)
     track = calm_drive.PlainBowl(plain_bowl, frozenset(kept_keys), request.drive)
     candidate = exploring.try_proposal(search, track, proposal, weights)
     return loop.prove_design(search, candidate, whole=True) if candidate.attempt.clean else None

@@ -8,14 +8,22 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.verified import Status
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import calm_drive, exploring, hazards, nearest, proposals, queues, short_trials
+from feederscrew.designing import (
+    calm_drive,
+    exploring,
+    hazards,
+    nearest,
+    proposals,
+    queues,
+    short_trials,
+    texts,
+)
 from feederscrew.designing.exploring import Candidate, Progress, Search
+from feederscrew.designing.findings import FaultKind
 from feederscrew.designing.record import (
     DRAWS_HELD,
-    HOLDS,
-    NONE,
-    NOT_TRIED,
     RATE_KEPT,
     Alternative,
     Attempt,
@@ -84,15 +92,15 @@ def design(
                 _prove(search, candidate, proofs)
                 own, last = proofs[first:], proofs[-1][0]
                 queued = sum(bool(study.queues) for study, _ in own)
-                if last.status == HOLDS or last.partial or queued >= PROVED or len(own) >= DRAWN:
+                if last.status == Status.HOLDS or last.partial or queued >= PROVED or len(own) >= DRAWN:
                     break
             if any(study.partial for study, _ in proofs):
                 break
-            if any(study.status == HOLDS for study, _ in proofs) and not request.alternatives:
+            if any(study.status == Status.HOLDS for study, _ in proofs) and not request.alternatives:
                 break  # no dearer one is searched
         near, nearby = _nearest(search, proofs) if with_nearest else (None, None)
         # the best design is proved to the end, though it does not hold
-        if nearby is None and not any(study.status == HOLDS or study.partial for study, _ in proofs):
+        if nearby is None and not any(study.status == Status.HOLDS or study.partial for study, _ in proofs):
             if proofs:
                 study, candidate = max(proofs, key=lambda proof: merit(proof[0]))
                 if not nearest.whole(study):
@@ -104,7 +112,7 @@ def design(
     best = _list_alternatives(search, proofs, classes, nearby or _best(search, proofs))
     if any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
-    return best if best.status == HOLDS else replace(best, nearest=near)
+    return best if best.status == Status.HOLDS else replace(best, nearest=near)
 
 
 def _list_alternatives(search: Search, proofs: Proofs, classes: list[int], best: DesignStudy) -> DesignStudy:
@@ -119,7 +127,7 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
 
     None where a design holds, or was stopped.
     """
-    if any(study.status == HOLDS or study.partial for study, _ in proofs):
+    if any(study.status == Status.HOLDS or study.partial for study, _ in proofs):
         return None, None
     slow = [proof for proof in proofs if nearest.only_slow(proof[0]) and not nearest.whole(proof[0])]
     if slow:  # its queue ended as soon as it was too slow
@@ -146,7 +154,7 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
     """The cheapest design that holds, or the best so far as far as it was proved; else the best attempt."""
 
     def cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
-        return -cost_class_of(study.devices) if study.status == HOLDS else -math.inf, merit(study)
+        return -cost_class_of(study.devices) if study.status == Status.HOLDS else -math.inf, merit(study)
 
     if proofs:
         return max((study for study, _ in proofs), key=cheapest)
@@ -191,7 +199,7 @@ def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
     for _ in range(CHANGES + 1):
         study = prove_design(search, candidate, whole=False)
         proofs.append((study, candidate))
-        if study.status == HOLDS or study.partial or search.is_spent:
+        if study.status == Status.HOLDS or study.partial or search.is_spent:
             return
         other = _change_by_proof(search, study, candidate)
         if other is None or not other.attempt.clean:
@@ -215,15 +223,17 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
         search.reserve *= 1.1 * RATE_KEPT * search.request.target / study.delivered[1]
         return _faster(search, candidate)
     elif study.robust.share < DRAWS_HELD:
-        if " is lost (stopped" in study.robust.worst:  # what is wanted gets stuck: a drive may be too slow
+        worst = study.robust.worst
+        if worst is not None and worst.kind is FaultKind.LOST and worst.is_stopped:
+            # what is wanted gets stuck: a drive may be too slow
             search.min_speed = FASTER * calm_drive.speed(candidate.bowl)
             other = _faster(search, candidate)
             search.min_speed = 0.0
             if other is not None:
                 return other
-        if exploring.stays_at_steel(proposal, (study.robust.worst,)):
+        if exploring.stays_at_steel(proposal, () if worst is None else (worst,)):
             return exploring.try_livelier(search, candidate)
-        changed = proposals.mend_proposal(proposal, candidate.trial, lying, study.robust)
+        changed = proposals.mend_proposal(proposal, candidate.trial, lying, worst)
     else:
         changed = proposals.purify(candidate, study.left_instead)
     return None if changed is None else exploring.try_again(search, candidate, changed, candidate.bowl)
@@ -301,7 +311,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
     """The design before anything of it is proved."""
     bowl, oriented, weights = candidate.bowl, candidate.orientations, candidate.weights
     request, proposal, name = search.request, candidate.proposal, candidate.attempt.wanted
-    own = name.partition("@")[0].casefold()
+    own = candidate.attempt.aspect.casefold()
     gain = short_trials.gain(oriented, weights, candidate.trial.states)
     tooling = None
     if proposal.cuts:  # its chain as `feeder tooling` would have found it
@@ -321,6 +331,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         request=request,
         bowl=bowl,
         wanted=" or ".join((name, *(aspect for aspect in request.up if aspect.casefold() != own))),
+        wanted_aspect=candidate.attempt.aspect,
         turn=proposal.row,
         cuts=proposal.cuts,
         before=proposal.before,
@@ -338,7 +349,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
 
 def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
     """Return what of two designs is the better one: holds, then clean, then the most parts."""
-    return study.status == HOLDS, study.jams == 0, study.robust.share, study.delivered[1]
+    return study.status == Status.HOLDS, study.jams == 0, study.robust.share, study.delivered[1]
 
 
 def alternatives(
@@ -349,7 +360,7 @@ def alternatives(
     The studies are those that were proved, as far as they were, ``attempts`` every short trial, ``classes``
     the cost classes of which chains were looked for.
     """
-    holds = any(study.status == HOLDS for study in studies)
+    holds = any(study.status == Status.HOLDS for study in studies)
     best_of: list[Alternative] = []
     for number in proposals.COST_CLASSES:
         own = [one for one in studies if one.bowl is not None and cost_class_of(one.devices) == number]
@@ -370,17 +381,17 @@ def alternatives(
                     chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
                     chain_words=words,
                     sees=tuple(device.sees for device in sensors),
-                    why="; ".join(study.shortfalls) if study.status != HOLDS else "",
+                    why="; ".join(study.shortfalls) if study.status != Status.HOLDS else "",
                 )
             )
         elif tried:
             best = max(tried, key=lambda one: (one.clean, one.efficiency, one.rate))
-            faults = ", ".join(best.faults[:2]) or "too slow in its short trial"
-            best_of.append(Alternative(number, NONE, chain=best.chain, why=f"{best.wanted}: {faults}"))
+            faults = ", ".join(texts.fault_texts(best.faults, 2)) or "too slow in its short trial"
+            best_of.append(Alternative(number, Status.NONE, chain=best.chain, why=f"{best.wanted}: {faults}"))
         elif number in classes:
             why = "no chain of this class tells what is wanted from the rest"
-            best_of.append(Alternative(number, NONE, why=why))
+            best_of.append(Alternative(number, Status.NONE, why=why))
         else:
             why = "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped"
-            best_of.append(Alternative(number, NOT_TRIED, why=why))
+            best_of.append(Alternative(number, Status.NOT_TRIED, why=why))
     return tuple(best_of)

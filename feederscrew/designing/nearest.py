@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.verified import Status
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import calm_drive, exploring, proposals, queues, short_trials
+from feederscrew.designing import calm_drive, exploring, proposals, queues, short_trials, texts
 from feederscrew.designing.exploring import Candidate, Search
+from feederscrew.designing.findings import FaultKind, MoveKind
 from feederscrew.designing.record import (
     DRAWS_HELD,
-    HEADING_OFF,
-    HOLDS,
     PURE,
     RATE_KEPT,
     DesignRequest,
@@ -22,6 +22,7 @@ from feederscrew.designing.record import (
     NearestDesign,
 )
 from feederscrew.dropping.plate_test import throw_number
+from feederscrew.tooling.isolating.chain import OutcomeKind
 
 MINUTE = 60.0
 PROOFS = 3  # designs beside those of the search that go through draws and queues
@@ -69,7 +70,7 @@ def rate_that_holds(study: DesignStudy) -> float:
     least = min(study.delivered[1], *(queue.ends[1] for queue in study.queues))
     rate = min(_rounded_down(MINUTE * least / RATE_KEPT) / MINUTE, study.request.target)
     slower = replace(study, request=replace(study.request, target=rate))
-    return rate if rate > 0.0 and slower.status == HOLDS else 0.0
+    return rate if rate > 0.0 and slower.status == Status.HOLDS else 0.0
 
 
 def _rounded_down(value: float) -> float:
@@ -181,7 +182,7 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
             if other is not None and other.attempt.clean:
                 yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
     for candidate in _fastest_first(candidate for candidate in search.clean if id(candidate) not in proved):
-        calm = candidate.proposal.step.startswith("calmer drive")
+        calm = candidate.proposal.move.kind is MoveKind.CALMER_DRIVE
         change = "a calmer drive, " if calm else "a lower rate, the same bowl at "
         change += _drive(candidate.bowl)
         names_proved = [candidate.attempt.wanted for _, candidate in proofs]
@@ -192,7 +193,7 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
     for study, candidate in proofs:
         if budget and study.queues and not study.purity[0] >= PURE:
             # a drop before the chain for what left a queue instead of what is wanted
-            names = {name.partition("@")[0].removesuffix(HEADING_OFF) for name, _ in study.left_instead}
+            names = {pose.aspect for pose, _ in study.left_instead}
             lying = candidate.orientations.lying
             wanted = candidate.trial.wanted
             rows = [k for k, one in enumerate(lying) if one.aspect in names and k not in wanted]
@@ -201,7 +202,7 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
                 continue
             other, budget = (exploring.try_again(search, candidate, changed, candidate.bowl), budget - 1)
             if other.attempt.clean:
-                yield Variant(f"one device more, {changed.step}", other, search)
+                yield Variant(f"one device more, {texts.move_text(changed.move)}", other, search)
     for other in _try_calmer_drives(search, budget):
         yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
     yield from _other_ways_up(search)
@@ -216,7 +217,8 @@ def _by_motion(study: DesignStudy) -> bool:
     impure = bool(study.queues) and (bool(study.jams) or not study.purity[0] >= PURE)
     hops = study.bowl is not None and hop(study.bowl).height > 0.0
     denied = study.robust.share < DRAWS_HELD and hops
-    return impure or denied or "is lost (" in study.robust.worst
+    worst = study.robust.worst
+    return impure or denied or (worst is not None and worst.kind is FaultKind.LOST)
 
 
 def _in_turn(iterators: list[Iterator[Variant]]) -> Iterator[Variant]:
@@ -253,8 +255,8 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
     if search.request.heading is not None:
         return
     for study, candidate in proofs:
-        aspect = (study.wanted or "").partition("@")[0]
-        if aspect + HEADING_OFF not in dict(study.left_instead) or aspect in candidate.proposal.any_heading:
+        aspect = study.wanted_aspect
+        if aspect not in study.aspects_heading_off or aspect in candidate.proposal.any_heading:
             continue
         request = replace(search.request, aspect=None, up=tuple(dict.fromkeys((*search.request.up, aspect))))
         lying, row = candidate.orientations.lying, candidate.proposal.row
@@ -288,9 +290,9 @@ def _at_a_lower_rate(search: Search) -> Iterator[Variant]:
 def _other_ways_up(search: Search) -> Iterator[Variant]:
     """Ways up that are clean in a trial, of all where only some were asked for: fast ones first."""
     first_request = search.request
-    if first_request.aspect is None and not first_request.up and first_request.outcome == "any":
+    if first_request.aspect is None and not first_request.up and first_request.outcome == OutcomeKind.ANY:
         return
-    request = replace(first_request, aspect=None, heading=None, up=(), outcome="any")
+    request = replace(first_request, aspect=None, heading=None, up=(), outcome=OutcomeKind.ANY)
     free = _other_search(search, replace(request, budget=len(search.attempts) + FREE_TRIALS))
     yielded = set()
     for candidate in exploring.candidates(free):
@@ -328,7 +330,6 @@ def _helps(search: Search, study: DesignStudy, chosen: Candidate | None) -> Iter
             named.add(candidate.attempt.wanted)
             rate = MINUTE * candidate.attempt.rate
             yield f"{candidate.attempt.wanted} got through its short trial at {rate:.3g}/min"
-    off = [name.removesuffix(HEADING_OFF) for name, _ in study.left_instead if name.endswith(HEADING_OFF)]
-    own = (study.wanted or "").partition("@")[0]
-    if own and own in off and own not in search.request.up:
+    own = study.wanted_aspect
+    if own in study.aspects_heading_off and own not in search.request.up:
         yield f"--up {own} counts {own} at any heading"

@@ -10,8 +10,9 @@ import numpy as np
 from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
-from feederscrew.designing.record import DesignRequest, RobustRun
-from feederscrew.designing.short_trials import CARRIED, ShortTrial
+from feederscrew.designing.findings import Fault, FaultKind, LeavingCounts, Move, MoveKind, PoseKind
+from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.short_trials import ShortTrial
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
@@ -22,7 +23,7 @@ from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
 from feederscrew.tooling.devices.orientation_names import nearest
 from feederscrew.tooling.devices.orientation_names import rows as rows_of
 from feederscrew.tooling.devices.pneumatics import PULSE
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, in_mm, judge_cut, limits, numeric_kinds
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
 from feederscrew.tooling.isolating.design import RAIL
 from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.tooling.verdicts import DeviceEncounter
@@ -52,7 +53,7 @@ class Recipe:
 
     cost_class: int
     margin: float  # [m] to either side
-    outcome: str  # how parts leave: 'lying' or 'hanging'
+    outcome: OutcomeKind  # how parts leave
     excluded_kinds: tuple[str, ...]  # kinds of devices that are left out
     turns: bool = False  # whether a device that turns others into the orientation may come first
 
@@ -71,19 +72,22 @@ def recipes_of(cost_class: int, request: DesignRequest) -> list[Recipe]:
     left_out = (*dearer(cost_class), *request.without)
     if not set(names(cost_class=cost_class, proposed=True)) - set(left_out):
         return []
-    outcomes = [outcome for outcome in ("hanging", "lying") if request.outcome in ("any", outcome)]
+    both = (OutcomeKind.HANGING, OutcomeKind.LYING)
+    outcomes = both if request.outcome is OutcomeKind.ANY else (request.outcome,)
     kinds = [(*left_out, *HOLES), *([(*left_out, *TOUCHING_KINDS, *HOLES)] if cost_class == SENSED else [])]
     recipes = [
         Recipe(cost_class, margin, outcome, some)
         for margin in MARGINS for outcome in outcomes for some in kinds
     ]  # fmt: skip
-    if "lying" in outcomes:
+    if OutcomeKind.LYING in outcomes:
         lying = [
-            recipe for recipe in recipes if recipe.outcome == "lying" and recipe.excluded_kinds == kinds[0]
+            recipe
+            for recipe in recipes
+            if recipe.outcome == OutcomeKind.LYING and recipe.excluded_kinds == kinds[0]
         ]
         recipes += [replace(recipe, turns=True) for recipe in lying]
         if cost_class == COST_CLASSES[0]:
-            recipes.append(Recipe(cost_class, MARGINS[-1], "lying", left_out))
+            recipes.append(Recipe(cost_class, MARGINS[-1], OutcomeKind.LYING, left_out))
     return recipes
 
 
@@ -94,7 +98,7 @@ class Proposal:
     row: int
     cuts: tuple[Cut, ...]
     before: tuple[Device, ...]
-    step: str  # why it is tried
+    move: Move  # why it is tried
     equivalents: tuple[int, ...] = ()  # rows that count as it
     any_heading: tuple[str, ...] = ()  # names of aspects that count as it, whatever the heading
     purity: float = 1.0  # [1] by the static rule, midway between what is sure and what may be
@@ -135,9 +139,9 @@ class Proposal:
         """The devices in a sentence, headings in whole degrees."""
         return ", ".join(f"{device.kind}: {device.short}" for device in self.devices) or "no device"
 
-    def with_cut(self, place: int, cut: Cut, step: str) -> "Proposal":
+    def with_cut(self, place: int, cut: Cut, move: Move) -> "Proposal":
         """Return the proposal with another cut at a place of its chain."""
-        return replace(self, cuts=(*self.cuts[:place], cut, *self.cuts[place + 1 :]), step=step)
+        return replace(self, cuts=(*self.cuts[:place], cut, *self.cuts[place + 1 :]), move=move)
 
 
 def equivalent_rows(orientations: Sequence[Orientation], row: int, up: Iterable[str]) -> tuple[int, ...]:
@@ -184,12 +188,12 @@ def propose_no_device(
     Shares are those (M,) [1] in which orientations come.
     """
     rows = promising_rows(orientations, shares, request)
-    if not rows or request.outcome == "hanging":
+    if not rows or request.outcome == OutcomeKind.HANGING:
         return None
     leaving = (shares[:, None] * orientations.leaving).sum(axis=0)
     best = max(rows, key=lambda k: leaving[orientations.leaves_as[k]])
     own = find_equivalents(orientations.lying, best, request)
-    proposal = Proposal(best, (), tuple(devices), "no device", *own)
+    proposal = Proposal(best, (), tuple(devices), Move(MoveKind.NO_DEVICE), *own)
     pure = short_trials.gain(orientations, shares, proposal.states(orientations)) / max(leaving.sum(), 1e-300)
     return proposal if pure >= ENOUGH_PURITY else None
 
@@ -224,7 +228,7 @@ def propose_chain(
     cuts = tuple(shorten_pulse(round_cut(cut, lying, row), lying) for cut in static_design.cuts)
     pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
     proposal = Proposal(
-        row, cuts, tuple(static_design.before), f"proposed with margins of {in_mm(recipe.margin)}",
+        row, cuts, tuple(static_design.before), Move(MoveKind.PROPOSED, recipe.margin),
         *find_equivalents(lying, row, request), pure, static_design.margin,
     )  # fmt: skip
     if static_design.isolated:
@@ -273,7 +277,7 @@ def _mend_cut(proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orie
             continue
         other = move_cut(cut, limit, orientations, proposal.row)
         if other.device.limit != cut.device.limit and other.margin_pass > 0.0:
-            return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
+            return proposal.with_cut(place, other, _move_of(MoveKind.VALUE, other.device))
     return None
 
 
@@ -286,10 +290,10 @@ def sweep_blade(
     proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orientation]
 ) -> Proposal | None:
     """Return the proposal with another sweep of a blade at which parts stay; None where none is left."""
-    stays = {end for n in range(len(trial.rows)) if trial.held[n] for end in trial.places[n]}
+    stays_at = {end.kind for n in range(len(trial.rows)) if trial.held[n] for end in trial.ends[n]}
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device  # a blade, where it is overhead
-        if not device.overhead or not device.face or not any(end.endswith(device.name) for end in stays):
+        if not device.overhead or not device.face or device.kind not in stays_at:
             continue
         used = proposal.sweeps or (round(np.degrees(device.sweep)),)
         grip = orientations[proposal.row].grip
@@ -301,9 +305,8 @@ def sweep_blade(
         both: list[Any] = [cut.smallest, cut.largest]
         ends = [replace(end, sweep=other.sweep).rewritten() for end in both]
         changed = _judge(cut, other, orientations, proposal.row, ends)
-        sweep = round(np.degrees(other.sweep))
-        swept_proposal = proposal.with_cut(place, changed, f"{device.kind} swept {sweep} deg")
-        return replace(swept_proposal, sweeps=(*used, sweep))
+        swept_proposal = proposal.with_cut(place, changed, _move_of(MoveKind.SWEEP, device, other.sweep))
+        return replace(swept_proposal, sweeps=(*used, round(np.degrees(other.sweep))))
     return None
 
 
@@ -311,18 +314,19 @@ def mend_proposal(
     proposal: Proposal,
     trial: ShortTrial,
     orientations: Sequence[Orientation],
-    robust: RobustRun | None = None,
+    worst: Fault | None = None,
 ) -> Proposal | None:
     """Return the proposal changed where its trial, or draws, deny it; None where nothing is left to change.
 
-    ``robust`` are draws that deny what the trial itself does not.
+    ``worst`` is what draws show most often that deny what the trial itself does not.
     """
-    if robust is not None:
-        return (
-            _widen_slot(proposal, orientations)
-            if "lost" in robust.worst
-            else _cut_more(proposal, trial, robust, orientations)
-        )
+    if worst is not None:
+        match worst.kind:
+            case FaultKind.LOST:
+                return _widen_slot(proposal, orientations)
+            case FaultKind.CARRIED:
+                return _cut_more(proposal, trial, worst.row, orientations)
+        return None
     changed = _widen_slot(proposal, orientations) if trial.loses_wanted else None
     changed = (
         changed or sweep_blade(proposal, trial, orientations) or _mend_cut(proposal, trial, orientations)
@@ -336,34 +340,38 @@ def mend_proposal(
     return add_drop(proposal, wrong, wanted, orientations)
 
 
+def _move_of(kind: MoveKind, device: Device, value: float = 0.0) -> Move:
+    """A move by which a device has changed, or is added."""
+    return Move(kind, value, device.kind, device.name, device.text)
+
+
 def _cut_more(
-    proposal: Proposal, trial: ShortTrial, robust: RobustRun, orientations: Sequence[Orientation]
+    proposal: Proposal, trial: ShortTrial, row: int, orientations: Sequence[Orientation]
 ) -> Proposal | None:
-    """The proposal that cuts more of what draws carry through; None where no value or drop does."""
-    name, carried, _ = robust.worst.partition(CARRIED)
-    if not carried:
-        return None
+    """The proposal that cuts more of an orientation that is carried through; None where nothing does."""
+    name = orientations[row].name
     for place, cut in enumerate(proposal.cuts):
         if not cut.device.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
             continue
         other = move_cut(cut, 0.5 * (cut.device.limit + cut.largest.limit), orientations, proposal.row)
         if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
-            return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
+            return proposal.with_cut(place, other, _move_of(MoveKind.VALUE, other.device))
     wanted = trial.wanted
-    rows = [k for k, orientation in enumerate(orientations) if orientation.name == name and k not in wanted]
-    return add_drop(proposal, rows, wanted, orientations)
+    return add_drop(proposal, [row] if row not in wanted else [], wanted, orientations)
 
 
-def purify(candidate: Any, left_instead: Iterable[tuple[str, int]]) -> Proposal | None:
+def purify(candidate: Any, left_instead: LeavingCounts) -> Proposal | None:
     """Return the proposal of a Candidate that cuts more of what left queues instead of what is wanted.
 
-    None without one. ``left_instead``: names of what left, the most frequent first, and how many.
+    None without one. ``left_instead`` are the poses in which parts left, the most frequent first.
     """
-    for name, _ in left_instead:
-        robust = RobustRun(1, 0, f"{name}{CARRIED}")
-        changed = _cut_more(candidate.proposal, candidate.trial, robust, candidate.orientations.lying)
-        if changed is not None:
-            return changed
+    lying = candidate.orientations.lying
+    rows = {orientation.name: row for row, orientation in enumerate(lying)}
+    for pose, _ in left_instead:
+        if pose.kind is PoseKind.ORIENTATION and pose.name in rows:
+            changed = _cut_more(candidate.proposal, candidate.trial, rows[pose.name], lying)
+            if changed is not None:
+                return changed
     return None
 
 
@@ -382,8 +390,7 @@ def add_pressure_break(candidate: Any) -> Proposal | None:
     if device is None:
         return None
     cut = judge_cut(lying, proposal.row, device, np.zeros(len(lying), bool), device, device)
-    step = f"{device.name} of {device.text} before it, for what backs up"
-    return replace(proposal, cuts=(cut, *proposal.cuts), step=step)
+    return replace(proposal, cuts=(cut, *proposal.cuts), move=_move_of(MoveKind.PRESSURE_BREAK, device))
 
 
 def add_drop(
@@ -416,13 +423,12 @@ def add_drop(
     must = np.array([k in listed for k in range(len(orientations))])
     ends = [device.valued(limit + half) for half in (-0.5 * room, 0.5 * room)]
     cut = judge_cut(orientations, proposal.row, device, must, *ends)
-    return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
+    return replace(proposal, cuts=(cut, *proposal.cuts), move=_move_of(MoveKind.DROP_BEFORE, device))
 
 
 def lost_at(trial: ShortTrial, kind: str) -> bool:
     """Return whether the wanted orientation ends at a device of a kind."""
-    name = KINDS[kind].trade or KINDS[kind].kind.replace("_", " ")  # as a trial names the device
-    return any(end.endswith(f"at {name}") for n in trial.wanted_places for end in trial.places[n])
+    return any(end.kind == kind for n in trial.wanted_places for end in trial.ends[n])
 
 
 @functools.lru_cache(maxsize=16)
@@ -466,8 +472,8 @@ def lengthen_pulse(
         device: Any = cut.device
         if device.senses and _slips(cut, trial, orientations) and device.time < PULSE:
             other = device.with_pulse(min(LONGER_PULSE * device.time, PULSE))
-            step = f"pulse of {1e3 * other.time:.0f} ms"
-            return proposal.with_cut(place, replace(cut, device=other), step)
+            move = _move_of(MoveKind.LONGER_PULSE, other, other.time)
+            return proposal.with_cut(place, replace(cut, device=other), move)
     return None
 
 
@@ -489,5 +495,5 @@ def _widen_slot(proposal: Proposal, orientations: Sequence[Orientation]) -> Prop
         if more < VALUE_STEP_M or span == device.span or last - first > WIDEST_SLOT * shank.head:
             continue
         other = _judge(cut, device.with_span(span), orientations, proposal.row)
-        return proposal.with_cut(place, other, f"slot widened to {in_mm(span[1] - span[0])}")
+        return proposal.with_cut(place, other, _move_of(MoveKind.WIDER_SLOT, other.device, span[1] - span[0]))
     return None

@@ -15,13 +15,12 @@ from scipy.stats import binom
 from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
+from feederscrew.designing.findings import LeavingCounts, LeavingPose, PoseKind, join_leaving_counts
 from feederscrew.designing.record import (
-    HEADING_OFF,
     PURE,
     RATE_KEPT,
     DesignStudy,
     FilledQueue,
-    joined_counts,
     share_interval,
 )
 from feederscrew.dropping.ensemble import wilson
@@ -117,24 +116,24 @@ class FollowedRow:
         """
         return int(outcome.whole[self._is_wanted(outcome.whole.shape)].sum())
 
-    def left_instead(self, outcome: QueuedParts) -> tuple[tuple[str, int], ...]:
-        """Return what whole parts left otherwise than wanted, and how many, the most first.
-
-        What lies on an aspect at a heading that is none of the known is 'C, heading off'.
-        """
+    def left_instead(self, outcome: QueuedParts) -> LeavingCounts:
+        """Return in which poses whole parts left otherwise than wanted, and how many, the most first."""
         lying, names, free = self.orientations.states, list(self.aspects.names), self._free
-        counts, counted_headings = Counter[str](), Counter[str]()
+        counts, counted_headings = Counter[LeavingPose](), Counter[str]()
         for k, orientation in enumerate(lying):
             hangs = isinstance(orientation, Hanging)
             counted_headings["" if hangs else orientation.aspect] += int(outcome.leaving_counts[k])
             if k not in self.states and (hangs or orientation.aspect not in free):
-                counts[orientation.name] += int(outcome.leaving_counts[k])
+                aspect = "" if hangs else orientation.aspect
+                pose = LeavingPose(PoseKind.ORIENTATION, aspect, orientation.name)
+                counts[pose] += int(outcome.leaving_counts[k])
         for k, name in enumerate(names):
             if name not in free:
-                counts[f"{name}{HEADING_OFF}"] += max(int(outcome.aspects[k]) - counted_headings[name], 0)
+                off = max(int(outcome.aspects[k]) - counted_headings[name], 0)
+                counts[LeavingPose(PoseKind.HEADING_OFF, name)] += off
         rest = int(outcome.leaving_counts.sum()) - self.wanted_parts(outcome) - counts.total()
-        counts["in no known pose"] += max(rest, 0)
-        return tuple((name, number) for name, number in counts.most_common() if number)
+        counts[LeavingPose(PoseKind.UNKNOWN)] += max(rest, 0)
+        return tuple((pose, number) for pose, number in counts.most_common() if number)
 
     def count(self, fill: str, gaps: float, outcome: QueuedParts) -> FilledQueue:
         """Return what a queue did as a FilledQueue."""
@@ -301,7 +300,7 @@ def follow_longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ..
             least,
             **sums,
             partial=more.partial,
-            left_instead=joined_counts(least.left_instead, more.left_instead),
+            left_instead=join_leaving_counts(least.left_instead, more.left_instead),
             counts_by_entry=tuple((a[0] + b[0], a[1] + b[1]) for a, b in pairs),
         )
         queues = (*queues[:place], joined, *queues[place + 1 :])

@@ -1,6 +1,5 @@
 """What is asked of a design, and what it stands on."""
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,10 +9,20 @@ import numpy as np
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
-from feederscrew.designing.calm_drive import DRIVES, LEAF_SPRING
+from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, Status
+from feederscrew.designing import texts
+from feederscrew.designing.calm_drive import DriveKind
+from feederscrew.designing.findings import (
+    Cause,
+    Fault,
+    FaultKind,
+    LeavingCounts,
+    LeavingPose,
+    Move,
+    PoseKind,
+    join_leaving_counts,
+)
 from feederscrew.dropping.ensemble import wilson
-from feederscrew.errors import ArgumentError
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.records import ReadableRecord
@@ -21,16 +30,12 @@ from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial.long_ride import RideOfTrack, join_rides, ride_of_track
 from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
-
-DESIGN_OUTCOMES = ("any", "lying", "hanging")
-DRIVE, DEVICE, ARRIVAL, PART = CAUSES = ("drive", "device", "arrival", "part")
-HEADING_OFF = ", heading off"  # behind the name of an aspect: at a heading that is none of the listed
-NONE, NOT_PROVED, NOT_TRIED = "none", "not proved", "not tried"
 
 
 @dataclass(frozen=True)
@@ -41,11 +46,11 @@ class DesignRequest:
     aspect: str | None = None
     heading: float | None = None  # [rad]
     up: tuple[str, ...] = ()  # aspects that count as the one wanted, whatever their heading
-    outcome: str = "any"  # of OUTCOMES
+    outcome: OutcomeKind = OutcomeKind.ANY  # how parts leave
     without: tuple[str, ...] = ()  # kinds of device that shall not be used
     diameter: tuple[float, float] | None = None  # [m] least and greatest
     rule: str = "recommended"
-    drive: str = LEAF_SPRING  # kind of drive, of DRIVES
+    drive: DriveKind = DriveKind.LEAF_SPRING  # that may be proposed
     tolerance: float = 1e-4  # [m] of the part's size, to either side
     budget: int = 16  # short trials
     draws: int = 20
@@ -61,8 +66,8 @@ class DesignRequest:
     def __post_init__(self) -> None:
         check.of_an_aspect(self.aspect, self.heading)
         require_rule(self.rule)
-        if self.drive not in DRIVES:
-            raise ArgumentError("drive", f"is {self.drive!r}", f"give {' or '.join(DRIVES)}")
+        object.__setattr__(self, "drive", check.choice("drive", self.drive, DriveKind))
+        object.__setattr__(self, "outcome", check.choice("outcome", self.outcome, OutcomeKind))
         for name in ("up", "without"):  # names may come as a text
             object.__setattr__(self, name, listed(getattr(self, name)))
 
@@ -72,8 +77,9 @@ class Attempt:
     """One short trial of the loop: what was tried, and what came of it."""
 
     wanted: str  # 'A@2'
+    aspect: str  # 'A'; '' of parts that hang
     chain: tuple[str, ...]  # 'gap: 9.5 mm'
-    step: str  # why it was tried: 'proposed', 'gap nearer to A@2', 'margin 0.5 mm'
+    move: Move  # why it was tried
     bank: float  # [rad]
     velocity: float  # [m/s]
     parts: int
@@ -81,11 +87,16 @@ class Attempt:
     purity: float  # [1] NaN where nothing leaves
     stopped: float  # [1] share of the parts offered that stay at a device
     rate: float  # [1/s] that it would deliver
-    faults: tuple[str, ...]  # 'C@66 is stopped at profile'
-    cause: str = ""  # of CAUSES: why what is wanted is lost, or others leave; '' of a clean one
+    faults: tuple[Fault, ...]
+    cause: Cause = Cause.UNKNOWN  # why what is wanted is lost, or others leave; unknown of a clean one
     peak_to_peak: float = 0.0  # [m] stroke of its drive
     throw_number: float = 0.0  # [1] of its drive
     cost_class: int = 1  # of its chain: 1 steel alone, 2 steady air, 3 a sensor with a valve
+
+    @property
+    def step(self) -> str:
+        """Why it was tried, in words."""
+        return texts.move_text(self.move)
 
     @property
     def clean(self) -> bool:
@@ -99,9 +110,14 @@ class RobustRun:
 
     draws: int
     held: int
-    worst: str  # what went wrong most often; '' where nothing did
+    worst: Fault | None = None  # what went wrong most often; None where nothing did
     slowest: float = 0.0  # [m/s] velocity of the slowest draw; 0 of none
     partial: bool = False
+
+    @property
+    def worst_text(self) -> str:
+        """What went wrong most often, in words, and in how many draws; '' where nothing did."""
+        return "" if self.worst is None else texts.counted_fault_text(self.worst)
 
     @property
     def share(self) -> float:
@@ -125,7 +141,7 @@ class FilledQueue:
     jams: int
     climbs: int
     partial: bool = False  # stopped by the user
-    left_instead: tuple[tuple[str, int], ...] = ()  # what left otherwise: ('C, heading off', 33), most first
+    left_instead: LeavingCounts = ()  # in which poses other parts left, and how many, the most first
     # by the orientation in which whole parts came: how many something became of, how many left as wanted
     counts_by_entry: tuple[tuple[int, int], ...] = ()
 
@@ -186,7 +202,7 @@ class Alternative:
     """The best design of a cost class: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
 
     cost_class: int
-    status: str  # 'holds', 'falls short', 'none', 'not proved', or 'not tried'
+    status: Status
     delivered: tuple[float, float, float] | None = None  # wanted parts [1/s]: value, low and high end
     purity: float | None = None  # [1] of what left its queues
     efficiency: float | None = None  # [1] share of the parts offered in its queues that left as wanted
@@ -220,6 +236,12 @@ class NearestDesign:
     @property
     def text(self) -> str:
         """The same in a sentence."""
+        lead = "" if self.rate is None else "nearest that holds: "
+        return f"{lead}{self.sentence}"
+
+    @property
+    def sentence(self) -> str:
+        """The same for a row that is named "nearest that holds" already."""
         also = "".join(f"; {sentence}" for sentence in self.helps)
         if self.rate is None:
             counts = f"{counted(self.trials, 'short trial')}, {counted(self.proofs, 'design')} through draws"
@@ -229,7 +251,7 @@ class NearestDesign:
             f"tried: {self.draws_held} of {counted(self.draws, 'draw')} sort, {self.parts_right} of "
             f"{counted(self.parts_left, 'part')} left {self.queue_seconds:.3g} s of queue as wanted"
         )
-        return f"nearest that holds: {60.0 * self.rate:.3g}/min with {self.change} ({figures}){also}"
+        return f"{60.0 * self.rate:.3g}/min with {self.change} ({figures}){also}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -342,10 +364,11 @@ class DesignStudy(ReadableRecord):
     bowl: Bowl | None  # None where there is none
     wanted: str | None  # orientation that leaves: 'A@2', 'hanging'
     turn: int | None  # its place among the orientations
+    wanted_aspect: str = ""  # 'A'; '' of parts that hang
     cuts: tuple = ()  # of Cut: the chain with the values it may have
     before: tuple[Device, ...] = ()
     attempts: tuple[Attempt, ...] = ()
-    robust: RobustRun = field(default_factory=lambda: RobustRun(0, 0, ""))
+    robust: RobustRun = field(default_factory=lambda: RobustRun(0, 0))
     queues: tuple[FilledQueue, ...] = ()
     risks: tuple[Risk, ...] = ()
     nearest: NearestDesign | None = None  # what holds instead; None of one that holds or was stopped
@@ -368,10 +391,11 @@ class DesignStudy(ReadableRecord):
         return () if self.bowl is None else self.bowl.devices
 
     @property
-    def outcome(self) -> str:
+    def outcome(self) -> OutcomeKind:
         """Whether what leaves lies on the track or hangs by its head."""
         hangs = any(device.hangs for device in self.devices)
-        return self.request.outcome if self.bowl is None else "hanging" if hangs else "lying"
+        own = OutcomeKind.HANGING if hangs else OutcomeKind.LYING
+        return self.request.outcome if self.bowl is None else own
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -379,7 +403,11 @@ class DesignStudy(ReadableRecord):
         allowances = {"margin": DESIGN_MARGIN_M, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         warnings = [*self.part.warnings, *small_part_remarks(self.part, allowances, width)]
-        if self.bowl is not None and self.request.drive == LEAF_SPRING and is_two_axis(self.bowl.drive):
+        if (
+            self.bowl is not None
+            and self.request.drive == DriveKind.LEAF_SPRING
+            and is_two_axis(self.bowl.drive)
+        ):
             phase = np.degrees(self.bowl.drive.phase)
             warnings.append(
                 f"drive.phase: {phase:.4g} deg is kept as given, which needs two magnets - set it to 0 deg "
@@ -451,13 +479,13 @@ class DesignStudy(ReadableRecord):
         return sum(attempt.parts for attempt in self.attempts)
 
     @property
-    def status(self) -> str:
-        """One of four words; what the user stopped is no evidence, neither for a design nor against it."""
+    def status(self) -> Status:
+        """The verdict; what the user stopped is no evidence, neither for a design nor against it."""
         if self.partial:
-            return NOT_PROVED
+            return Status.NOT_PROVED
         if self.bowl is None or not self.delivered[0] > 0.0:
-            return FALLS_SHORT if self.bowl is not None and self.queues else NONE
-        return HOLDS if not self.shortfalls else FALLS_SHORT
+            return Status.FALLS_SHORT if self.bowl is not None and self.queues else Status.NONE
+        return Status.HOLDS if not self.shortfalls else Status.FALLS_SHORT
 
     @property
     def proved_so_far(self) -> tuple[str, ...]:
@@ -484,7 +512,10 @@ class DesignStudy(ReadableRecord):
         """Where it does not do what was asked, a sentence each."""
         minute, purity, (rate, low, _) = 60.0, self.purity[0], self.delivered
         if self.bowl is None:
-            denied = (f"{one.wanted}: {', '.join(one.faults[:3]) or 'too slow'}" for one in _asked_for(self))
+            denied = (
+                f"{one.wanted}: {', '.join(texts.fault_texts(one.faults, 3)) or 'too slow'}"
+                for one in _asked_for(self)
+            )
             return tuple(dict.fromkeys(denied))[:3]
         lines = []
         followed = bool(self.queues) or self.robust.share >= DRAWS_HELD  # draws that fail end a proof
@@ -505,60 +536,62 @@ class DesignStudy(ReadableRecord):
         if self.jams:
             lines.append(f"{counted(self.jams, 'jam')} in {self.queue_seconds:.3g} s of queue")
         if self.robust.share < DRAWS_HELD:
-            worst = f": {self.robust.worst}" if self.robust.worst else ""
+            worst = "" if self.robust.worst is None else f": {self.robust.worst_text}"
             lines.append(
                 f"{self.robust.held} of {self.robust.draws} draws of part, friction and drive sort{worst}"
             )
         return (*lines, *self.machine_lacks)
 
     @property
-    def cause(self) -> str:
-        """Which of CAUSES keeps it from holding; '' of one that holds or was stopped."""
+    def cause(self) -> Cause:
+        """What keeps it from holding; unknown of one that holds or was stopped."""
         return self._cause[0]
 
     @property
-    def _cause(self) -> tuple[str, str]:
+    def _cause(self) -> tuple[Cause, str]:
         """The same with a sentence."""
-        if self.status == HOLDS or self.partial:
-            return "", ""
+        if self.status == Status.HOLDS or self.partial:
+            return Cause.UNKNOWN, ""
         if self.machine_lacks:
-            return DRIVE, "the springs that are drawn do not make the drive that was tried"
+            return Cause.DRIVE, "the springs that are drawn do not make the drive that was tried"
         if not self.queues:  # what the trials say, of the best of them
             if not self.attempts:
-                return PART, "no device tells an orientation that was asked for from the others"
+                return Cause.PART, "no device tells an orientation that was asked for from the others"
             best = max(_asked_for(self), key=lambda attempt: (attempt.efficiency, attempt.rate))
             if best.faults:
-                return best.cause or PART, f"{best.wanted}: {', '.join(best.faults[:2])}"
-            return ARRIVAL, (
+                return (
+                    best.cause or Cause.PART,
+                    f"{best.wanted}: {', '.join(texts.fault_texts(best.faults, 2))}",
+                )
+            return Cause.ARRIVAL, (
                 f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most - ask for less, "
                 "or let other aspects count with --up"
             )
         chain = ", ".join(device.kind for device in self.devices) or "the track"
         if self.jams:
-            return DEVICE, f"parts stand at {chain} and have to be taken out"
+            return Cause.DEVICE, f"parts stand at {chain} and have to be taken out"
         purity, _ = self.purity
         if not self.delivered[0] > 0.0 and not any(queue.left for queue in self.queues):
-            return DRIVE, "no part came to the outlet in its queues"
+            return Cause.DRIVE, "no part came to the outlet in its queues"
         if not purity >= PURE:
-            own = (self.wanted or "").partition("@")[0]
-            off = sum(n for name, n in self.left_instead if name == own + HEADING_OFF)
+            off = sum(n for pose, n in self.left_instead if self._is_wanted_heading_off(pose))
             if 2 * off >= sum(n for _, n in self.left_instead) > 0:
-                return DRIVE, f"it turns {self.wanted} to other headings in a queue"
+                return Cause.DRIVE, f"it turns {self.wanted} to other headings in a queue"
             if self.devices:
-                return DEVICE, f"what is not wanted gets through {chain} in a queue"
-            return PART, "without a device nothing tells what is wanted from the rest"
+                return Cause.DEVICE, f"what is not wanted gets through {chain} in a queue"
+            return Cause.PART, "without a device nothing tells what is wanted from the rest"
         fault = self.robust.worst
-        if self.robust.share < DRAWS_HELD and fault:
-            if " at " in fault.partition("(")[2]:  # 'A@0 is lost (stopped at rails)'
-                return DEVICE, fault
-            if "carried through" in fault:
-                return (DEVICE if self.devices else PART), fault
-            return DRIVE, fault
+        if self.robust.share < DRAWS_HELD and fault is not None:
+            if fault.is_at_device:
+                return Cause.DEVICE, self.robust.worst_text
+            if fault.kind is FaultKind.CARRIED:
+                return (Cause.DEVICE if self.devices else Cause.PART), self.robust.worst_text
+            return Cause.DRIVE, self.robust.worst_text
         queue = self.slowest
         if queue is None or not queue.right:
-            return ARRIVAL, "too little of what is wanted leaves its queues"
+            return Cause.ARRIVAL, "too little of what is wanted leaves its queues"
         share, need = self.efficiency, self.request.target / queue.pace
-        return ARRIVAL, (
+        return Cause.ARRIVAL, (
             f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * share:.3g} % of them "
             f"leave as {self.wanted}: {60.0 * self.delivered[1] / RATE_KEPT:.2g}/min would hold, or a part "
             f"of which {100.0 * need:.3g} % come so"
@@ -567,7 +600,7 @@ class DesignStudy(ReadableRecord):
     @property
     def why(self) -> str:
         """Where it falls short, the cause, and the nearest that holds; '' where it holds."""
-        if self.status == HOLDS:
+        if self.status == Status.HOLDS:
             return ""
         if self.partial:
             return "; ".join(("stopped before all was tried", *self.proved_so_far))
@@ -580,17 +613,17 @@ class DesignStudy(ReadableRecord):
         return "; ".join((*self.shortfalls, f"the cause is the {cause}: {sentence}")) if cause else ""
 
     @property
-    def left_instead(self) -> tuple[tuple[str, int], ...]:
-        """What left all queues otherwise than wanted, and how many, the most first."""
-        return joined_counts(*(queue.left_instead for queue in self.queues))
+    def left_instead(self) -> LeavingCounts:
+        """In which poses parts left all queues otherwise than wanted, and how many, the most first."""
+        return join_leaving_counts(*(queue.left_instead for queue in self.queues))
 
+    @property
+    def aspects_heading_off(self) -> tuple[str, ...]:
+        """Aspects on which parts left all queues at a heading that is none of the listed."""
+        return tuple(pose.aspect for pose, _ in self.left_instead if pose.kind is PoseKind.HEADING_OFF)
 
-def joined_counts(*counts: tuple[tuple[str, int], ...]) -> tuple[tuple[str, int], ...]:
-    """Return names with their numbers added up, the most first."""
-    total = Counter[str]()
-    for count in counts:
-        total.update(dict(count))
-    return tuple(total.most_common())
+    def _is_wanted_heading_off(self, pose: LeavingPose) -> bool:
+        return pose.kind is PoseKind.HEADING_OFF and pose.aspect == self.wanted_aspect
 
 
 def _instead(study: DesignStudy) -> str:
@@ -598,23 +631,22 @@ def _instead(study: DesignStudy) -> str:
     listed, left = study.left_instead, sum(queue.left for queue in study.queues)
     if not listed:
         return ""
-    texts = []
-    for name, count in listed[:3]:
+    lines = []
+    for pose, count in listed[:3]:
         # at which fill most of it left, and through which device that should return it
-        fill = max(study.queues, key=lambda queue: dict(queue.left_instead).get(name, 0)).fill
-        device = next((cut.device.name for cut in reversed(study.cuts) if name in cut.returns), "")
+        fill = max(study.queues, key=lambda queue: dict(queue.left_instead).get(pose, 0)).fill
+        device = next((cut.device.name for cut in reversed(study.cuts) if pose.name in cut.returns), "")
         through = f", through the {device}" if device else ""
-        texts.append(f"{name}: {count} of {left} (most at {fill} fill{through})")
-    aspects = [name.removesuffix(HEADING_OFF) for name, _ in listed if name.endswith(HEADING_OFF)]
-    own = [aspect for aspect in aspects if (study.wanted or "").partition("@")[0] == aspect]
-    offer = f" (--up {own[0]} counts {own[0]} at any heading)" if own else ""
-    return f"; what left instead: {', '.join(texts)}{offer}"
+        lines.append(f"{texts.pose_text(pose)}: {count} of {left} (most at {fill} fill{through})")
+    own = study.wanted_aspect
+    offer = f" (--up {own} counts {own} at any heading)" if own in study.aspects_heading_off else ""
+    return f"; what left instead: {', '.join(lines)}{offer}"
 
 
 def _asked_for(study: DesignStudy) -> tuple[Attempt, ...]:
     """The trials of what was asked for; where other ways up were tried beside it, those are left out."""
     names = {name.casefold() for name in (*study.request.up, study.request.aspect or "") if name}
-    own = [attempt for attempt in study.attempts if attempt.wanted.partition("@")[0].casefold() in names]
+    own = [attempt for attempt in study.attempts if attempt.aspect.casefold() in names]
     return tuple(own) or study.attempts
 
 

@@ -16,6 +16,7 @@ from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.designing import calm_drive
+from feederscrew.designing.findings import End, Fault, FaultKind
 from feederscrew.designing.record import RobustRun
 from feederscrew.dropping.pool import gather
 from feederscrew.dropping.toss_runs import scattered
@@ -33,10 +34,11 @@ from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.tooling.orientations import orientations as on_the_track
 from feederscrew.trial import course, runs
+from feederscrew.trial.course import Fate
 from feederscrew.trial.looks import AspectsBelow
 
 SELDOM_SHARE = 5e-3  # [1] orientations that come less often are left out
-STUCK_FATES = (course.HANGING, course.STOPPED)  # what is stuck on the bare track is pushed on by a queue
+STUCK_FATES = (Fate.HANGING, Fate.STOPPED)  # what is stuck on the bare track is pushed on by a queue
 COUNTED = ("parts", "right", "wrong", "held")  # of each orientation tried
 FEW_OTHERS = 8  # so many other orientations are tried more than once
 LOW = 0.5  # mean free way between parts at low fill, over their length: a third of the row is empty
@@ -54,12 +56,12 @@ class ShortTrial:
     right: Ints  # (R,) int, left in the wanted state
     wrong: Ints  # (R,) int, left in another
     held: Ints  # (R,) int, stay at a device or hang
-    places: tuple[dict[str, int], ...]  # (R,) of those that did not leave: 'returned at gap' and how many
+    ends: tuple[dict[End, int], ...]  # (R,) of those that did not leave: how, where and how many
     velocity: float  # [m/s] mean of those that travel
     states: tuple[int, ...]  # the wanted one, then all that count as it
     spacing: float = 0.0  # [m] free way between parts that the devices need
     courses: tuple = ()  # of Course: what was followed
-    turns: tuple[dict[str, int], ...] = ()  # (R,) where parts turned that left so: 'turned on the track'
+    turns: tuple[dict[End, int], ...] = ()  # (R,) where parts turned that left so, and how many
 
     @property
     def wanted(self) -> list[int]:
@@ -109,21 +111,21 @@ class ShortTrial:
         rows = list(dict.fromkeys([*self.rows.tolist(), *other.rows.tolist()]))
         place = {row: n for n, row in enumerate(rows)}
         counts: dict[str, Any] = {name: np.zeros(len(rows), int) for name in COUNTED}
-        places: list[Counter[str]] = [Counter() for _ in rows]
-        turns: list[Counter[str]] = [Counter() for _ in rows]
+        ends: list[Counter[End]] = [Counter() for _ in rows]
+        turns: list[Counter[End]] = [Counter() for _ in rows]
         for trial in (self, other):
             own = [place[row] for row in trial.rows.tolist()]
             for name in COUNTED:
                 np.add.at(counts[name], own, getattr(trial, name))
             for n, k in enumerate(own):
-                places[k].update(trial.places[n])
+                ends[k].update(trial.ends[n])
                 turns[k].update(trial.turns[n] if trial.turns else {})
         speeds = [trial.velocity for trial in (self, other) if trial.velocity > 0.0]
         return replace(
             self,
             **counts,
             rows=np.array(rows, int),
-            places=tuple(dict(counts_of_row) for counts_of_row in places),
+            ends=tuple(dict(counts_of_row) for counts_of_row in ends),
             turns=tuple(dict(counts_of_row) for counts_of_row in turns),
             velocity=float(np.mean(speeds)) if speeds else 0.0,
             courses=(*self.courses, *other.courses),
@@ -219,7 +221,7 @@ def try_parts(
     )  # fmt: skip
     if followed.partial:  # fewer parts than were to be tried decide nothing
         raise KeyboardInterrupt
-    left = np.isin(followed.fates, (course.PASSED, course.TURNED))
+    left = np.isin(followed.fates, (Fate.PASSED, Fate.TURNED))
     as_wanted = np.isin(followed.orientations[-1], states)
     free = any_heading if not isinstance(orientations.states[states[0]], Hanging) else ()
     # none came to the last station where there are fewer rides
@@ -231,9 +233,10 @@ def try_parts(
         as_wanted[followed.riders[-1][passed]] |= lies_on
     stuck = np.isin(followed.fates, STUCK_FATES)
 
-    def at(station: int) -> str:
+    def end_at(fate: Fate, station: int) -> End:
         device = followed.stations[station].device
-        return "on the track" if device.kind in ("", Device.kind) else f"at {device.name}"
+        bare = device.kind in ("", Device.kind)
+        return End(fate, 0) if bare else End(fate, station, device.kind, device.name)
 
     def turned_at(part_number: int) -> int:
         # the last station at which it came into the orientation in which it left
@@ -242,21 +245,20 @@ def try_parts(
         )
         return int(changed[-1]) if len(changed) else 0
 
-    counts, places, turns = [], [], []
+    counts, ends, turns = [], [], []
     for row in rows:
         own = followed.entry_rows == row
         otherwise = own & left & ~as_wanted
         counts.append([int(group.sum()) for group in (own, own & left & as_wanted, otherwise, own & stuck)])
-        ends = (
-            f"{course.FATES[followed.fates[n]].replace('_', ' ')} {at(followed.end_stations[n])}"
-            for n in np.flatnonzero(own & ~left)
-        )
-        places.append(dict(Counter(ends)))
-        turns.append(dict(Counter(f"turned {at(turned_at(int(n)))}" for n in np.flatnonzero(otherwise))))
+        lost = np.flatnonzero(own & ~left)
+        ended = (end_at(Fate(int(followed.fates[n])), int(followed.end_stations[n])) for n in lost)
+        ends.append(dict(Counter(ended)))
+        turned = (end_at(Fate.TURNED, turned_at(int(n))) for n in np.flatnonzero(otherwise))
+        turns.append(dict(Counter(turned)))
     parts, right, wrong, held = np.array(counts).T
     moving = followed.velocities[np.isfinite(followed.velocities) & (followed.velocities > 0.0)]
     return ShortTrial(
-        orientations, shares, rows, parts, right, wrong, held, places=tuple(places), turns=tuple(turns),
+        orientations, shares, rows, parts, right, wrong, held, ends=tuple(ends), turns=tuple(turns),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         states=states, courses=(followed,),
         spacing=stream.needed_spacing(bowl.devices, orientations.lying, bowl),
@@ -273,7 +275,7 @@ def find_returnable_rows(trial: ShortTrial) -> tuple[int, ...]:
     if not any(trial.right[n] == trial.parts[n] for n in own):
         return ()
     some = [n for n in own if trial.right[n] < trial.parts[n] and not trial.wrong[n] and not trial.held[n]]
-    returned = [n for n in some if all(end.startswith("returned") for end in trial.places[n])]
+    returned = [n for n in some if all(end.came_back for end in trial.ends[n])]
     return tuple(int(trial.rows[n]) for n in returned)
 
 
@@ -282,12 +284,12 @@ def lost_by_motion(trial: ShortTrial) -> int:
 
     What a device returns, stops or turns is not among them.
     """
-    counts = [ends[n] for ends in (trial.places, trial.turns) if ends for n in trial.wanted_places]
-    return sum(number for count in counts for name, number in count.items() if name.endswith("on the track"))
+    counts = [ends[n] for ends in (trial.ends, trial.turns) if ends for n in trial.wanted_places]
+    return sum(number for count in counts for end, number in count.items() if end.on_bare_track)
 
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
-CARRIED, CLEAN = " is carried through", 0.985  # and the purity from which that is let be
+CLEAN = 0.985  # [1] purity from which it is let be that another orientation is carried through
 EQUAL_MOMENTS = 1e-4  # of the greatest: principal moments that a part of revolution has in common
 RETRIED_PARTS = 3  # of each wanted orientation, where one came back: a bowl brings more of them
 LEAST_SHARE_LEAVING = 0.5  # [1] of what is wanted that has to leave in a draw, where some of it comes back
@@ -424,7 +426,7 @@ def robust_run(
     """
     most = draws if max_failures is None else max_failures
 
-    def draw_one(draw: int) -> tuple[list[str], float]:
+    def draw_one(draw: int) -> tuple[list[Fault], float]:
         return _draw(
             part, bowl, orientations, shares, np.atleast_1d(targets), tolerance, (run.seed, draw),
             any_heading, returnable, enough,
@@ -448,8 +450,8 @@ def robust_run(
     failed = np.cumsum([bool(wrongs) for wrongs, _ in outcomes])
     outcomes = outcomes[: int((failed <= most).sum()) + 1]  # alike for any number of jobs
     held, done = sum(not wrongs for wrongs, _ in outcomes), len(outcomes)
-    wrong = Counter(fault for wrongs, _ in outcomes for fault in set(wrongs)).most_common(1)
-    worst = f"{wrong[0][0]} in {wrong[0][1]} of {done}" if wrong else ""
+    wrong = Counter(fault for wrongs, _ in outcomes for fault in dict.fromkeys(wrongs)).most_common(1)
+    worst = wrong[0][0].counted_in_draws(wrong[0][1], done) if wrong else None
     slowest = float(min((speed for _, speed in outcomes), default=0.0))
     return RobustRun(done, held, worst, slowest, partial=stopped)
 
@@ -458,8 +460,11 @@ def _draw(
     part: Part, bowl: Bowl, orientations: stream.Orientations, shares: Floats, targets: Ints,
     tolerance: float, seed: tuple[int, int], any_heading: Sequence[str], returnable: Sequence[int],
     enough: float,
-) -> tuple[list[str], float]:  # fmt: skip
-    """What goes wrong in one draw, and the velocity there."""
+) -> tuple[list[Fault], float]:  # fmt: skip
+    """What goes wrong in one draw, and the velocity there.
+
+    Faults name the orientations of the part as it is drawn, not those of the part of other size.
+    """
     rng = np.random.default_rng(seed)
     other = draw_part(part, tolerance, rng)
     driven = draw_bowl(bowl, orientations.lying, rng)
@@ -508,9 +513,13 @@ def _draw(
             more = try_drawn(rows=retried, count=RETRIED_PARTS, run=RunSettings(sum(seed) + 1))
             weights = dict(zip(there(own), (float(shares[k]) for k in own)))
             returnable = (*returnable, *own) if comes_through(more, weights, enough) else returnable
-    except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
-        return [fault.what], 0.0
-    return faults(trial, there(returnable)), trial.velocity
+    except FeederError as error:  # the drawn bowl does not convey, or the part does not fit
+        return [Fault(FaultKind.NOT_RUN, reason=error.what)], 0.0
+    faults = []
+    for fault in find_faults(trial, there(returnable)):
+        row = chosen[rows.index(fault.row)]
+        faults.append(replace(fault, row=row, orientation=orientations.lying[row].name))
+    return faults, trial.velocity
 
 
 def _leaving_as_wanted(orientations: stream.Orientations, rows: Sequence[int] | Ints) -> list[int]:
@@ -541,8 +550,8 @@ def draw_rows(
 def came_back(trial: ShortTrial, row: int) -> bool:
     """Return whether the part of a wanted orientation was returned: it comes along once more."""
     place = list(trial.rows).index(row)
-    ends = trial.places[place]
-    return not trial.right[place] and bool(ends) and all(end.startswith("returned") for end in ends)
+    ends = trial.ends[place]
+    return not trial.right[place] and bool(ends) and all(end.came_back for end in ends)
 
 
 def comes_through(trial: ShortTrial, weights: dict[int, float], enough: float = LEAST_SHARE_LEAVING) -> bool:
@@ -556,36 +565,48 @@ def comes_through(trial: ShortTrial, weights: dict[int, float], enough: float = 
     return bool(sure and leaving >= enough * own.sum() * (1.0 - 1e-9))
 
 
-def faults(trial: ShortTrial, returnable: Iterable[int] = ()) -> list[str]:
-    """Return what goes wrong in a short trial, a sentence each: (what is lost, stopped or carried, where).
+def find_faults(trial: ShortTrial, returnable: Iterable[int] = ()) -> list[Fault]:
+    """Return what goes wrong in a short trial: what is lost, stays or is carried through, and where.
 
-    What counts as the wanted one and comes back is a loss of parts a minute only; so is that of orientations
-    that are ``returnable``, rows.
+    Parameters
+    ----------
+    trial : ShortTrial
+    returnable : iterable of int
+        Rows of wanted orientations of which parts may come back: they come along once more, which costs
+        parts a minute and is no fault.
+
+    Returns
+    -------
+    list of Fault
+        In the order in which the orientations were tried.
     """
-    sentences, right = [], set(wanted_rows(trial.orientations, trial.states[:1])) - set(returnable)
-    for place, k in enumerate(trial.rows):
-        name = trial.orientations.lying[k].name
-        if k in right:
+    found, right = [], set(wanted_rows(trial.orientations, trial.states[:1])) - set(returnable)
+    for place, row in enumerate(trial.rows.tolist()):
+        name, ends = trial.orientations.lying[row].name, tuple(trial.ends[place])
+        if row in right:
             if trial.right[place] < trial.parts[place]:
-                turns = trial.turns[place] if trial.turns else {}
-                where = ", ".join((*trial.places[place], *turns)) or "turned"
-                sentences.append(f"{name} is lost ({where})")
+                turns = tuple(trial.turns[place]) if trial.turns else ()
+                found.append(Fault(FaultKind.LOST, name, row, (*ends, *turns)))
         elif trial.wrong[place]:
-            sentences.append(f"{name}{CARRIED}")
-        if trial.held[place] and k not in right:
-            sentences.append(f"{name} stays ({', '.join(trial.places[place])})")
-    return sentences
+            found.append(Fault(FaultKind.CARRIED, name, row))
+        if trial.held[place] and row not in right:
+            found.append(Fault(FaultKind.STAYS, name, row, ends))
+    return found
 
 
-def find_denials(trial: ShortTrial) -> Iterator[str]:
-    """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
+def find_denials(trial: ShortTrial) -> Iterator[Fault]:
+    """Yield the faults for which a short trial denies a chain.
+
+    Those are all but two kinds. Little that is carried through is let be while the purity is CLEAN. A wanted
+    orientation of which most parts leave, and none stays, is a loss of parts a minute.
+    """
     if not trial.efficiency > 0.0:
-        yield "nothing leaves as wanted"
-    right, names = trial.wanted, [trial.orientations.lying[k].name for k in trial.rows]
-    for fault in faults(trial, find_returnable_rows(trial)):
-        place = names.index(fault.split(" ", 1)[0])
-        if fault.endswith(CARRIED) and trial.purity >= CLEAN:
+        yield Fault(FaultKind.NOTHING_LEAVES)
+    wanted, rows = trial.wanted, trial.rows.tolist()
+    for fault in find_faults(trial, find_returnable_rows(trial)):
+        if fault.kind is FaultKind.CARRIED and trial.purity >= CLEAN:
             continue
-        mostly = trial.rows[place] in right and 2 * trial.right[place] > trial.parts[place]
+        place = rows.index(fault.row)
+        mostly = fault.row in wanted and 2 * trial.right[place] > trial.parts[place]
         if not (mostly and not trial.held[place]):
             yield fault

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Floats, Ints
-from feederscrew.designing import short_trials
+from feederscrew.designing import short_trials, texts
+from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.designing.proposals import equivalent_rows
 from feederscrew.designing.short_trials import find_denials
 from feederscrew.dropping.ensemble import wilson
@@ -43,7 +44,7 @@ class TriedDesign:
     efficiency: float  # [1] of all that is offered
     purity: float  # [1] NaN where nothing leaves
     parts: int
-    faults: tuple[str, ...]  # what the trial denies, a sentence each
+    faults: tuple[Fault, ...]  # what the trial denies
     efficiency_ends: tuple[float, float] = (0.0, 1.0)  # [1] 95 % interval
     purity_ends: tuple[float, float] = (0.0, 1.0)  # [1]
     devices_words: tuple[str, ...] = ()  # of the chain, as the trade names them
@@ -58,7 +59,7 @@ class TriedDesign:
     def verdict(self) -> str:
         """What the trial says of the rule."""
         if self.faults:
-            return "the trial denies it: " + "; ".join(self.faults)
+            return "the trial denies it: " + "; ".join(texts.fault_texts(self.faults))
         return (
             "the trial agrees" if self.agrees else "the trial sorts too, but the rule's efficiency is not its"
         )
@@ -68,8 +69,8 @@ class TriedDesign:
         """What leaves, with its intervals."""
         purity = "nothing leaves"
         if not np.isnan(self.purity):
-            purity = f"{_percent(self.purity, self.purity_ends)} of what leaves"
-        return f"{_percent(self.efficiency, self.efficiency_ends)} do, {purity}"
+            purity = f"{texts.percent(self.purity, self.purity_ends)} of what leaves"
+        return f"{texts.percent(self.efficiency, self.efficiency_ends)} do, {purity}"
 
     @property
     def sentence(self) -> str:
@@ -78,11 +79,6 @@ class TriedDesign:
             f"{self.name}: the static rule lets {100.0 * self.static_efficiency:.3g} % leave, of {self.parts}"
             f" parts tried {self.figures}; {self.verdict}"
         )
-
-
-def _percent(value: float, ends: tuple[float, float]) -> str:
-    low, high = (f"{100.0 * end:.3g}" for end in ends)
-    return f"{100.0 * value:.4g} % ({low} to {high})"
 
 
 def try_designs(
@@ -170,13 +166,19 @@ def _try_design(study: ToolingStudy, design: Design, run: RunSettings) -> TriedD
             trial = trial.join(single(rows=more, count=further[further > 0], run=further_run))
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(
-            name, design.wanted, _devices(design), design.efficiency, 0.0, np.nan, 0, (fault.what,)
+            name,
+            design.wanted,
+            _devices(design),
+            design.efficiency,
+            0.0,
+            np.nan,
+            0,
+            (Fault(FaultKind.NOT_RUN, reason=fault.what),),
         )
     efficiency, (value, low, high) = shares_leaving(trial)
     faults = [*find_denials(trial)]
     if value < design.least_purity:
-        least = f"{100.0 * design.least_purity:.3g} %"
-        faults.append(f"{_percent(value, (low, high))} of what leaves is wanted, of {least}")
+        faults.append(Fault(FaultKind.IMPURE, shares=(value, low, high, design.least_purity)))
     return TriedDesign(
         name=name,
         wanted=design.wanted,
@@ -259,7 +261,7 @@ def document(designs: Iterable[TriedDesign]) -> list[dict[str, Any]]:
             "parts": design.parts,
             "sorts": not design.faults,
             "agrees": design.agrees,
-            "denied": list(design.faults),
+            "denied": texts.fault_texts(design.faults),
         }
         for design in designs
     ]

@@ -44,8 +44,8 @@ def solid_remarks(sheet: Any) -> tuple[str, ...]:
     return (*map(str, _rocking(sheet)), *sheet.solid.remarks)
 
 
-def _springs(sheet: Any) -> Iterator[FeederError]:
-    """The drive that the springs do not make, and how they are tuned to it."""
+def find_drive_faults(sheet: Any) -> Iterator[FeederError]:
+    """Yield what keeps the springs of a MachineSheet from making its drive: one line, or none."""
     other = sheet.mismatch
     if other is not None and other.two_axis:
         yield FeederError("drive.phase", other.text, "set drive.phase to 0 deg for a leaf-spring drive")
@@ -53,6 +53,11 @@ def _springs(sheet: Any) -> Iterator[FeederError]:
         yield FeederError("drive.second_harmonic", other.text, "set drive.second_harmonic to 0")
     elif other is not None:
         yield FeederError("drive.vibration_angle", other.text, "leave it out, to go by the springs")
+
+
+def _springs(sheet: Any) -> Iterator[FeederError]:
+    """The drive that the springs do not make, and how they are tuned to it."""
+    yield from find_drive_faults(sheet)
     rules, drive, detuning = sheet.bowl.sizing, sheet.stroke.frequency, sheet.detuning
     natural = f"the natural frequency {sheet.springs.natural_frequency:.4g} Hz"
     better = f": {' or '.join(fewest_leaves(sheet.sets)[:3])}" if sheet.sets else ""

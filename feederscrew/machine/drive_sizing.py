@@ -192,6 +192,11 @@ class DriveMismatch:
     second_harmonic: bool = False  # it has one, and springs are tuned to one frequency
 
     @property
+    def reasons(self) -> tuple[bool, bool, bool]:
+        """Which of three reasons it has: two axes, another angle, a second harmonic."""
+        return self.two_axis, self.other_angle, self.second_harmonic
+
+    @property
     def text(self) -> str:
         """What is wrong, and both drives, in one sentence."""
         reasons = []

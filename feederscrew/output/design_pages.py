@@ -8,7 +8,7 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.reading import Setting
-from feederscrew.designing import record
+from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, Status
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignStudy
@@ -112,7 +112,7 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
                 "leaves the track or rolls back changes the mix that arrives."
             )
             proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
-        worst = f"; most often: {study.robust.worst}" if study.robust.worst else ""
+        worst = f"; most often: {study.robust.worst_text}" if study.robust.worst else ""
         draws = Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")
         proof += [Table(tables.of_rows(d["queues"])), draws]
         chapters.append(Chapter(tuple(proof), anchor="proof", title="The proof"))
@@ -131,11 +131,11 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
 
 def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
     """What the status says, what is missing or what all was reached; the machine, the bowl, the risks."""
-    if study.status == record.HOLDS:
-        least, draws = 60.0 * record.RATE_KEPT * study.request.target, 100.0 * record.DRAWS_HELD
+    if study.status == Status.HOLDS:
+        least, draws = 60.0 * RATE_KEPT * study.request.target, 100.0 * DRAWS_HELD
         yield Text(
             f"Status: {study.status}. The lower end of the rate is at least {least:.3g} a minute, the purity "
-            f"at least {100.0 * record.PURE:.3g} %; nothing jams, and at least {draws:.3g} % of the draws "
+            f"at least {100.0 * PURE:.3g} %; nothing jams, and at least {draws:.3g} % of the draws "
             "sort."
         )
     else:
@@ -198,7 +198,7 @@ def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None 
     ]
     if study.bowl is not None:
         files.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
-    if study.status == record.NOT_PROVED:
+    if study.status == Status.NOT_PROVED:
         return files
     files += [
         offer.table("alternatives.csv", designs.alternatives, study),
@@ -301,7 +301,7 @@ def family_page(study: FamilyStudy) -> str:
         status = "It was stopped before all parts were designed."
     elif not study.shared:
         status = "The parts do not share one chain: the list below names what is swapped."
-    elif study.status == record.HOLDS:
+    elif study.status == Status.HOLDS:
         status = (
             "One track and one chain of devices suit all parts: what is listed below is only set or taught."
         )

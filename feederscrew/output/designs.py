@@ -14,11 +14,12 @@ from feederscrew.bowl import devices, reading, schema
 from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.record import Bowl, Drive, Machine, Sizing, Track
-from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
+from feederscrew.bowl.verified import NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
+from feederscrew.designing import texts
 from feederscrew.designing.acceptance_sheet import SheetLine
-from feederscrew.designing.record import NOT_PROVED, Alternative, DesignStudy, Pair, Risk
+from feederscrew.designing.record import Alternative, DesignStudy, Pair, Risk
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
@@ -54,7 +55,7 @@ NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed a
 
 def document(study: DesignStudy) -> dict[str, Any]:
     """Return a DesignStudy as the JSON document."""
-    is_proved, proof = study.status != NOT_PROVED, dict.fromkeys(PROOF)
+    is_proved, proof = study.status != Status.NOT_PROVED, dict.fromkeys(PROOF)
     if is_proved:  # the figures that its queues have shown
         (purity, purity_low), high = study.purity, study.jams_per_hour_high
         rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
@@ -93,13 +94,13 @@ def document(study: DesignStudy) -> dict[str, Any]:
         **row_of(request, "drive_asked_for=drive target_per_minute"),
         **proof,
         **row_of(study, "static_per_minute=static_rate queue_seconds"),
-        "robust": row_of(robust, "draws held worst") | row_of(request, "tolerance_mm"),
+        "robust": row_of(robust, "draws held worst=worst_text") | row_of(request, "tolerance_mm"),
         "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
         "alternatives": [_alternative(item) for item in study.alternatives],
         "why": study.why,
         "cause": study.cause or None,
         "nearest": nearest(study),
-        "left_instead": dict(study.left_instead),
+        "left_instead": texts.leaving_texts(study.left_instead),
         "risks": [item.text for item in study.risks],
         "findings": findings,
         **row_of(study, "trial_parts answer=source seed=request.seed partial"),
@@ -112,7 +113,10 @@ def document(study: DesignStudy) -> dict[str, Any]:
                 **row_of(filled, "fill free_way=gaps parts seconds"),
                 "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
                 **row_of(filled, "left right returned jams climbs"),
-                "left_instead": ", ".join(f"{name}: {n} of {filled.left}" for name, n in filled.left_instead),
+                "left_instead": ", ".join(
+                    f"{name}: {n} of {filled.left}"
+                    for name, n in texts.leaving_texts(filled.left_instead).items()
+                ),
                 "partial": filled.partial,
             }
             for filled in study.queues
@@ -240,7 +244,7 @@ def attempts(study: DesignStudy) -> Frame:
     )
     rows = []
     for place, item in enumerate(study.attempts, start=1):
-        chain, denied = ", ".join(item.chain) or "none", "; ".join(item.faults)
+        chain, denied = ", ".join(item.chain) or "none", "; ".join(texts.fault_texts(item.faults))
         rows.append({"trial": place, "chain": chain, "denied": denied, **row_of(item, *names)})
     return tables.of_rows(rows, ATTEMPT_COLUMNS)
 
@@ -262,10 +266,10 @@ def summary(study: DesignStudy) -> Frame:
     first, *rest = outcome(d, study.devices)
     rows = [first, *([("why", study.reasons or d["why"])] if d["why"] else [])]
     if study.nearest is not None:
-        rows.append(("nearest that holds", study.nearest.text.removeprefix("nearest that holds: ")))
+        rows.append(("nearest that holds", study.nearest.sentence))
     rows += [*rest, *dimensions(d), *(("risk", text) for text in d["risks"])]
     for option, entry in zip(study.alternatives, d["alternatives"]):
-        words = [option.status]
+        words = [str(option.status)]
         if option.delivered and option.purity is not None and option.efficiency is not None:
             words[0] += f", {option.delivered[0] / PER_MINUTE:.3g}/min, purity {100.0 * option.purity:.3g} %"
             words[0] += f", yield {100.0 * option.efficiency:.3g} %"
@@ -305,7 +309,7 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
     up = f", counting {', '.join(d['up'])} at any heading" if d.get("up") else ""
     rows.append(("leaves as", (d["wanted"] or "-") + up))
     rows.append(("asked for [1/min]", f"{d['target_per_minute']:.4g}"))
-    if d["status"] != NOT_PROVED:
+    if d["status"] != Status.NOT_PROVED:
         value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
         purity, hourly = "-", d["jams_per_hour_high"]
         if d["purity"] is not None:
@@ -429,7 +433,7 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
     if wrong:
         mend = "this is a fault of feeder: report it with the command you gave"
         raise FeederError(name, f"is not the bowl that was tried: {'; '.join(wrong)}", mend)
-    if study.status == NOT_PROVED:
+    if study.status == Status.NOT_PROVED:
         lines += ["# Nothing is verified: it was stopped before all was tried."]
     elif (tried := trial_of(study)) is None:
         lines += ["# Nothing is verified: no part has left a queue."]
@@ -453,7 +457,7 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
 
 def trial_of(study: DesignStudy) -> Verified | None:
     """Return what a DesignStudy has shown, as its bowl file says it; None where nothing has left a queue."""
-    has_left = study.status != NOT_PROVED and any(filled.left for filled in study.queues)
+    has_left = study.status != Status.NOT_PROVED and any(filled.left for filled in study.queues)
     if study.bowl is None or study.wanted is None or not has_left:
         return None
     value, low, high = study.delivered

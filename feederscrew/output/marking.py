@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feederscrew.arrays import Vector
-from feederscrew.bowl.verified import FALLS_SHORT, Verified
+from feederscrew.bowl.verified import Status, Verified
 from feederscrew.output import offers
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def of_trial(trial: Verified | None, mark: str | None = None) -> str:
     """Return the mark of a bowl whose trial falls short, or the one given in its place; '' of any other."""
     if mark is not None:
         return mark
-    return MARK if trial is not None and trial.status == FALLS_SHORT else ""
+    return MARK if trial is not None and trial.status == Status.FALLS_SHORT else ""
 
 
 def marked_title(text: str, mark: str) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
 from feederscrew.bowl.reading import Setting
+from feederscrew.designing import texts
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, marking, tables
 from feederscrew.output import offers as offer
@@ -276,7 +277,7 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
     if tried is None:
         lines.append("# By the static rule, not tried: see feeder trial.")
     elif tried.faults:  # the first thing to know of a design that its trial denies
-        lines.append(f"# DENIED by its trial: {'; '.join(tried.faults)}.")
+        lines.append(f"# DENIED by its trial: {'; '.join(texts.fault_texts(tried.faults))}.")
     else:
         lines.append(f"# Of {tried.parts} parts tried {tried.figures}.")
     sections: dict[str, list[str]] = {s.key.section: [] for s in own if s.key.section}

@@ -14,6 +14,7 @@ from matplotlib.path import Path
 from shapely import affinity
 
 from feederscrew.arrays import Floats
+from feederscrew.designing import texts
 from feederscrew.output import style
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling import track_sections
@@ -136,7 +137,7 @@ def limits(study: ToolingStudy, words: str) -> Figure:
             margin = f"margin {design.margin / MM:.2f} mm" if np.isfinite(design.margin) else ""
             lines = [*textwrap.wrap(named, LAST_COLUMN_LETTERS), f"{leave:.3g} % of the parts leave", margin]
         else:
-            reasons = (*(() if tried is None else tried.faults), *design.reasons)
+            reasons = (*(() if tried is None else texts.fault_texts(tried.faults)), *design.reasons)
             why = textwrap.shorten("; ".join(reasons), 4 * LAST_COLUMN_LETTERS, placeholder=" ...")
             lines = ["not isolated", *textwrap.wrap(why, LAST_COLUMN_LETTERS)]
         for line, text in enumerate(lines):

@@ -26,7 +26,13 @@ from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import design as designing
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, Design, DesignConstraints
+from feederscrew.tooling.isolating.chain import (
+    DESIGN_KEY,
+    SHOP_ROUNDING_M,
+    Design,
+    DesignConstraints,
+    OutcomeKind,
+)
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
@@ -35,7 +41,6 @@ from feederscrew.units import quantity_text
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
 # by the width [m] of its track: a bowl, the orientations that come along it, a cache of those where it leans
 Tracks: TypeAlias = dict[float, tuple[Bowl, tuple[Orientation, ...], dict[Any, Any]]]
-OUTCOME_NAMES = ("lying", "hanging", "any")
 
 
 def listed(names: str | Sequence[str]) -> tuple[str, ...]:
@@ -267,10 +272,9 @@ def tooling(
         verdicts=arguments.whole("verdicts", verdicts),
         until=time.monotonic() + arguments.amount("seconds", seconds, "time", 0.0),
     )
-    if outcome not in OUTCOME_NAMES:
-        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOME_NAMES)}")
     may_use = DesignConstraints(
-        outcome=outcome, without=may_be_left_out(without), up=may_be_up(part, aspects, up),
+        outcome=check.choice("outcome", outcome, OutcomeKind),
+        without=may_be_left_out(without), up=may_be_up(part, aspects, up),
         vary=bool(vary), turn=turn, air=air,
         step=arguments.amount("step", step, "length", SHOP_ROUNDING_M),
         cutter=arguments.amount("cutter", cutter, "length", 0.0),

@@ -3,6 +3,7 @@
 They are laid on the track, or fall onto it while it moves and go through the devices as they come to lie.
 """
 
+import enum
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
@@ -29,8 +30,26 @@ from feederscrew.trial.part_poses import State, States
 from feederscrew.trial.shape import round_circles, solid_of
 from feederscrew.trial.staging import Stage
 
-PASSED, TURNED, RETURNED, HANGING, STOPPED, ROLLED_BACK, STUCK = range(7)
-FATES = ("passed", "turned", "returned", "hanging", "stopped", "rolled_back", "stuck")
+
+class Fate(enum.IntEnum):
+    """What became of a part; the numbers are columns of the tables of counts."""
+
+    PASSED = 0  # left as it should
+    TURNED = 1  # left otherwise
+    RETURNED = 2
+    HANGING = 3  # hangs, and does not travel
+    STOPPED = 4  # stands at a device
+    ROLLED_BACK = 5
+    STUCK = 6  # stands on the track
+
+    @property
+    def word(self) -> str:
+        """The name that tables and files have: 'rolled_back'."""
+        return self.name.lower()
+
+
+PASSED, TURNED, RETURNED, HANGING, STOPPED, ROLLED_BACK, STUCK = Fate
+FATES = tuple(fate.word for fate in Fate)
 RUN_UP = 1.0  # of the part's size: how far it travels before the first device
 LOOKS_PER_STATION = 300  # places noted of a part at a station
 PATH_ROOM = 3.0  # times what it should take: so long its places are noted

@@ -9,13 +9,14 @@ import pytest
 from feederscrew import bowl as bowls
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import calm_drive
+from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.springs import greatest_amplitude
 
 
-def plain(*overrides, drive=calm_drive.LEAF_SPRING):
+def plain(*overrides, drive=DriveKind.LEAF_SPRING):
     given = frozenset(one.partition("=")[0] for one in overrides)
     bowl = bowls.record(bowls.settings(None, overrides or ("track.bank=3 deg",)))
     return calm_drive.PlainBowl(bowl, given, drive)
@@ -83,8 +84,8 @@ def test_what_the_user_says_of_drive_mains_controller_or_machine_is_kept():
 
 
 def test_two_magnets_only_where_they_are_asked_for():
-    given, owned = plain("drive.phase=-60 deg"), plain("drive.phase=0 deg", drive=calm_drive.TWO_AXIS)
-    leaves, two = plain(drive=calm_drive.ANY), plain(drive=calm_drive.TWO_AXIS)
+    given, owned = plain("drive.phase=-60 deg"), plain("drive.phase=0 deg", drive=DriveKind.TWO_AXIS)
+    leaves, two = plain(drive=DriveKind.ANY), plain(drive=DriveKind.TWO_AXIS)
     for bowl, phase in ((leaves, 0.0), (two, -60.0), (given, -60.0), (owned, 0.0)):
         assert np.degrees(calm_drive.drive_at(bowl, 0.1).drive.phase) == pytest.approx(phase)
     made = calm_drive.drive_at(two, 0.1)
@@ -92,7 +93,7 @@ def test_two_magnets_only_where_they_are_asked_for():
     assert calm_drive.slowest(made) > 0.8 * calm_drive.speed(made)
     with pytest.raises(ArgumentError, match="leaf-spring or two-axis or any"):
         DesignRequest(1.0, drive="hydraulic")
-    for drive in calm_drive.DRIVES:  # where none is fast enough the fastest is taken
+    for drive in DriveKind:  # where none is fast enough the fastest is taken
         fastest, fast = (calm_drive.speed(calm_drive.drive_at(plain(drive=drive), v)) for v in (9.0, 0.14))
         assert fastest > 0.14 and fastest >= fast
 
@@ -104,7 +105,7 @@ def test_a_calmer_drive_hops_half_as_high_until_it_does_not_hop_and_a_livelier_o
         bowl = calm_drive.find_calmer(plain(), bowl)
     assert len(heights) > 3 and heights[-1] == 0.0
     assert all(low <= calm_drive.CALMER_HOP * high for high, low in itertools.pairwise(heights))
-    made = plain(drive=calm_drive.TWO_AXIS)
+    made = plain(drive=DriveKind.TWO_AXIS)
     first = calm_drive.drive_at(made, 0.14)
     second = calm_drive.find_calmer(made, first)
     assert throw_number(second) <= calm_drive.CALM_THROW_NUMBER + 1e-3

@@ -104,7 +104,7 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
 
     def robust_run(part, bowl, known, shares, *_, **__):
         drawn.append(shares)
-        return RobustRun(1, 1, "")
+        return RobustRun(1, 1)
 
     monkeypatch.setattr(loop, "robust_run", robust_run)
     monkeypatch.setattr(loop, "long_ride", ride)

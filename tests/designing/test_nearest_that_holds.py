@@ -6,23 +6,38 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
-from design_counts import design_study, queue, short_trial
+from design_counts import (
+    TURNED_ON_TRACK,
+    carried,
+    design_study,
+    end_at,
+    heading_off,
+    lost,
+    orientation,
+    queue,
+    short_trial,
+    stays,
+    stopped_at,
+)
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import calm_drive, exploring, loop, nearest, proposals, queues
 from feederscrew.designing.exploring import Candidate, Search
+from feederscrew.designing.findings import Cause, LeavingPose, Move, MoveKind, PoseKind
 from feederscrew.designing.loop import alternatives
-from feederscrew.designing.record import CAUSES, Attempt, DesignRequest, DesignStudy, RobustRun
+from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, RobustRun
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating.chain import Cut
+from feederscrew.trial.course import Fate
 
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.default()
 PLAIN = calm_drive.PlainBowl(BOWL, frozenset())
-CARRIED = {"robust": RobustRun(14, 12, "B@30 is carried through in 1 of 14"), "queues": ()}
+PROPOSED = Move(MoveKind.PROPOSED)
+CARRIED = {"robust": RobustRun(14, 12, carried("B@30").counted_in_draws(1, 14)), "queues": ()}
 GAP = make_device("gap", "test", limit=9e-3, text="9 mm")
 SORTER = make_device("sorter", "test", like=("A", 0.0, 1e-3), text="{of: A@0, play: 1 mm}")
 
@@ -36,16 +51,18 @@ def study(target=40.0, held=20, **more):
     return design_study(PART, target=target, held=held, **{"queues": fills()} | more)
 
 
-def attempt(rate=30.0, faults=(), cause="", wanted="A@0", **more):
-    made = Attempt(wanted, (), "proposed", 0.0, 0.1, 8, 0.4, 1.0, 0.0, rate / 60.0, faults, cause)
+def attempt(rate=30.0, faults=(), cause=Cause.UNKNOWN, wanted="A@0", **more):
+    made = Attempt(
+        wanted, wanted.partition("@")[0], (), PROPOSED, 0.0, 0.1, 8, 0.4, 1.0, 0.0, rate / 60.0, faults, cause
+    )
     return replace(made, **more)
 
 
 def candidate(ways, bowl=BOWL, fault=(), **more):
-    tried, fields = short_trial(ways, ()), ("rows", "parts", "wrong", "held", "places")
+    tried, fields = short_trial(ways, ()), ("rows", "parts", "wrong", "held", "ends")
     first = {name: getattr(tried, name)[:1] for name in fields}
     tried = replace(tried, **first, right=np.array([2]), velocity=0.1)
-    proposal = proposals.Proposal(0, (), (), "proposed")
+    proposal = proposals.Proposal(0, (), (), PROPOSED)
     return Candidate(proposal, bowl, ways, tried.shares, tried, attempt(faults=fault, **more))
 
 
@@ -135,43 +152,43 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
         strokes.append(bowl.drive.amplitude)
         right = 0 if len(strokes) == 1 else 2
         own = {"right": np.array([right]), "wrong": np.array([2 - right])}
-        return replace(candidate(ways).trial, turns=({} if right else {"turned on the track": 2},), **own)
+        return replace(candidate(ways).trial, turns=({} if right else {TURNED_ON_TRACK: 2},), **own)
 
     monkeypatch.setattr(exploring, "_short", short)
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
-    proposal = proposals.Proposal(0, (), (), "no device")
+    proposal = proposals.Proposal(0, (), (), Move(MoveKind.NO_DEVICE))
     found = list(exploring._try_and_mend(search, PLAIN, proposal, weights))
     first, second = search.attempts
     assert not found and len(search.clean) == 1  # clean, slower than 600 a minute
     assert first.cause == "drive" and not first.clean and second.clean and second.cause == ""
     assert first.peak_to_peak > second.peak_to_peak == 2.0 * strokes[1]
-    assert "turned on the track" in first.faults[-1] and "calmer drive" in second.step
+    assert first.faults[-1].is_on_bare_track and second.move.kind is MoveKind.CALMER_DRIVE
 
 
 @pytest.mark.parametrize("cause, more", [
     ("arrival", {}),
     ("device", {"queues": fills(jams=2)}),
     ("drive", {"held": 15}),
-    ("drive", {"queues": fills(right=0, left=33, instead=(("A, heading off", 33),))}),
-    ("part", {"queues": fills(right=20, left=45, instead=(("B@0", 25),))}),
+    ("drive", {"queues": fills(right=0, left=33, instead=((heading_off("A"), 33),))}),
+    ("part", {"queues": fills(right=20, left=45, instead=((orientation("B@0"), 25),))}),
     ("drive", {"queues": fills(right=0, left=0, returned=0)}),
     ("part", {"bowl": None, "queues": ()}),
-    ("device", {"queues": (), "attempts": (attempt(0.0, ("A@0 is lost (stopped at gap)",), "device"),)}),
+    ("device", {"queues": (), "attempts": (attempt(0.0, (lost("A@0", stopped_at("gap")),), Cause.DEVICE),)}),
     ("arrival", {"queues": (), "attempts": (attempt(),)}),
 ])  # fmt: skip
 def test_one_of_four_causes_is_said(cause, more):
     made = study(400.0, **more)
     made = replace(made, bowl=None, attempts=()) if "bowl" in more else made
-    assert made.cause == cause and cause in CAUSES and f"the cause is the {cause}:" in made.why
+    assert made.cause == cause and cause in list(Cause) and f"the cause is the {cause}:" in made.why
     assert designs.document(made)["cause"] == cause
 
 
 def test_what_left_instead_and_what_would_hold_are_said():
-    made = study(40.0, queues=fills(right=0, left=11, instead=(("A, heading off", 11),)))
-    assert made.left_instead == (("A, heading off", 33),)
+    made = study(40.0, queues=fills(right=0, left=11, instead=((heading_off("A"), 11),)))
+    assert made.left_instead == ((heading_off("A"), 33),)
     assert "A, heading off: 33 of 33" in made.why and "--up A" in made.why
     assert designs.document(made)["queues"][0]["left_instead"] == "A, heading off: 11 of 11"
-    other = study(40.0, queues=fills(right=0, left=11, instead=(("B@0", 11),)))
+    other = study(40.0, queues=fills(right=0, left=11, instead=((orientation("B@0"), 11),)))
     assert "B@0: 33 of 33" in other.why and "--up" not in other.why
     # of 50 parts a minute a fifth leaves: 10/min, and for 40/min four fifths have to
     made = study_with(GAP, right=10, returned=40)
@@ -181,7 +198,8 @@ def test_what_left_instead_and_what_would_hold_are_said():
     cut = Cut(GAP, 1e-3, 1e-3, GAP, GAP, ("B@0",))
     found = study_with(GAP, right=40, left=45, cuts=(cut,))
     low, normal, high = found.queues
-    rows = (low, replace(normal, left_instead=(("B@0", 2),)), replace(high, left_instead=(("B@0", 9),)))
+    other = orientation("B@0")
+    rows = (low, replace(normal, left_instead=((other, 2),)), replace(high, left_instead=((other, 9),)))
     assert "B@0: 11 of 135 (most at high fill, through the gap)" in replace(found, queues=rows).why
     assert "B@0: 11 of 135 (most at high fill)" in replace(found, queues=rows, cuts=()).why
 
@@ -196,10 +214,11 @@ def test_a_queue_names_what_left_by_aspect_and_heading(block):
     seen = SimpleNamespace(leaving_counts=leaving, aspects=lying, whole=whole)
     row = queues.FollowedRow(PART, BOWL, aspects, ways, None, (0,), seed=1)
     found = dict(row.left_instead(seen))
-    assert found == {f"{aspects.names[own]}, heading off": 5, names[1]: 2, "in no known pose": 1}
+    off = heading_off(aspects.names[own])
+    assert found == {off: 5, orientation(names[1]): 2, LeavingPose(PoseKind.UNKNOWN): 1}
     assert sum(found.values()) == leaving.sum() - row.wanted_parts(seen)
     free = replace(row, any_heading=(aspects.names[own],))
-    assert f"{aspects.names[own]}, heading off" not in dict(free.left_instead(seen))
+    assert off not in dict(free.left_instead(seen))
 
 
 def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
@@ -208,7 +227,7 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
     search.before = lambda: order.append(len(said))
     search.progress = lambda *row: told.append(row)
     search.begin_trial("A@0, no device")
-    search.attempts.append(attempt(0.0, ("A@0 is lost (turned on the track)",), "drive"))
+    search.attempts.append(attempt(0.0, (lost("A@0", TURNED_ON_TRACK),), Cause.DRIVE))
     search.clock.end()
     search.begin_trial("A@0, calmer drive")
     assert order == [0]  # what is compiled is told before the first trial, once
@@ -229,7 +248,9 @@ def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_t
     lively, slowest = (calm_drive.drive_at(PLAIN, velocity, hops=True) for velocity in (0.18, 0.01))
     fast = calm_drive.drive_at(PLAIN, 0.12)
     for bowl, efficiency in ((lively, 0.0), (slowest, 0.0), (fast, 0.4), (slowest, 0.4)):
-        one = candidate(ways, bowl, ("A@0 is lost (returned at sorter)",), throw_number=throw_number(bowl))
+        one = candidate(
+            ways, bowl, (lost("A@0", end_at(Fate.RETURNED, "sorter")),), throw_number=throw_number(bowl)
+        )
         search.failures.append(replace(one, attempt=replace(one.attempt, efficiency=efficiency)))
     found = list(nearest.variants(search, []))
     assert len(found) == len(drives_tried) == 2 and all("a calmer drive, " in one.change for one in found)
@@ -278,7 +299,7 @@ def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, dri
     search, _ = searching()
     monkeypatch.setattr(calm_drive, "find_calmer", lambda *_: None)
     across = next(one.name for one in ways.lying if one.aspect == "A" and one.name != "A@0")
-    instead = (("A, heading off", 12), (across, 12))
+    instead = ((heading_off("A"), 12), (orientation(across), 12))
     impure = study(40.0, queues=fills(right=21, left=45, instead=instead))
     heading, device = nearest.variants(search, [(impure, candidate(ways))])
     assert heading.candidate.proposal.any_heading == ("A",) and not heading.as_requested
@@ -309,10 +330,10 @@ def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(mon
 
 def test_the_cause_is_of_what_was_asked_for_and_of_nothing_that_holds():
     """Two trials of A with one fault, then one of another way up: the cause is of A, and said once."""
-    lost = attempt(0.0, ("A@0 is lost (returned at gap)",), "device", efficiency=0.0)
+    back = attempt(0.0, (lost("A@0", end_at(Fate.RETURNED, "gap")),), Cause.DEVICE, efficiency=0.0)
     made = DesignStudy(
         PART, DesignRequest(1.0, aspect="a"), None, None, None,
-        attempts=(lost, lost, attempt(9.0, ("B@0 is lost (turned on the track)",), "drive", wanted="B@0")),
+        attempts=(back, back, attempt(9.0, (lost("B@0", TURNED_ON_TRACK),), Cause.DRIVE, wanted="B@0")),
     )  # fmt: skip
     assert made.cause == "device" and "B@0" not in made.reasons
     assert made.shortfalls == ("A@0: A@0 is lost (returned at gap)",)
@@ -339,8 +360,10 @@ def test_each_class_has_its_best_design_the_cheapest_first():
     assert found[2]["needs"] == ["camera from above", "a valve", "compressed air"]
     printed = tables_of.text(designs.summary(study_with(GAP, alternatives=rows)), "table")
     assert "with steel alone" in printed and "yield 90 %" in " ".join(printed.split())
-    carried = {"faults": ("B@0 is carried through",), "cost_class": 3}
-    tried = [attempt(**carried), attempt(**carried | {"faults": ("x",)}, efficiency=0.1)]
+    tried = [
+        attempt(faults=(carried("B@0"),), cost_class=3),
+        attempt(faults=(stays("B@0"),), cost_class=3, efficiency=0.1),
+    ]
     one, two, three = alternatives([study_with(GAP)], tried, [1])  # what was tried and not proved says why
     assert (one.status, two.status, three.status) == ("holds", "not tried", "none")
     assert "--alternatives" in two.why and three.why == "A@0: B@0 is carried through"
@@ -363,10 +386,10 @@ def classes(monkeypatch):
     def proposed(search, track, row, way):
         asked.append((round(np.degrees(track.plain_bowl.bowl.track.bank)), row, way))
         device = make_device("gap", "test", limit=5e-3 + 1e-3 * len(asked), text=f"{5 + len(asked)} mm")
-        return proposals.Proposal(row, (), (device,), "test")
+        return proposals.Proposal(row, (), (device,), PROPOSED)
 
     def tried_out(search, made_bowl, proposal, weights):
-        search.attempts.append(attempt(faults=("B@0 is carried through",), cost_class=1))
+        search.attempts.append(attempt(faults=(carried("B@0"),), cost_class=1))
         search.chains.add(exploring.chain_key(made_bowl.bowl.track, proposal, lying))
         yield from ()
 

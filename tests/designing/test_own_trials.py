@@ -7,6 +7,7 @@ import pytest
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import short_trials, tooling_trials
+from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling as tables
 from feederscrew.studies.tooling import tooling, tooling_without
@@ -25,7 +26,7 @@ class Verdicts:
 
     def __call__(self, study, one, *_):
         self.denials -= 1
-        faults = ("nothing leaves as wanted",) if self.denials >= 0 else ()
+        faults = (Fault(FaultKind.NOTHING_LEAVES),) if self.denials >= 0 else ()
         devices, name = tooling_trials._devices(one), study.orientations[one.wanted].name
         return tooling_trials.TriedDesign(name, one.wanted, devices, one.efficiency, 0.0, np.nan, 6, faults)
 

@@ -6,11 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
-from design_counts import design_study, queue
+from design_counts import carried, design_study, lost, queue, stays, stopped_at
 from scipy.stats import binom
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import acceptance_sheet, calm_drive, loop, proposals, queues, short_trials
+from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import DesignRequest, DesignStudy, RobustRun, share_interval
 from feederscrew.errors import FeederError
@@ -200,7 +201,7 @@ def candidates_of(bowl, other):
 def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatch, prove, speeds, proved):
     """A fifth of the draws stop what is wanted: it is proved at 1.3 times the speed, if that is another."""
     asked, other = [], replace(BOWL, drive=replace(BOWL.drive, amplitude=speeds * BOWL.drive.amplitude))
-    lost = study(robust=RobustRun(20, 16, "A@0 is lost (stopped at rails) in 4 of 20"))
+    slow = study(robust=RobustRun(20, 16, lost("A@0", stopped_at("rails")).counted_in_draws(4, 20)))
     monkeypatch.setattr(loop.proposals, "mend_proposal", lambda *chain: None)
 
     def driven_for(search, made, proposal, weights):
@@ -208,16 +209,16 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
         return other
 
     monkeypatch.setattr(loop.exploring, "drive_for_target", driven_for)
-    studies, tried = prove(*candidates_of(BOWL, other.drive), {other: study(held=19), BOWL: lost})
+    studies, tried = prove(*candidates_of(BOWL, other.drive), {other: study(held=19), BOWL: slow})
     assert asked == [pytest.approx(loop.FASTER * calm_drive.speed(BOWL))]
     assert len(studies) == proved == len(tried) + 1
 
 
 def test_what_draws_carry_through_or_jams_is_tried_with_another_value_drive_or_break(monkeypatch, prove):
     first, second = candidates_of(BOWL, replace(BOWL.drive, frequency=2.0 * BOWL.drive.frequency))
-    carried = study(robust=RobustRun(20, 16, "B@0 is carried through in 4 of 20"))
+    impure = study(robust=RobustRun(20, 16, carried("B@0").counted_in_draws(4, 20)))
     monkeypatch.setattr(loop.proposals, "mend_proposal", lambda *chain: "a narrower track")
-    studies, tried = prove(first, second, {BOWL: carried, second.bowl: study()})
+    studies, tried = prove(first, second, {BOWL: impure, second.bowl: study()})
     assert len(studies) == 2 and tried == [("a narrower track", BOWL, 0.0)]
     # Parts that hop 0.2 mm jam for another reason: there the parts that back up are taken off
     calm = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.1 * BOWL.drive.amplitude))
@@ -234,11 +235,11 @@ def test_what_draws_carry_through_or_jams_is_tried_with_another_value_drive_or_b
     assert [one.jams for one in studies] == [1, 0] and len(tried) == 1
 
 
-@pytest.mark.parametrize(("fault", "count"), [("B stays (stopped at wiper)", 1), ("B is carried through", 0)])
+@pytest.mark.parametrize(("fault", "count"), [(stays("B", stopped_at("wiper")), 1), (carried("B"), 0)])
 def test_what_stays_at_a_blade_is_tried_at_a_livelier_drive(monkeypatch, fault, count):
     drives = []
-    wiper = SimpleNamespace(device=SimpleNamespace(overhead=True, hangs=False, name="wiper"))
-    proposal = Proposal(0, (wiper,), (), "proposed")
+    wiper = SimpleNamespace(device=SimpleNamespace(overhead=True, hangs=False, kind="wiper"))
+    proposal = Proposal(0, (wiper,), (), Move(MoveKind.PROPOSED))
     first = SimpleNamespace(
         bowl="calm", proposal=proposal, weights=None, attempt=SimpleNamespace(faults=(fault,)),
         plain_bowl=lambda search: None,

@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 import shapes
 import trimesh
-from design_counts import short_trial
+from design_counts import carried, end_at, orientation, short_trial, stays, stopped_at
 from scipy import stats
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
-from feederscrew.designing import exploring, proposals, short_trials
+from feederscrew.designing import exploring, proposals, short_trials, texts
 from feederscrew.designing.exploring import Search
+from feederscrew.designing.findings import LeavingPose, Move, MoveKind, PoseKind
 from feederscrew.designing.proposals import PULSE_RESERVE, PULSE_STEP_S, SHORTEST_PULSE_STEPS, lengthen_pulse
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.part import load
@@ -30,6 +31,7 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import PULSE
 from feederscrew.tooling.isolating.chain import Cut, judge_cut
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
+from feederscrew.trial.course import Fate
 
 DRAWS = 1500
 MM = 1e-3
@@ -40,6 +42,8 @@ SIDES = np.array([24.0, 14.0, 6.0]) * MM  # of a box, no two alike
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 BOWL = bowls.default()
 COUNTS = ("rows", "parts", "right", "wrong", "held")
+
+PROPOSED, UNKNOWN = Move(MoveKind.PROPOSED), LeavingPose(PoseKind.UNKNOWN)
 
 
 def is_even(values, centre, half):
@@ -180,7 +184,7 @@ def test_a_bowl_is_driven_for_1_6_times_what_is_asked_for(block, quarter, apart)
 def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block, quarter):
     """Half a length between parts, and what the devices need; never closer than wanted ones in a row."""
     ways, (shares, mean) = block.ways, quarter
-    own = {"velocity": 0.06, "states": (0,), "places": ({}, {})}
+    own = {"velocity": 0.06, "states": (0,), "ends": ({}, {})}
     counts = (np.array([2, 2]), np.array([2, 0]), np.array([0, 0]), np.array([0, 2]))
     seen = short_trials.ShortTrial(ways, shares, np.array([0, 1]), *counts, **own)
     for spacing in (0.0, 8.0 * MM):
@@ -196,7 +200,7 @@ def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block, quart
 def test_what_may_come_back_in_a_draw_is_what_the_target_does_not_take(rate, share):
     """0.9 of the target of 0.5 a second, over the rate of the short trial; half at least."""
     search = Search(None, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
-    attempt = Attempt("A@0", (), "", 0.0, 0.1, 2, 1.0, 1.0, 0.0, rate, ())
+    attempt = Attempt("A@0", "A", (), Move(MoveKind.PROPOSED), 0.0, 0.1, 2, 1.0, 1.0, 0.0, rate, ())
     assert search.share_needed(attempt) == pytest.approx(share)
 
 
@@ -207,13 +211,13 @@ def rows(block):
 
 
 def of_rows(seen, rows):
-    places = tuple(seen.places[k] for k in np.arange(len(seen.places))[rows])
-    return replace(seen, places=places, **{name: getattr(seen, name)[rows] for name in COUNTS})
+    ends = tuple(seen.ends[k] for k in np.arange(len(seen.ends))[rows])
+    return replace(seen, ends=ends, **{name: getattr(seen, name)[rows] for name in COUNTS})
 
 
-def at_places(seen, which, place):
-    count = len(seen.places)
-    return replace(seen, places=tuple({place: 2} if k in which else {} for k in range(count)))
+def ended(seen, which, end):
+    count = len(seen.ends)
+    return replace(seen, ends=tuple({end: 2} if k in which else {} for k in range(count)))
 
 
 @pytest.fixture
@@ -221,7 +225,9 @@ def dropped(rows):
     """A chain with a drop before what is carried through across, and the trial that denied the bare track."""
     ways, along, across = rows
     seen = short_trial(ways, {along}, {across}, row=along)
-    return proposals.mend_proposal(proposals.Proposal(along, (), (), "no device"), seen, ways.lying), seen
+    return proposals.mend_proposal(
+        proposals.Proposal(along, (), (), Move(MoveKind.NO_DEVICE)), seen, ways.lying
+    ), seen
 
 
 def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_still_is(rows, dropped):
@@ -233,17 +239,17 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     sign = 1.0 if before.device.bound == "lower" else -1.0
     assert sign * values[across] < sign * before.device.limit < sign * values[along]
     assert "A@90" in before.returns and "A@0" not in before.returns
-    drawn = short_trials.RobustRun(20, 18, "A@90 is carried through in 2 of 20")
+    drawn = carried("A@90", across).counted_in_draws(2, 20)
     (after,) = proposals.mend_proposal(proposal, seen, ways.lying, drawn).cuts
     middle = 0.5 * (before.device.limit + before.largest.limit)
     assert after.device.limit == pytest.approx(middle, abs=proposals.VALUE_STEP_M)
     assert after.margin_pass > 0.0 and "A@90" in after.returns
-    other = replace(drawn, worst="A@0 is carried through in 2 of 20")  # nothing tells it from itself
+    other = carried("A@0", along)  # nothing tells it from itself
     assert proposals.mend_proposal(proposal, seen, ways.lying, other) is None
     candidate = SimpleNamespace(proposal=proposal, trial=seen, orientations=ways)
-    (after,) = proposals.purify(candidate, (("in no known pose", 3), ("A@90", 2))).cuts  # what left a queue
+    (after,) = proposals.purify(candidate, ((UNKNOWN, 3), (orientation("A@90"), 2))).cuts  # what left a queue
     assert abs(after.device.limit - after.largest.limit) < abs(before.device.limit - before.largest.limit)
-    assert proposals.purify(candidate, (("in no known pose", 3),)) is None
+    assert proposals.purify(candidate, ((UNKNOWN, 3),)) is None
 
 
 def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_stop_of_it(block, rows):
@@ -259,15 +265,15 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_sto
     for wanted, right in ((along, [1, 0]), ((along, *same), [1, 1])):
         seen = short_trials.try_parts(block.part, BOWL, ways, shares, wanted, **one)
         assert (list(seen.right), list(seen.wrong)) == (right, [1 - count for count in right])
-        assert bool(short_trials.faults(seen)) == (0 in right)
+        assert bool(short_trials.find_faults(seen)) == (0 in right)
     states = short_trials.wanted_states(ways, (along, across))
     lost = short_trial(ways, {along}, row=along, states=states)
-    assert not short_trials.faults(lost)
-    assert short_trials.faults(replace(lost, right=0 * lost.right))  # the wanted one itself has to leave
-    carried = {across}, (), f"A@90{short_trials.CARRIED}"
-    for wrong, held, fault in (((), {across}, "A@90 stays (stopped at gap)"), carried):
+    assert not short_trials.find_faults(lost)
+    assert short_trials.find_faults(replace(lost, right=0 * lost.right))  # the wanted one itself has to leave
+    through = {across}, (), carried("A@90", across)
+    for wrong, held, fault in (((), {across}, stays("A@90", stopped_at("gap"), row=across)), through):
         seen = short_trial(ways, {along}, wrong, held, row=along, states=states)
-        assert short_trials.faults(seen) == [fault]
+        assert short_trials.find_faults(seen) == [fault]
 
 
 def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows):
@@ -275,15 +281,16 @@ def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows)
     whole = short_trial(ways, {0, 1}, {2}, {3})
     joined = of_rows(whole, slice(0, 2)).join(of_rows(whole, slice(2, None)))
     assert (joined.efficiency, joined.wrong_share) == pytest.approx((whole.efficiency, whole.wrong_share))
-    assert joined.places == whole.places
+    assert joined.ends == whole.ends
+    turned = end_at(Fate.TURNED, "gap")
     second = replace(
         whole, rows=np.array([2, 0]), parts=np.array([5, 3]), right=np.array([1, 3]), wrong=np.array([4, 0]),
-        held=np.array([0, 0]), places=({"stopped at gap": 1}, {}), turns=({"turned at gap": 2}, {}),
+        held=np.array([0, 0]), ends=({stopped_at("gap"): 1}, {}), turns=({turned: 2}, {}),
     )  # fmt: skip
     both = whole.join(second)
-    assert both.rows.tolist() == whole.rows.tolist() and both.places[2] == {"stopped at gap": 1}
+    assert both.rows.tolist() == whole.rows.tolist() and both.ends[2] == {stopped_at("gap"): 1}
     assert both.parts[[0, 1, 2]].tolist() == [5, 2, 7] and both.right[[0, 2]].tolist() == [5, 1]
-    assert both.wrong[2] == 6 and both.held[3] == 2 and both.turns[2] == {"turned at gap": 2}
+    assert both.wrong[2] == 6 and both.held[3] == 2 and both.turns[2] == {turned: 2}
     assert both.efficiency == pytest.approx((1.0 + 1.0 + 1.0 / 7.0) / len(ways.lying))
 
 
@@ -301,16 +308,16 @@ def test_a_cost_class_is_without_dearer_devices_and_the_widest_margin_comes_firs
     gap = make_device("gap", "test", limit=9e-3, text="9 mm")
     jet, sorter = make_device("jet", "test", text="test"), make_device("sorter", "test", text="test")
     for chain, cost in (((), 1), ((gap,), 1), ((gap, jet), 2), ((sorter, gap), 3)):
-        assert proposals.Proposal(0, (), chain, "test").cost_class == cost
+        assert proposals.Proposal(0, (), chain, PROPOSED).cost_class == cost
 
 
 def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
     ways, wanted, others = block.ways, block.names["A@0"], block.names["C@0"]
     wiper = make_device("wiper", "test", limit=8e-3, sweep=np.radians(30.0)).rewritten()
-    proposal = proposals.Proposal(wanted, (Cut(wiper, 1e-3, 1e-3, wiper, wiper, ()),), (), "test")
+    proposal = proposals.Proposal(wanted, (Cut(wiper, 1e-3, 1e-3, wiper, wiper, ()),), (), PROPOSED)
     seen = short_trial(ways, {wanted}, (), {others}, row=wanted)
     assert proposals.sweep_blade(proposal, seen, ways.lying) is None  # it stays at a gap
-    seen, sweeps = at_places(seen, {others}, "stopped at wiper"), []
+    seen, sweeps = ended(seen, {others}, stopped_at("wiper")), []
     while proposal is not None:
         proposal = proposals.sweep_blade(proposal, seen, ways.lying)
         sweeps += [] if proposal is None else [round(np.degrees(proposal.devices[0].sweep))]
@@ -319,7 +326,7 @@ def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
 
 def test_a_wanted_part_that_comes_back_denies_only_where_most_of_the_others_do_too(rows):
     ways, along, across = rows
-    back = at_places(short_trial(ways, {along}, row=along), {across}, "returned at gap")
+    back = ended(short_trial(ways, {along}, row=along), {across}, end_at(Fate.RETURNED, "gap"))
     assert short_trials.came_back(back, across) and not short_trials.came_back(back, along)
     pair = of_rows(back, [along, across])
     # half of them leave, and all that the target needs
@@ -329,7 +336,7 @@ def test_a_wanted_part_that_comes_back_denies_only_where_most_of_the_others_do_t
     leaving = ways.leaving.copy()
     leaving[across] = leaving[along]  # both leave in the one state, as parts that hang do
     both = replace(ways, leaving=leaving)
-    seen = at_places(short_trial(both, {along}, row=along), {across}, "returned at narrowed track")
+    seen = ended(short_trial(both, {along}, row=along), {across}, end_at(Fate.RETURNED, "narrowed_track"))
     assert short_trials.find_returnable_rows(seen) == (across,) and not list(short_trials.find_denials(seen))
     stays = replace(seen, held=2 * (np.arange(len(both.lying)) == across))
     assert short_trials.find_returnable_rows(stays) == () and list(short_trials.find_denials(stays))
@@ -377,7 +384,7 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
 
 @pytest.mark.parametrize(("lost", "draws", "held"), [((0, 2), 3, 1), ((3,), 5, 4)])
 def test_draws_end_once_more_have_failed_than_may(monkeypatch, block, lost, draws, held):
-    results = iter([["B is lost"] if k in lost else [] for k in range(5)])
+    results = iter([[carried("B")] if k in lost else [] for k in range(5)])
     monkeypatch.setattr(short_trials, "_draw", lambda *_: (next(results), 0.05))
     own = {"draws": 5, "tolerance": 1e-4, "run": RunSettings(1)}
     shares = np.full(len(block.ways.lying), 1.0)
@@ -425,7 +432,7 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_longer_where_others_slip_t
             assert reserve(device.time - PULSE_STEP_S) <= 0.0
     assert times[0] == PULSE_STEP_S * SHORTEST_PULSE_STEPS < times[1] < times[2] <= times[3] == PULSE
     ways, cut = wedge
-    proposal = proposals.Proposal(0, (proposals.shorten_pulse(cut, weighing(ways.lying, 0.2)),), (), "test")
+    proposal = proposals.Proposal(0, (proposals.shorten_pulse(cut, weighing(ways.lying, 0.2)),), (), PROPOSED)
     slipped = next(k for k, one in enumerate(ways.lying) if one.name in cut.returns)
     assert lengthen_pulse(proposal, short_trial(ways, {0}, each=1), ways.lying) is None
     seen = short_trial(ways, {0}, {slipped}, each=1)
@@ -433,5 +440,5 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_longer_where_others_slip_t
     assert proposals.mend_proposal(proposal, seen, ways.lying).chain == other.chain
     (device,) = other.devices
     assert device.time == pytest.approx(0.04) == PULSE
-    assert other.step == "pulse of 40 ms" and "jet" not in device.text
+    assert texts.move_text(other.move) == "pulse of 40 ms" and "jet" not in device.text
     assert lengthen_pulse(other, seen, ways.lying) is None

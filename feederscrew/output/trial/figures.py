@@ -27,7 +27,7 @@ TRACK, AIR_COLOUR = "#e3e8ec", "#009e73"
 PATHS_WIDTH_IN = 7.2  # [in] of a panel of paths
 SIDE_MARGIN_MM, WALL_MARGIN_MM = 2.0, 2.0  # of a panel, before and behind, and outside the wall
 MOST = 24  # orientations that come most often have a row
-STAYS = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves hanging
+STAYS: dict[int, str] = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves hanging
 
 
 def matrix(run: TrialRun) -> Figure:

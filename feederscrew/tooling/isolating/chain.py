@@ -5,6 +5,7 @@ what the whole chain does with every orientation.
 Source: own; docs/tooling.md, "1. The method".
 """
 
+import enum
 import functools
 import itertools
 from collections.abc import Callable, Sequence
@@ -54,6 +55,14 @@ def round_finely(value: float) -> float:
     return float(np.round(value / SHOP_ROUNDING_M)) * SHOP_ROUNDING_M
 
 
+class OutcomeKind(enum.StrEnum):
+    """How parts leave the bowl."""
+
+    ANY = "any"
+    LYING = "lying"
+    HANGING = "hanging"  # by a head, between rails
+
+
 @dataclass(frozen=True)
 class Cut:
     """One device of a design, with how much it may change."""
@@ -72,7 +81,7 @@ class Cut:
 class DesignConstraints:
     """What a design may use, and how finely it is made."""
 
-    outcome: str = "any"  # how parts leave: 'lying', 'hanging' or 'any'
+    outcome: OutcomeKind = OutcomeKind.ANY  # how parts leave
     without: tuple[str, ...] = ()  # kinds of devices that are not used
     step: float = SHOP_STEP_M  # [m] a shop makes: values are whole multiples
     up: tuple[str, ...] = ()  # aspects that count as the one wanted

@@ -18,7 +18,14 @@ from feederscrew.tooling.devices.ledges import Rails
 from feederscrew.tooling.devices.orientation_names import place_of, rows
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.isolating import chain, hole_search
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, Design, DesignConstraints, DesignTask
+from feederscrew.tooling.isolating.chain import (
+    DESIGN_KEY,
+    Cut,
+    Design,
+    DesignConstraints,
+    DesignTask,
+    OutcomeKind,
+)
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.orientations import Neck, Orientation, neck
 from feederscrew.tooling.orientations import place as placed
@@ -126,8 +133,12 @@ def _design_returning(task: DesignTask, search: HoleSearch) -> Design:
     if any(device.hangs for device in task.before):
         return chain.propose(task, (), np.zeros(len(task.orientations), dtype=bool))
     outcome = task.constraints.outcome
-    hung = design_rails(task) if outcome != "lying" and task.constraints.allows(*names(hangs=True)) else None
-    if outcome == "hanging":
+    hung = (
+        design_rails(task)
+        if outcome != OutcomeKind.LYING and task.constraints.allows(*names(hangs=True))
+        else None
+    )
+    if outcome == OutcomeKind.HANGING:
         return chain.propose_nothing(task, "does not hang between rails") if hung is None else hung
     lying = _design_lying(task, search)
     if hung is None or (hung.isolated, hung.efficiency) <= (lying.isolated, lying.efficiency):

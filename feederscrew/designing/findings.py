@@ -1,0 +1,145 @@
+"""What trials of a design find, and what the search changes because of it: records, and no sentence.
+
+The search decides on these. ``designing.texts`` makes the sentences that people read of them.
+"""
+
+import enum
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from feederscrew.trial.course import Fate
+
+
+class Cause(enum.StrEnum):
+    """What keeps a design from holding; files print the word."""
+
+    UNKNOWN = ""  # it holds, or was stopped
+    DRIVE = "drive"
+    DEVICE = "device"
+    ARRIVAL = "arrival"
+    PART = "part"
+
+
+@dataclass(frozen=True)
+class End:
+    """How and where a part ended, or came into another orientation."""
+
+    fate: Fate  # TURNED of one that left otherwise, at the last station that turned it
+    station: int = 0  # place along the chain of what stands on the track; 0 is the bare track
+    kind: str = ""  # of the device there; '' on the bare track
+    device: str = ""  # its name, for a sentence
+
+    @property
+    def on_bare_track(self) -> bool:
+        """Whether it happened before any device."""
+        return not self.kind
+
+    @property
+    def came_back(self) -> bool:
+        """Whether the part was returned, and comes along once more."""
+        return self.fate is Fate.RETURNED
+
+
+class FaultKind(enum.Enum):
+    """In which way a chain fails to do what it should."""
+
+    NOTHING_LEAVES = enum.auto()  # as wanted
+    LOST = enum.auto()  # a wanted orientation that did not leave as wanted
+    CARRIED = enum.auto()  # another orientation that leaves
+    STAYS = enum.auto()  # another orientation that stays at a device
+    NOT_RUN = enum.auto()  # the bowl conveys nothing, or the part does not fit it
+    IMPURE = enum.auto()  # too little of what leaves is wanted
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault that trials or draws show, of one orientation."""
+
+    kind: FaultKind
+    orientation: str = ""  # its name; '' where the fault is of no single one
+    row: int = -1  # its place among the orientations of the design; -1 where there is none
+    ends: tuple[End, ...] = ()  # how its parts ended, each once
+    reason: str = ""  # of one that was not run: the message of the error
+    shares: tuple[float, ...] = ()  # [1] of an impure one: purity, its 95 % interval, the least asked for
+    failures: int = 0  # draws that show it; 0 of a trial
+    draws: int = 0  # of so many
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether the first of its parts that were lost stands at a device."""
+        return bool(self.ends) and self.ends[0].fate is Fate.STOPPED
+
+    @property
+    def is_at_device(self) -> bool:
+        """Whether some of its parts ended or were turned at a device."""
+        return any(not end.on_bare_track for end in self.ends)
+
+    @property
+    def is_on_bare_track(self) -> bool:
+        """Whether some of its parts ended or were turned before any device."""
+        return any(end.on_bare_track for end in self.ends)
+
+    def stops_at(self, kinds: Iterable[str]) -> bool:
+        """Return whether some of its parts stand at a device of one of these kinds."""
+        kinds = set(kinds)
+        return any(end.fate is Fate.STOPPED and end.kind in kinds for end in self.ends)
+
+    def counted_in_draws(self, failures: int, draws: int) -> "Fault":
+        """Return the fault as so many of some draws show it."""
+        return replace(self, failures=failures, draws=draws)
+
+
+class MoveKind(enum.Enum):
+    """Why the search tries a chain."""
+
+    PROPOSED = enum.auto()  # by the static rule, with a margin
+    NO_DEVICE = enum.auto()
+    VALUES_OF_ALL = enum.auto()  # of a family of parts that share one bowl
+    VALUE = enum.auto()  # the value of a device is moved
+    SWEEP = enum.auto()  # a blade is set at another angle
+    WIDER_SLOT = enum.auto()
+    LONGER_PULSE = enum.auto()
+    DROP_BEFORE = enum.auto()  # one device more: what others fall through
+    PRESSURE_BREAK = enum.auto()  # one device more: where parts back up they leave the track
+    CALMER_DRIVE = enum.auto()
+    LIVELIER_DRIVE = enum.auto()
+
+
+@dataclass(frozen=True)
+class Move:
+    """A step of the search: what is tried, and the value that is new in it."""
+
+    kind: MoveKind
+    value: float = 0.0  # margin, slot or stroke peak to peak [m], sweep [rad] or pulse [s]
+    device: str = ""  # kind of the device that is changed or added
+    device_name: str = ""
+    device_text: str = ""  # its value as a bowl file writes it
+
+
+class PoseKind(enum.Enum):
+    """How well the pose in which a part left is known."""
+
+    ORIENTATION = enum.auto()
+    HEADING_OFF = enum.auto()  # on an aspect, at a heading that is none of the listed ones
+    UNKNOWN = enum.auto()
+
+
+@dataclass(frozen=True)
+class LeavingPose:
+    """A pose, other than wanted, in which parts left a queue."""
+
+    kind: PoseKind
+    aspect: str = ""  # '' of parts that hang, or lie in no known pose
+    name: str = ""  # of the orientation; '' of the other kinds
+
+
+LeavingCounts = tuple[tuple[LeavingPose, int], ...]  # the most first
+
+
+def join_leaving_counts(*counts: LeavingCounts) -> LeavingCounts:
+    """Return poses with their numbers of parts added up, the most first."""
+    total = Counter[LeavingPose]()
+    for count in counts:
+        total.update(dict(count))
+    return tuple(total.most_common())

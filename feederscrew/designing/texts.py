@@ -1,0 +1,107 @@
+"""The sentences that people read of what a design's trials found: made here, and read by no decision."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from feederscrew.designing.findings import (
+    End,
+    Fault,
+    FaultKind,
+    LeavingCounts,
+    LeavingPose,
+    Move,
+    MoveKind,
+    PoseKind,
+)
+from feederscrew.tooling.isolating.chain import in_mm
+from feederscrew.trial.course import Fate
+
+
+def end_text(end: End) -> str:
+    """Return how and where a part ended: 'returned at gap', 'turned on the track'."""
+    place = "on the track" if end.on_bare_track else f"at {end.device}"
+    return f"{end.fate.word.replace('_', ' ')} {place}"
+
+
+def ends_text(ends: Iterable[End]) -> str:
+    """Return how parts ended, each way once."""
+    return ", ".join(dict.fromkeys(map(end_text, ends)))
+
+
+def fault_text(fault: Fault) -> str:
+    """Return a fault as a sentence: 'A@188 is lost (returned at gap)'."""
+    match fault.kind:
+        case FaultKind.NOTHING_LEAVES:
+            text = "nothing leaves as wanted"
+        case FaultKind.LOST:
+            text = f"{fault.orientation} is lost ({ends_text(fault.ends) or Fate.TURNED.word})"
+        case FaultKind.CARRIED:
+            text = f"{fault.orientation} is carried through"
+        case FaultKind.STAYS:
+            text = f"{fault.orientation} stays ({ends_text(fault.ends)})"
+        case FaultKind.NOT_RUN:
+            text = fault.reason
+        case FaultKind.IMPURE:
+            purity, low, high, least = fault.shares
+            text = f"{percent(purity, (low, high))} of what leaves is wanted, of {100.0 * least:.3g} %"
+    return f"in draws {counted_fault_text(fault, text)}" if fault.draws else text
+
+
+def counted_fault_text(fault: Fault, text: str = "") -> str:
+    """Return a fault with the draws that show it: 'A@188 is lost (...) in 2 of 20'."""
+    return f"{text or fault_text(fault.counted_in_draws(0, 0))} in {fault.failures} of {fault.draws}"
+
+
+def fault_texts(faults: Iterable[Fault], most: int | None = None) -> list[str]:
+    """Return faults as sentences, the first ``most`` of them."""
+    return [fault_text(fault) for fault in tuple(faults)[:most]]
+
+
+def percent(value: float, ends: tuple[float, float]) -> str:
+    """Return a share [1] in percent, with its interval."""
+    low, high = (f"{100.0 * end:.3g}" for end in ends)
+    return f"{100.0 * value:.4g} % ({low} to {high})"
+
+
+def move_text(move: Move) -> str:
+    """Return a step of the search in words: 'proposed with margins of 0.5 mm'."""
+    match move.kind:
+        case MoveKind.PROPOSED:
+            return f"proposed with margins of {in_mm(move.value)}"
+        case MoveKind.NO_DEVICE:
+            return "no device"
+        case MoveKind.VALUES_OF_ALL:
+            return "the values of all"
+        case MoveKind.VALUE:
+            return f"{move.device} moved to {move.device_text}"
+        case MoveKind.SWEEP:
+            return f"{move.device} swept {round(np.degrees(move.value))} deg"
+        case MoveKind.WIDER_SLOT:
+            return f"slot widened to {in_mm(move.value)}"
+        case MoveKind.LONGER_PULSE:
+            return f"pulse of {1e3 * move.value:.0f} ms"
+        case MoveKind.DROP_BEFORE:
+            return f"{move.device} of {move.device_text} before it"
+        case MoveKind.PRESSURE_BREAK:
+            return f"{move.device_name} of {move.device_text} before it, for what backs up"
+        case MoveKind.CALMER_DRIVE:
+            return f"calmer drive, {1e3 * move.value:.3g} mm peak to peak"
+        case MoveKind.LIVELIER_DRIVE:
+            return f"livelier drive, {1e3 * move.value:.3g} mm peak to peak"
+
+
+def pose_text(pose: LeavingPose) -> str:
+    """Return a pose in which parts left: 'A@90', 'C, heading off', 'in no known pose'."""
+    match pose.kind:
+        case PoseKind.ORIENTATION:
+            return pose.name
+        case PoseKind.HEADING_OFF:
+            return f"{pose.aspect}, heading off"
+        case PoseKind.UNKNOWN:
+            return "in no known pose"
+
+
+def leaving_texts(counts: LeavingCounts) -> dict[str, int]:
+    """Return how many parts left in each pose, by its text, the most first."""
+    return {pose_text(pose): count for pose, count in counts}
