@@ -19,7 +19,7 @@ from feederscrew.version import __version__ as __version__
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Bowl
     from feederscrew.conveying.answer import Answer
-    from feederscrew.designing.design import design
+    from feederscrew.designing.design import DesignSearch, design
     from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
     from feederscrew.part.loading import load
     from feederscrew.part.record import Part
@@ -37,23 +37,24 @@ if TYPE_CHECKING:
     from feederscrew.studies.rate import Shares, rate, shares
     from feederscrew.studies.report import report
     from feederscrew.studies.slide import slide
-    from feederscrew.studies.tooling import tooling
+    from feederscrew.studies.tooling import ToolingSearch, tooling
     from feederscrew.studies.track import track
     from feederscrew.studies.trial import trial
     from feederscrew.studies.tune import tune
     from feederscrew.thesis.reproduction import reproduce
 
 __all__ = [
-    "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
-    "Rate", "Shares", "aspects", "calibrate", "compare", "convey", "design", "drop", "find_aspects",
-    "floor", "headings", "inertia", "load", "posture", "rate", "read_bowl", "report", "reproduce", "shake",
-    "shares", "size_bowl", "slide", "tooling", "track", "trial", "tune", "write_names",
+    "Answer", "Aspects", "Bowl", "ConfigError", "DesignSearch", "Faults", "FeederError", "MeshError",
+    "Part", "Posture", "Rate", "Shares", "ToolingSearch", "aspects", "calibrate", "compare", "convey",
+    "design", "drop", "find_aspects", "floor", "headings", "inertia", "load", "posture", "rate",
+    "read_bowl", "report", "reproduce", "shake", "shares", "size_bowl", "slide", "tooling", "track",
+    "trial", "tune", "write_names",
 ]  # fmt: skip
 
 HOMES = {  # module: the names that it offers
     "bowl.record": "Bowl",
     "conveying.answer": "Answer",
-    "designing.design": "design",
+    "designing.design": "DesignSearch design",
     "errors": "ConfigError Faults FeederError MeshError",
     "part.loading": "load",
     "part.record": "Part",
@@ -71,7 +72,7 @@ HOMES = {  # module: the names that it offers
     "studies.rate": "Shares rate shares",
     "studies.report": "report",
     "studies.slide": "slide",
-    "studies.tooling": "tooling",
+    "studies.tooling": "ToolingSearch tooling",
     "studies.track": "track",
     "studies.trial": "trial",
     "studies.tune": "tune",

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, cast
 
 import numpy as np
 
@@ -23,7 +23,8 @@ from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3,
 from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, PartFile, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.record import AspectNames, Part
-from feederscrew.units import QuantityError, factor, quantity, quantity_text
+from feederscrew.signatures import with_shown_signature
+from feederscrew.units import Quantity, QuantityError, factor, from_quantity, quantity, quantity_text
 
 spatial = heavy("scipy.spatial")
 
@@ -287,11 +288,12 @@ FED_PART_SIZE_M = (0.5e-3, 0.3)  # [m] largest dimension of what bowls feed
 USUAL_PART_SIZE_M = 2e-3  # [m] below it, an inch file read in mm is likelier than a part so small
 
 
+@with_shown_signature
 def load(
     source: str | PathLike[str],
     *,
     units: str | None = None,
-    density: str | float | None = None,
+    density: Quantity | None = None,
     centre_of_mass: str | Sequence[float] | None = None,
     names: str | PathLike[str] | AspectNames | None = None,
     body: str | int | None = None,
@@ -331,6 +333,10 @@ def load(
         If the file is damaged or bounds no single solid, or an argument or a part card cannot be used.
     """
     check.path("source", source)
+    try:
+        density = cast("str | float | None", from_quantity(density, "density"))
+    except QuantityError as fault:
+        raise ArgumentError("density", fault.what, fault.mend) from None
     if density is not None and not isinstance(density, str):
         weight = check.argument("density", density)
         if not LIGHTEST_SOLID_KG_M3 <= weight <= HEAVIEST_SOLID_KG_M3:

@@ -29,6 +29,7 @@ from feederscrew.resting.landscape import SMOOTH_ANGLE, Landscape, angle, landsc
 from feederscrew.resting.rules import formulas, recommended, registry
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.rules.registry import ClassQuantities
+from feederscrew.signatures import with_shown_signature
 from feederscrew.units import MM, one_line
 
 FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
@@ -626,6 +627,7 @@ def names_text(part: Part, aspects: Aspects) -> str:
     return "\n".join([*lines, ""])
 
 
+@with_shown_signature
 def write_names(part: Part, aspects: Aspects, path: str | PathLike[str]) -> None:
     """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
 

@@ -15,6 +15,7 @@ from feederscrew.resting.exact_tumbling import Transition, transitions
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.running import OnCores
+from feederscrew.signatures import with_shown_signature
 from feederscrew.studies import arguments, simulation_cache
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ class AspectsStudy(ReadableRecord):
         return transitions(require_ground(self.part, self.aspects))
 
 
+@with_shown_signature
 def aspects(
     part: Part,
     *,
@@ -132,6 +134,7 @@ def aspects(
     return with_drops(closed, test, launch)
 
 
+@with_shown_signature
 def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
     """Return the resting aspects of a part as a record of arrays, in SI units.
 

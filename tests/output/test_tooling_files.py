@@ -21,7 +21,7 @@ from feederscrew.output import shading, solid_files, tooling_drawing, tooling_fi
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
 from feederscrew.tooling.devices.kinds import make_device
@@ -133,7 +133,7 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
 def isolated():
     """The bracket's aspect A at 270 deg, which a hole isolates, and its settings."""
     settings = bowls.settings(None, ["track.width=45 mm"])
-    own = {"heading": 1.5 * np.pi, "without": ("sorter",), "vary": False}
+    own = {"heading": 1.5 * np.pi, "without": ("sorter",), "search": ToolingSearch(vary=False)}
     return tooling(BRACKET, bowls.record(settings), "A", **own), settings
 
 

@@ -30,14 +30,14 @@ STUDIES = {  # function: its record, and what its text says
     "drop": (lambda: fs.drop(PART, drops=20), r"20 drops, [ABC] \d+"),
     "shake": (lambda: fs.shake(PART, BOWL, drops=6, seconds=0.2), r"throw number 0\.\d+: [ABC] \d+"),
     "slide": (lambda: fs.slide(BOWL, ["20 deg"]), "at 20 deg"),
-    "convey": (lambda: fs.convey(BOWL, amplitude="0.3 mm"), r"\d mm/s up the track, periodic"),
+    "convey": (lambda: fs.convey(BOWL.with_values(amplitude="0.3 mm")), r"\d mm/s up the track, periodic"),
     "floor": (lambda: fs.floor(PART, BOWL, "A", heading="10 deg"), "on A at 10 deg: "),
     "track": (lambda: fs.track(PART, BOWL, "A"), f"on A at {HEADING}"),
     "headings": (lambda: fs.headings(PART, BOWL, "A"), r"A at [\d.]+, [\d.]+ deg"),
     "design": (lambda: NONE, r"DesignStudy\(part: none - .*nearest that holds: 20/min"),
     "family": (lambda: FamilyStudy((NONE,)), r"^FamilyStudy\(none, "),
     "rate": (
-        lambda: fs.rate(PART, BOWL, "A", rule="csa", amplitude="0.3 mm"),
+        lambda: fs.rate(PART, BOWL.with_values(amplitude="0.3 mm"), "A", rule="csa"),
         HEADING + MINUTE + r", efficiency \d+",
     ),
 }
