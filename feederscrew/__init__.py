@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from feederscrew.version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from feederscrew.batch.sweep import sweep
     from feederscrew.bowl.record import Bowl
     from feederscrew.conveying.answer import Answer
     from feederscrew.designing.design import DesignSearch, design
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from feederscrew.part.loading import load
     from feederscrew.part.record import Part
     from feederscrew.rates.well_oriented import Rate
-    from feederscrew.resting.aspects import Aspects, write_names
+    from feederscrew.resting.aspects import Aspect, Aspects, write_names
     from feederscrew.resting.posture import Posture, posture
     from feederscrew.studies.arguments import read_bowl
     from feederscrew.studies.aspects import aspects, find_aspects, inertia
@@ -44,14 +45,15 @@ if TYPE_CHECKING:
     from feederscrew.thesis.reproduction import reproduce
 
 __all__ = [
-    "Answer", "Aspects", "Bowl", "ConfigError", "DesignSearch", "Faults", "FeederError", "MeshError",
-    "Part", "Posture", "Rate", "Shares", "ToolingSearch", "aspects", "calibrate", "compare", "convey",
-    "design", "drop", "find_aspects", "floor", "headings", "inertia", "load", "posture", "rate",
-    "read_bowl", "report", "reproduce", "shake", "shares", "size_bowl", "slide", "tooling", "track",
-    "trial", "tune", "write_names",
+    "Answer", "Aspect", "Aspects", "Bowl", "ConfigError", "DesignSearch", "Faults", "FeederError",
+    "MeshError", "Part", "Posture", "Rate", "Shares", "ToolingSearch", "aspects", "calibrate",
+    "compare", "convey", "design", "drop", "find_aspects", "floor", "headings", "inertia", "load",
+    "posture", "rate", "read_bowl", "report", "reproduce", "shake", "shares", "size_bowl", "slide",
+    "sweep", "tooling", "track", "trial", "tune", "write_names",
 ]  # fmt: skip
 
 HOMES = {  # module: the names that it offers
+    "batch.sweep": "sweep",
     "bowl.record": "Bowl",
     "conveying.answer": "Answer",
     "designing.design": "DesignSearch design",
@@ -59,7 +61,7 @@ HOMES = {  # module: the names that it offers
     "part.loading": "load",
     "part.record": "Part",
     "rates.well_oriented": "Rate",
-    "resting.aspects": "Aspects write_names",
+    "resting.aspects": "Aspect Aspects write_names",
     "resting.posture": "Posture posture",
     "studies.arguments": "read_bowl",
     "studies.aspects": "aspects find_aspects inertia",

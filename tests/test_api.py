@@ -65,7 +65,7 @@ def test_every_public_name_is_there_and_every_command_that_computes_has_its_func
         assert "return" in function.__annotations__, name
         assert len(parameters) <= 16, name
         for parameter in parameters.values():
-            assert parameter.kind is not parameter.VAR_KEYWORD or name == "read_bowl", name
+            assert parameter.kind is not parameter.VAR_KEYWORD or name in ("read_bowl", "sweep"), name
             assert parameter.annotation is not parameter.empty, name
 
 
@@ -115,7 +115,8 @@ WRONG = {
     "tune(p, b, 'A', '60')": "target: '60' has no unit - write 60 /min",
     "tune(p, b, None, 1)": "aspect: is None - give the name of an aspect, 'A'",
     "load('x.stl', density=7)": "density: is 7 kg/m3 - give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'",
-    "load(p)": "source: is a Part - give the path of a file",
+    "load(p)": "source: is a Part - give the path of a file, a mesh, (vertices, faces), or a solid of build123d or "
+    "cadquery",
     "convey(None)": "bowl: is None - give a Bowl, as read_bowl returns it",
     "shake(p, None)": "bowls: is None - give a Bowl, as read_bowl returns it, or several in a list",
     "shake(p, [])": "bowls: is empty - give a Bowl, as read_bowl returns it",

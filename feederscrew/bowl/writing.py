@@ -20,6 +20,7 @@ from feederscrew.errors import FeederError
 NAME = "bowl.yaml"  # what the text is called in faults
 ALWAYS = ("drive.frequency", "drive.vibration_angle")  # a machine would set them otherwise
 SHOWN = ("", "drive", "friction", "track")  # sections whose defaults stand there as comments
+SAID_AT_LEAST = "gravity"  # the key that a bowl of defaults says: no design would set it
 DIGITS = 12  # of a number in the unit of its key, where they give the same number back
 
 
@@ -45,6 +46,8 @@ def yaml_text(bowl: Bowl) -> str:
     """
     settings = bowl.settings or stated(bowl)
     own = [s for s in settings if s.is_own and s.key.field != devices.DEVICES_SECTION]
+    if not own and not bowl.devices:  # a file without a line cannot be read
+        own = [s for s in settings if s.key.name == SAID_AT_LEAST]
     given = {s.key.field for s in own}
     left_out = [s for s in settings if not s.is_own and s.key.section in SHOWN and s.key.field not in given]
     lines = ["# A vibratory bowl feeder. Lines behind '#' are defaults."]

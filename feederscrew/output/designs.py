@@ -494,9 +494,9 @@ def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
     }
 
 
-def history_figure(study: DesignStudy) -> "style.Figure":
+def history_figure(study: DesignStudy, ax: "style.Axes | None" = None) -> "style.Figure":
     """Draw every short trial of a DesignStudy: the rate it would deliver, and what it lost."""
-    figure, axes = style.chart(7.0, 3.0, x="trial", y="parts per minute", grid="y")
+    figure, axes = style.chart(7.0, 3.0, ax=ax, x="trial", y="parts per minute", grid="y")
     places = np.arange(1, len(study.attempts) + 1)
     rates = [attempt.rate / PER_MINUTE for attempt in study.attempts]
     clean = [attempt.clean for attempt in study.attempts]

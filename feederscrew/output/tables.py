@@ -159,6 +159,13 @@ def data_frame(frame: Frame) -> "DataFrame":
     return pd.DataFrame(frame)
 
 
+def joined(frames: "Iterable[DataFrame]") -> "DataFrame":
+    """Return data frames below each other as one, its rows numbered anew."""
+    import pandas as pd
+
+    return pd.concat(list(frames), ignore_index=True)
+
+
 def is_numeric(column: object) -> bool:
     """Return whether a column of a Frame holds numbers."""
     return isinstance(column, np.ndarray) and column.dtype.kind in "iuf"

@@ -1,6 +1,6 @@
 """The studies of ``feeder aspects`` and ``inertia``: how a part rests, how often, what tips it; its mass."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,7 @@ from feederscrew.arrays import Array
 from feederscrew.part.mass import MassBalance, mass_balance
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.aspects import Aspects, find, require_ground
+from feederscrew.resting.aspects import Aspect, Aspects, find, require_ground
 from feederscrew.resting.exact_tumbling import Transition, transitions
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
@@ -35,6 +35,16 @@ class AspectsStudy(ReadableRecord):
     part: Part
     aspects: Aspects
     tally: "Tally | None" = None  # of the drop test
+
+    def __len__(self) -> int:
+        return len(self.aspects)
+
+    def __iter__(self) -> Iterator[Aspect]:
+        return iter(self.aspects)
+
+    def __getitem__(self, name: str | int) -> Aspect:
+        """Return the aspect of a name, 'A', or of a place, as ``Aspects`` does."""
+        return self.aspects[name]
 
     @property
     def recommended(self) -> Recommended | None:

@@ -24,6 +24,7 @@ found: fs.Aspects = fs.find_aspects(part)
 names: tuple[str, ...] = found.names
 standing: fs.Posture = fs.posture(part, found, names[0])
 fs.write_names(part, found, Path("names.yaml"))
+one: fs.Aspect = resting["A"]
 print(fs.inertia(part).to_frame(), resting.plot("aspects"), part)
 fs.compare(part, "counts.csv", launch="drop")
 fs.calibrate(part, Path("counts.csv"))
@@ -50,6 +51,7 @@ designed: fs.Bowl | None = study.bowl
 family = fs.design([part, part], target=1.0, jobs=2)
 worst: tuple[float, float, float] = family.members[0].delivered
 fs.report(part, "A", target="60/min", bowl=bowl, gap="2 mm")
+frame = fs.sweep(fs.convey, bowl, frequency=["40 Hz", 50.0], amplitude=["0.1 mm"], jobs=2)
 fs.reproduce().to_frame("3-9")
 print(study.status, repr(answer), standing.height, rate.parts.low)
 try:
