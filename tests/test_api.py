@@ -115,8 +115,8 @@ WRONG = {
     "tune(p, b, 'A', '60')": "target: '60' has no unit - write 60 /min",
     "tune(p, b, None, 1)": "aspect: is None - give the name of an aspect, 'A'",
     "load('x.stl', density=7)": "density: is 7 kg/m3 - give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'",
-    "load(p)": "source: is a Part - give the path of a file, a mesh, (vertices, faces), or a solid of build123d or "
-    "cadquery",
+    "load(p)": "source: is a Part - give the path of a file, a mesh, (vertices, faces), or a solid of "
+    "build123d or cadquery",
     "convey(None)": "bowl: is None - give a Bowl, as read_bowl returns it",
     "shake(p, None)": "bowls: is None - give a Bowl, as read_bowl returns it, or several in a list",
     "shake(p, [])": "bowls: is empty - give a Bowl, as read_bowl returns it",
