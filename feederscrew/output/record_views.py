@@ -412,15 +412,20 @@ class Shown:
         return f'<iframe srcdoc="{escape(self.page)}" style="width:100%;height:520px;border:0"></iframe>'
 
 
-def shown(part: Part) -> Shown:
-    """Return the page of a part on each of its aspects; opened in a browser where no notebook shows it."""
+def part_page(part: Part) -> str:
+    """Return the page of a part on each of its aspects, to be turned: HTML that needs no other file."""
     from feederscrew.output import report
     from feederscrew.output.page.as_html import html as page_of
     from feederscrew.output.page.blocks import Chapter, Page
     from feederscrew.studies.aspects import aspects
 
     views = Chapter(tuple(report.aspect_views(part, aspects(part, drops=0))))
-    page = page_of(Page(part.name, _part(part), (views,), "part"))
+    return page_of(Page(part.name, _part(part), (views,), "part"))
+
+
+def shown(part: Part) -> Shown:
+    """Return the page of a part; opened in a browser where no notebook shows it."""
+    page = part_page(part)
     path = Path(tempfile.mkdtemp(prefix="feeder-")) / f"{safe_name(part.name)}.html"
     path.write_text(page, encoding="utf-8")
     if "ipykernel" not in sys.modules:
