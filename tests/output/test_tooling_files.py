@@ -218,7 +218,19 @@ def test_what_leaves_is_drawn_as_it_leaves(lying):
     off = [replace(one, falls_off=True) for one in lying[1]]
     page = tooling_figures.chain(lying[0].devices, off, even(off))
     assert len(page.axes) == len(off)
-    assert sum(text.get_text() == "meets no device" for text in page.texts) == len(off)
+    assert sum(text.get_text() == "before it meets a device" for text in page.texts) == len(off)
+
+
+def test_what_the_track_does_not_carry_is_said_to_be_returned_as_the_table_says(lying):
+    """The picture said that it meets no device, and the table that the vision reject returns it."""
+    every = [replace(one, falls_off=place == 1) for place, one in enumerate(lying[1])]
+    like = every[0].aspect, every[0].heading, 0.5e-3
+    sorter = make_device("sorter", "here", like=like, sees="outline").rewritten()
+    wide = make_device("narrowed_track", "here", limit=0.03)
+    for devices, returns in (([wide, sorter], True), ([wide], False)):
+        page = tooling_figures.chain(devices, every, even(every))
+        shown = " ".join(text.get_text() for text in page.texts)
+        assert ("falls off the track; else returned by vision reject" in shown) == returns
 
 
 def test_rails_are_cut_across_under_what_hangs():
