@@ -102,7 +102,7 @@ bench: $(READY_TO_TEST) ## what people wait for, how it grows, and the kernels, 
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 
-PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map glossary_part glossary_track glossary_chain
+PICTURES := aspects regimes drop bowl bowl_solid design design_page serve tooling trial report conveying_map glossary_part glossary_track glossary_chain
 
 docs: $(PICTURES:%=docs/%.png) docs/trial_film.gif $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
@@ -147,6 +147,13 @@ docs/trial_film.gif: parts/$(DEMO).stl docs/measured/example/bowl.yaml | $(READY
 docs/design.png: parts/$(BOLT).stl | $(READY)
 	$(FEEDER) tooling $< --aspect A -o results --quiet > /dev/null
 	cp results/$(BOLT)/tooling_3d.png $@
+
+docs/design_page.png: parts/$(BOLT).stl docs/screenshot.py | $(READY_TO_TEST)
+	$(FEEDER) design $< --target 30/min -o results --quiet > /dev/null
+	$(BIN)/python docs/screenshot.py results/$(BOLT)/design.html $@
+
+docs/serve.png: parts/$(BOLT).stl docs/serve_picture.py docs/screenshot.py | $(READY_TO_TEST)
+	$(BIN)/python docs/serve_picture.py $< $@
 
 docs/report.png: parts/$(DEMO).stl docs/screenshot.py | $(READY)
 	$(FEEDER) report $< --config configs/bowl.yaml -o results --quiet > /dev/null

@@ -63,8 +63,14 @@ def chain(part, folder, drive):
 
     Where none can be isolated, the chain that comes nearest for the most frequent one.
     """
-    bowl, nearest, own = bowls.read(None, drive), None, {"rule": RULE, "verdicts": VERDICTS}
-    first = tooling_study.tooling(part, bowl, rule=RULE, verdicts=1, seconds=1e-3)
+    bowl, nearest, own = (
+        bowls.read(None, drive),
+        None,
+        {"search": tooling_study.ToolingSearch(rule=RULE, verdicts=VERDICTS)},
+    )
+    first = tooling_study.tooling(
+        part, bowl, search=tooling_study.ToolingSearch(rule=RULE, verdicts=1, seconds=0.001)
+    )
     for k in np.argsort(-first.shares, kind="stable"):
         one = first.orientations[k]
         study = tooling_study.tooling(

@@ -98,7 +98,7 @@ def bowl(
         holding = tried if proof.holds(tried, *own) else None
         try:
             sheet = (
-                study.bowl(
+                study.size_machine(
                     settings, solid, target, **chain_options, solid=shape, as_tried=holding is not None
                 )
                 if solid and target is not None

@@ -107,7 +107,7 @@ def tune(
     find_shares = orientation.shares_finder(out, solid, share_options, chain_options)
     with out.folder_of(solid, find_shares(record).inputs, settings=settings) as folder:
         result = study(
-            solid, record, target=target, arriving=find_shares, worst=worst,
+            solid, record, target=target, aspect_shares=find_shares, worst=worst,
             progress=click.get_current_context().with_resource(progress.bar(out, "settings")).reach,
             **chain_options,
         )  # fmt: skip

@@ -4,13 +4,9 @@ import gc
 import shlex
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from feederscrew_cli import grouped, options, orientation, progress, talk
 from feederscrew_cli.options import Output, Values
-
-if TYPE_CHECKING:
-    from feederscrew.studies.arguments import BowlFile
 
 TALK = {"-q", "--quiet", "-v", "--verbose"}
 REQUEST = (
@@ -40,9 +36,7 @@ PLACE = (
 @orientation.share_options_and_seed
 @options.bowl
 @options.group("out", *PLACE, pack=Output.of_call)
-def report(
-    part: Values, request_options: Values, share_options: Values, bowl: "BowlFile", out: Output
-) -> None:
+def report(part: Values, request_options: Values, share_options: Values, bowl: Values, out: Output) -> None:
     """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
 
     Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
@@ -54,7 +48,7 @@ def report(
     report.md with its pictures beside it. A chapter that cannot be computed says why.
     """
     orientation.check_heading(request_options)
-    from feederscrew.bowl import record, verified
+    from feederscrew.bowl import read, verified
     from feederscrew.output import proof
     from feederscrew.output.report import page, write
     from feederscrew.studies.report import report as study
@@ -62,8 +56,11 @@ def report(
     solid = out.part(part)
     progress.tell_compiling(out, "conveying")
     chosen = orientation.share_keywords(share_options) | orientation.progress_keywords(out)
-    result = study(solid, bowl=bowl, **request_options, **chosen, command=repeat_command(out.arguments))
-    tried, bowl_record = verified(bowl["path"]), record(result.settings)
+    bowl_record = read(bowl["path"], bowl["overrides"])
+    result = study(
+        solid, bowl=bowl_record, **request_options, **chosen, command=repeat_command(out.arguments)
+    )
+    tried = verified(bowl["path"])
     own = solid, bowl_record, orientation.name(request_options)
     result = replace(result, as_tried=proof.holds(tried, *own))
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter

@@ -1,5 +1,6 @@
 """``feeder tooling``."""
 
+import dataclasses
 from functools import partial
 from typing import Any
 
@@ -83,7 +84,7 @@ def tooling(
     from feederscrew.output import marking
     from feederscrew.output import tooling as tables
     from feederscrew.solidbowl.exact import exact_body
-    from feederscrew.studies.tooling import check_named, tooling_without
+    from feederscrew.studies.tooling import ToolingSearch, check_named, tooling_without
     from feederscrew.studies.tooling import tooling as study
 
     orientation.check_heading(request)
@@ -94,7 +95,9 @@ def tooling(
     check_named(solid, record.track, **names)
     aspect_shares = orientation.shares(out, solid, record, share_options, request)
     with out.folder_of(solid, aspect_shares.inputs, settings=settings) as folder:
-        values = {"aspect_shares": aspect_shares.aspects, **request}
+        names_of_search = {field.name for field in dataclasses.fields(ToolingSearch)} & set(request)
+        searched = {name: request.pop(name) for name in names_of_search}
+        values = {"aspect_shares": aspect_shares.aspects, "search": ToolingSearch(**searched), **request}
         with progress.bar(out, "orientations") as bar:
             result = study(solid, record, progress=heed_interrupts(bar.reach), **values)
         if not static:

@@ -1,8 +1,8 @@
 """Bring up to date what is made from the keys of a bowl file: page, keywords of the library, configs/.
 
-The page has tables of keys and devices, from the JSON Schema; the keywords are those of `DriveSettings`.
+The page has tables of keys and devices, from the JSON Schema; the keywords are those of `BowlValues`.
 
-Example: python docs/bowl_file.py          (writes docs/bowl_file.md, studies/arguments.py and configs/)
+Example: python docs/bowl_file.py          (writes docs/bowl_file.md, bowl/values.py and configs/)
          python docs/bowl_file.py --check  (status 1, and the differences, if one is out of date)
 """
 
@@ -15,10 +15,9 @@ import generated
 
 from feederscrew.bowl import documentation
 from feederscrew.bowl.schema import BOWL_KEYS
-from feederscrew.dropping import launch_conditions
 
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
-KEYWORDS = PAGE.parent.parent / "feederscrew" / "studies" / "arguments.py"
+KEYWORDS = PAGE.parent.parent / "feederscrew" / "bowl" / "values.py"
 CONFIGS = PAGE.parent.parent / "configs"
 BEGIN, END = "    {  # written by docs/bowl_file.py\n", "    },\n    total=False,\n"
 LINE_LETTERS = 100  # of a line of keywords, without what it is set in
@@ -59,15 +58,11 @@ def between(text, name, content):
 
 
 def with_keywords(text):
-    """Return the module with a keyword for each key whose name is in one section, and is none of a launch."""
+    """Return the module with a keyword for each key whose name is in one section."""
     count = Counter(key.word for key in BOWL_KEYS)
-    words = [
-        key.word
-        for key in BOWL_KEYS
-        if count[key.word] == 1 and key.word not in launch_conditions.CONDITION_KEYS
-    ]
+    words = [key.word for key in BOWL_KEYS if count[key.word] == 1]
     before, _, rest = text.partition(BEGIN)
-    keys = textwrap.wrap(" ".join(f'"{word}":_Setting,' for word in words), LINE_LETTERS)
+    keys = textwrap.wrap(" ".join(f'"{word}":_Value,' for word in words), LINE_LETTERS)
     lines = "".join(f"        {line}\n" for line in keys).replace(":_", ": ")
     return before + BEGIN + lines + END + rest.partition(END)[2]
 

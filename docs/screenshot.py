@@ -18,14 +18,17 @@ FLAGS = (
 
 
 def take(page, picture, size=SIZE):
-    """Write what a browser shows of a page in a window of ``size`` pixels to a PNG; its exit status."""
+    """Write what a browser shows of a page, a file or an address, to a PNG of ``size``; its exit status."""
     browser = next(filter(None, map(shutil.which, NAMES)), None)
     if browser is None:
         print("no browser is installed: the picture stays as it is", file=sys.stderr)
         return 0
     with tempfile.TemporaryDirectory() as profile:
         call = [browser, *FLAGS, f"--user-data-dir={profile}", f"--window-size={size[0]},{size[1]}"]
-        call += [f"--screenshot={Path(picture).resolve()}", Path(page).resolve().as_uri()]
+        call += [
+            f"--screenshot={Path(picture).resolve()}",
+            page if str(page).startswith("http") else Path(page).resolve().as_uri(),
+        ]
         return subprocess.run(call, stderr=subprocess.DEVNULL, timeout=120).returncode
 
 

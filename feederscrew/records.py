@@ -7,11 +7,14 @@ room but the output knows what they are made of.
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from importlib import import_module
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from feederscrew.units import printable
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
@@ -60,13 +63,15 @@ class ReadableRecord:
         """
         return _view("frame")(self, name)
 
-    def plot(self, name: str | None = None) -> "Figure":
+    def plot(self, name: str | None = None, ax: "Axes | None" = None) -> "Figure":
         """Draw the picture that the command of this record writes.
 
         Parameters
         ----------
         name : str, optional
             Of a picture where there are several, 'aspects'; the first without it.
+        ax : matplotlib Axes, optional
+            To draw into, of a picture that is one chart. Without a name the first such picture is drawn.
 
         Returns
         -------
@@ -75,9 +80,34 @@ class ReadableRecord:
         Raises
         ------
         ArgumentError
-            If there is no such picture, or none at all; the line names those there are.
+            If there is no such picture, or none at all; the line names those there are. If ``ax`` is given
+            for a picture of several panels.
         """
-        return _view("plot")(self, name)
+        return _view("plot")(self, name, ax)
+
+    def save(self, folder: "str | PathLike[str]", *, pictures: bool = True) -> Path:
+        """Write the files that the command of this record writes with ``-o``.
+
+        Parameters
+        ----------
+        folder : str or Path
+            The results stand below it in a folder of the part's or the bowl's name, as with ``-o``.
+        pictures : bool
+            Whether pictures are written; tables and documents are.
+
+        Returns
+        -------
+        Path
+            The folder with the files and ``run.json``.
+
+        Raises
+        ------
+        ArgumentError
+            If no command writes files of such a record.
+        FeederError
+            If the folder cannot be written, or holds the results of another part or bowl.
+        """
+        return _view("save")(self, folder, pictures)
 
 
 def text(record: Any) -> str:

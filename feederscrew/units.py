@@ -4,6 +4,7 @@ import json
 import math
 import re
 from collections.abc import Iterable
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 from feederscrew.errors import printable as printable  # of a user's text, as a whole line
 
@@ -62,6 +63,21 @@ PLAIN_YAML = re.compile(r"(?!- )[\w.+/-]([\w.+@/% -]*[\w.+@/%-])?")
 UNIT_CHARACTERS = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N{MINUS SIGN}": "-"})
 
 
+@runtime_checkable
+class PhysicalQuantity(Protocol):
+    """A quantity of another library, such as pint: it turns itself into a unit."""
+
+    @property
+    def magnitude(self) -> Any:
+        """Its number in its own unit."""
+
+    def to(self, other: Any, /) -> Any:
+        """Return the same quantity in another unit."""
+
+
+Quantity: TypeAlias = str | float | PhysicalQuantity  # '2 mm', a number in SI units, or of pint
+
+
 class QuantityError(ValueError):
     """A text that is not a quantity of the wanted dimension: what is wrong and how to mend it."""
 
@@ -85,6 +101,41 @@ def quantity(text: str, dimension: str, *, suggest: str | None = None, bare: str
     if unit not in UNITS_BY_DIMENSION[dimension]:
         raise _wrong_unit(text.strip(), unit, dimension, suggest or next(iter(UNITS_BY_DIMENSION[dimension])))
     return number * UNITS_BY_DIMENSION[dimension][unit]
+
+
+def from_quantity(value: object, dimension: str) -> object:
+    """Return a quantity of another library as a number in SI units, and anything else as it is.
+
+    Parameters
+    ----------
+    value : object
+        What has ``to`` and ``magnitude``, as a quantity of pint; or any other value.
+    dimension : str
+        A dimension of ``UNITS_BY_DIMENSION``.
+
+    Returns
+    -------
+    float [SI], or ``value``
+
+    Raises
+    ------
+    QuantityError
+        If the quantity is of another dimension.
+    """
+    if isinstance(value, type) or not isinstance(value, PhysicalQuantity):
+        return value
+    by_unit = UNITS_BY_DIMENSION[dimension]
+    unit = next((unit for unit, scale in by_unit.items() if scale == 1.0), "")
+    one = f"1{unit}" if unit.startswith("/") else unit
+    try:
+        # powers have two stars there: kg/m3 is kg/m**3
+        return float(value.to(re.sub(r"(?<=[a-z])(?=\d)", "**", one)).magnitude)
+    except (TypeError, ValueError, AttributeError):
+        mend = f"give it in {next(iter(by_unit))}" if unit else "give a number"
+        what = (
+            f"{quantity_text(str(value))} is not {'a number' if dimension == 'number' else f'of {dimension}'}"
+        )
+        raise QuantityError(what, mend) from None
 
 
 def factor(unit: str, dimension: str) -> float:

@@ -70,6 +70,7 @@ def _early(item):
 # What `make test` does not install, and how to get it; a test that needs it skips without it.
 EXTRAS = {
     "OCP": "pip install 'feederscrew[cad]'", "pinocchio": "pip install 'feederscrew[oracle]'",
+    "pint": "pip install pint", "nbclient": "pip install 'feederscrew[docs]'",
     "chromium": "install Debian's package chromium", "prusa-slicer": "install Debian's package prusa-slicer",
 }  # fmt: skip
 

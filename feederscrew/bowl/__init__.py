@@ -36,7 +36,9 @@ def read(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ())
 
     Raises Faults: every fault of the file and of the overrides, one a line.
     """
-    return record(settings(path, overrides))
+    bowl = record(settings(path, overrides))
+    object.__setattr__(bowl, "source", None if path is None else str(path))
+    return bowl
 
 
 def default() -> Bowl:

@@ -4,7 +4,8 @@ Source: a rigid bowl on inclined leaf springs; docs/method/bowl.md.
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, ClassVar, Unpack, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +13,10 @@ from numpy.typing import ArrayLike
 from feederscrew.records import ReadableRecord
 from feederscrew.tooling.devices.base import Device
 
+if TYPE_CHECKING:
+    from feederscrew.bowl.values import BowlValues, Overrides
+
+VALUES_MODULE, WRITING_MODULE = "feederscrew.bowl.values", "feederscrew.bowl.writing"
 MAX_TRACK_WIDTH_SHARE = 0.95  # of the wall's radius: about the axis there is no track
 
 
@@ -175,6 +180,49 @@ class Bowl(ReadableRecord):
     sizing: Sizing = None  # type: ignore[assignment]
     devices: tuple[Device, ...] = ()  # along the track, in the order parts meet them
     settings: ClassVar[tuple[Any, ...]] = ()  # it was read from; of one that was changed afterwards none
+    source: ClassVar[str | None] = None  # path of its file; None of defaults
+
+    def with_values(self, overrides: "Overrides" = (), **values: "Unpack[BowlValues]") -> "Bowl":
+        """Return the same bowl with other values, ``bowl.with_values(amplitude="0.3 mm")``.
+
+        A key that takes its value from another one follows it, as in a file: with ``static`` alone, kinetic
+        friction is the same. What is given counts as the user's own: a design keeps it.
+
+        Parameters
+        ----------
+        overrides : dict, str or sequence of str
+            By the full names of keys: {'machine.leaves': 4} or 'machine.leaves=4'.
+        **values : str or float [SI] or quantity of pint
+            Keys of a bowl file by their last word. They go over the overrides. None leaves the bowl's own.
+
+        Returns
+        -------
+        Bowl
+
+        Raises
+        ------
+        FeederError
+            If a value is of another dimension or out of range, or two of them exclude each other.
+        TypeError
+            If there is no such key.
+        """
+        return cast(Bowl, import_module(VALUES_MODULE).adjusted(self, overrides, values))
+
+    def to_yaml(self) -> str:
+        """Return the bowl as the text of a bowl file, which ``read_bowl`` reads back as the same bowl.
+
+        Keys that somebody gave are lines, and defaults are comments.
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        FeederError
+            If no file can say what the bowl is: a value of it is out of range, or an array.
+        """
+        return cast(str, import_module(WRITING_MODULE).yaml_text(self))
 
 
 RIGHT_ANGLE_RAD = 0.5 * np.pi  # [rad] upright

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any, Unpack, overload
+from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -27,17 +27,29 @@ from feederscrew.part.record import Part
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
 from feederscrew.studies import arguments, solidbowl
 from feederscrew.studies import bowl as machines
-from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
 from feederscrew.studies.tooling import listed as names_of
 from feederscrew.tooling.isolating.chain import OutcomeKind
 
 
-class DesignOptions(BowlSettings, total=False):
+@dataclass(frozen=True)
+class DesignSearch:
+    """How a design is looked for and proved."""
+
+    rule: str = DesignRequest.rule  # whose probabilities are taken
+    budget: int = DesignRequest.budget  # short trials of the search, at most
+    # whether the best of each cost class is proved (steel, steady air, a sensor with a valve), and not the
+    # cheapest alone that holds
+    alternatives: bool = DesignRequest.alternatives
+    # trials of the answer with part, friction, drive and cuts drawn from their spread
+    draws: int = DesignRequest.draws
+
+
+class DesignOptions(TypedDict, total=False):
     """The keywords of ``design`` for a type checker: of one part and of several it returns two records."""
 
-    kept_keys: Collection[str]
     aspect: str | None
     heading: Quantity | None
     up: str | Sequence[str]
@@ -45,16 +57,18 @@ class DesignOptions(BowlSettings, total=False):
     without: str | Sequence[str]
     diameter: Quantity | tuple[Quantity, Quantity] | None
     tolerance: Quantity
-    rule: str
     drive: str
-    budget: int
-    alternatives: bool
-    draws: int
+    aspect_shares: Shares | None
+    search: DesignSearch | None
     seed: int
     jobs: int
-    aspect_shares: Shares | None
     progress: Callable[[str], None] | None
-    overrides: Overrides
+
+
+def _keep_keys(given: dict[str, Any], kept_keys: Collection[str]) -> None:
+    bowl = arguments.a_bowl(given.get("bowl") or bowls.default())
+    own = {setting.key.name: setting.text for setting in bowl.settings if setting.key.name in kept_keys}
+    given["bowl"] = bowl.with_values(own)
 
 
 @overload
@@ -69,13 +83,12 @@ def design(
 ) -> FamilyStudy: ...
 
 
-@with_settings
+@former_keywords(former={"kept_keys": _keep_keys}, search=DesignSearch)
 def design(
     part: Part | Sequence[Part],
     target: Quantity,
     bowl: Bowl | None = None,
     *,
-    kept_keys: Collection[str] = frozenset(),
     aspect: str | None = DesignRequest.aspect,
     heading: Quantity | None = None,
     up: str | Sequence[str] = DesignRequest.up,
@@ -83,17 +96,12 @@ def design(
     without: str | Sequence[str] = DesignRequest.without,
     diameter: Quantity | tuple[Quantity, Quantity] | None = None,
     tolerance: Quantity = DesignRequest.tolerance,
-    rule: str = DesignRequest.rule,
     drive: str = DesignRequest.drive,
-    budget: int = DesignRequest.budget,
-    alternatives: bool = DesignRequest.alternatives,
-    draws: int = DesignRequest.draws,
+    aspect_shares: Shares | None = None,
+    search: DesignSearch | None = None,
     seed: int = DesignRequest.seed,
     jobs: int = DesignRequest.jobs,
-    aspect_shares: Shares | None = None,
     progress: Callable[[str], None] | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> DesignStudy | FamilyStudy:
     """Design a bowl for a part and a rate and try it, as ``feeder design``.
 
@@ -104,9 +112,7 @@ def design(
     target : str or float [1/s]
         Parts that shall leave, '60/min'.
     bowl : Bowl, optional
-        What its file says is kept, its devices too; the rest is designed.
-    kept_keys : collection of str
-        Names of further keys of that bowl that are kept, 'track.width'.
+        What its file or ``with_values`` gave is kept, its devices too; the rest is designed.
     aspect : str, optional
         On which parts leave; the one that delivers most without it.
     heading : str or float [rad], optional
@@ -121,27 +127,18 @@ def design(
         The least and the greatest of the bowl.
     tolerance : str or float [m]
         Of the part's size, to either side.
-    rule : str
-        Whose probabilities are taken.
     drive : str
         Kind of drive: 'leaf-spring' (one magnet), 'two-axis' (two magnets) or 'any', leaf springs first.
-    budget : int
-        Short trials of the search, at most.
-    alternatives : bool
-        Whether the best of each cost class is proved (steel, steady air, a sensor with a valve), and not the
-        cheapest alone that holds.
-    draws : int
-        Trials of the answer with part, friction, drive and cuts drawn from their spread.
+    aspect_shares : Shares, optional
+        Of ``shares``; what lies on the moving floor of the designed bowl without it.
+    search : DesignSearch, optional
+        Rule, number of short trials and of draws, and whether dearer chains are proved too.
     seed : int
         Of everything that is drawn.
     jobs : int
         Cores to use; the answer does not depend on it.
-    aspect_shares : Shares, optional
-        Of ``shares``; what lies on the moving floor of the designed bowl without it.
     progress : callable, optional
         Called with what is tried, a sentence.
-    overrides, **settings
-        As for ``read_bowl``, frequency='50 Hz': they go over the bowl's own, and are kept.
 
     Returns
     -------
@@ -150,6 +147,7 @@ def design(
         devices. Of several parts a FamilyStudy: its ``members``, whether all is ``shared``, and the worst
         ``status``.
     """
+    looked = check.kind("search", search or DesignSearch(), DesignSearch, "give a DesignSearch")
     request = DesignRequest(
         target=arguments.amount("target", target, "rate", MIN_POSITIVE),
         aspect=arguments.an_aspect(aspect),
@@ -158,17 +156,17 @@ def design(
         outcome=check.choice("outcome", outcome, OutcomeKind),
         without=names_of(without),
         diameter=None if diameter is None else arguments.pair("diameter", diameter, "length"),
-        rule=rule,
+        rule=looked.rule,
         drive=check.choice("drive", drive, DriveKind),
         tolerance=arguments.amount("tolerance", tolerance, "length", 0.0),
-        budget=arguments.whole("budget", budget),
-        alternatives=bool(alternatives),
-        draws=arguments.whole("draws", draws),
+        budget=arguments.whole("budget", looked.budget),
+        alternatives=bool(looked.alternatives),
+        draws=arguments.whole("draws", looked.draws),
         seed=arguments.whole("seed", seed, 0),
         jobs=arguments.whole("jobs", jobs),
     )
-    plain = arguments.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
-    kept_keys = frozenset(kept_keys) | {setting.key.name for setting in plain.settings if setting.is_own}
+    plain = arguments.a_bowl(bowls.default() if bowl is None else bowl)
+    kept_keys = frozenset(setting.key.name for setting in plain.settings if setting.is_own)
     kept_settings = settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
         parts = [arguments.a_part(given_part) for given_part in part]
@@ -246,7 +244,7 @@ def build_machine(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     # what `feeder bowl` with the part and the rate warns of besides: it takes the drive that was tried
     target, warned = study.request.target, {*study.warnings, *checks.remarks(sheet)}
     try:
-        sized_again = machines.bowl(own_settings, study.part, target, as_tried=True)
+        sized_again = machines.size_machine(own_settings, study.part, target, as_tried=True)
         remarks = _new_remarks(sized_again, sheet, warned)
     except FeederError as fault:
         rate = f"{target * units.MINUTE:.4g}/min"
@@ -336,14 +334,14 @@ def _size_bowl(
     target = study.request.target
     for own, as_tried in ((settings, False), (tried, True)):
         try:
-            return machines.bowl(own, study.part, target, solid=wanted, as_tried=as_tried), ""
+            return machines.size_machine(own, study.part, target, solid=wanted, as_tried=as_tried), ""
         except FeederError as fault:
             why = str(fault)
     try:
-        return machines.bowl(settings, study.part, target), why
+        return machines.size_machine(settings, study.part, target), why
     except FeederError:
         plain = [s for s in settings if s.key.field != DEVICES_SECTION]
-        return machines.bowl(plain, study.part, MIN_POSITIVE), why
+        return machines.size_machine(plain, study.part, MIN_POSITIVE), why
 
 
 def _machine(machine: Machine) -> Iterator[tuple[str, str]]:

@@ -17,7 +17,7 @@ from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
 from feederscrew.tooling.devices.orientation_names import nearest
@@ -214,11 +214,13 @@ def propose_chain(
     lying = orientations.lying
     without = tuple(dict.fromkeys((*request.without, *recipe.excluded_kinds, *ON_THE_TRACK)))
     static_design = tooling(
-        part, bowl, lying[row].aspect, heading=lying[row].heading, rule=request.rule, margin=recipe.margin,
-        aspect_shares=aspects, seed=request.seed, verdicts=VERDICTS, outcome=recipe.outcome, without=without,
-        turn=recipe.turns, air=recipe.cost_class > COST_CLASSES[0],
-        purity=ENOUGH_PURITY, up=request.up,
-        play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
+        part, bowl, lying[row].aspect, heading=lying[row].heading, margin=recipe.margin,
+        aspect_shares=aspects, outcome=recipe.outcome, without=without,
+        air=recipe.cost_class > COST_CLASSES[0],
+        purity=ENOUGH_PURITY, up=request.up, play=0.0, tolerance=0.0,  # draws and the loop have them
+        search=ToolingSearch(
+            rule=request.rule, turn=recipe.turns, vary=False, seed=request.seed, verdicts=VERDICTS
+        ),
     ).design  # fmt: skip
     if static_design is None or not static_design.efficiency > 0.0:
         return None

@@ -142,7 +142,7 @@ def offers(study: AspectsStudy, *, with_graph: bool = False) -> list[offer.Offer
     return offered
 
 
-def _probability_chart(study: AspectsStudy) -> "style.Figure":
+def _probability_chart(study: AspectsStudy, ax: "style.Axes | None" = None) -> "style.Figure":
     """The probability of each of the first stable aspects: the recommended answer first, then every rule."""
     part, aspects, answer = study.part, study.aspects, study.recommended
     title = f"{part.name} (open surface)" if part.open_surface else part.name
@@ -150,9 +150,9 @@ def _probability_chart(study: AspectsStudy) -> "style.Figure":
     names = [aspects.names[row] for row in stable]
     by_rule = {rule: p[stable] for rule, p in aspects.probabilities.items()}
     if answer is None:
-        return profile_bars(names, by_rule, title=title)
+        return profile_bars(names, by_rule, title=title, ax=ax)
     shares = np.array([answer.p[stable], answer.low[stable], answer.high[stable]])
-    return answer_bars(names, shares, by_rule, title=title)
+    return answer_bars(names, shares, by_rule, title=title, ax=ax)
 
 
 PROBABILITIES = {"x": "aspect", "y": "probability [%]", "grid": "y"}
@@ -160,11 +160,13 @@ NARROW_IN, WIDE_IN = 5.2, 12.0  # [in] limits of the figure's width
 MARKS = "osD^vPX*<>hp"  # of the rules: who does not see their colours tells them apart by shape
 
 
-def profile_bars(names: Sequence[str], profiles: Mapping[str, Floats], title: str = "") -> "style.Figure":
+def profile_bars(
+    names: Sequence[str], profiles: Mapping[str, Floats], title: str = "", ax: "style.Axes | None" = None
+) -> "style.Figure":
     """Draw profiles, (A,) shares [1] by rule or experiment, grouped by the A names; NaN draws no bar."""
     width = float(np.clip(len(names) * (len(profiles) + 1.0) * 0.34 + 1.0, NARROW_IN, WIDE_IN))
     room = (width - 1.0) / (len(names) * (len(profiles) + 1.0))  # [in] of paper that a bar has
-    figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
+    figure, axes = style.chart(width, 3.4, ax=ax, title=title, **PROBABILITIES)
     places, wide, highest = np.arange(len(names)), 1.0 / (len(profiles) + 1.0), 0.0
     for place, (name, values) in enumerate(profiles.items()):
         label, colour = style.method(name, place)
@@ -176,12 +178,16 @@ def profile_bars(names: Sequence[str], profiles: Mapping[str, Floats], title: st
     style.named_ticks(axes, places, names)
     reach = max(0.5 * len(names), 1.0) + 0.5 * wide
     axes.set(xlim=(places.mean() - reach, places.mean() + reach), ylim=(0.0, highest * 1.14))
-    style.legend(figure, ncols=min(len(profiles), 6))
+    style.legend(figure, ax=ax, ncols=min(len(profiles), 6))
     return figure
 
 
 def answer_bars(
-    names: Sequence[str], answer: Floats, profiles: Mapping[str, Floats], title: str = ""
+    names: Sequence[str],
+    answer: Floats,
+    profiles: Mapping[str, Floats],
+    title: str = "",
+    ax: "style.Axes | None" = None,
 ) -> "style.Figure":
     """Draw the recommended answer with its interval as a bar, and every rule as a small mark beside it.
 
@@ -189,7 +195,7 @@ def answer_bars(
     (A,) probabilities [1] by rule.
     """
     width = float(np.clip(len(names) + 1.0, NARROW_IN, WIDE_IN))
-    figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
+    figure, axes = style.chart(width, 3.4, ax=ax, title=title, **PROBABILITIES)
     places, (share, low, high) = np.arange(len(names)), 100.0 * np.asarray(answer, dtype=float)
     bars = axes.bar(places - 0.22, share, 0.3, color=style.ANSWER, label="recommended, with interval")
     reach = np.maximum([share - low, high - share], 0.0)
@@ -206,7 +212,7 @@ def answer_bars(
     style.named_ticks(axes, places, names)
     axes.set_xlim(-0.55, len(names) - 0.45)
     axes.set_ylim(0.0, 1.12 * np.nanmax(highest))
-    style.legend(figure, handles=handles, ncols=5 if width >= 6.0 else 3, fontsize=7.5)
+    style.legend(figure, ax=ax, handles=handles, ncols=5 if width >= 6.0 else 3, fontsize=7.5)
     return figure
 
 

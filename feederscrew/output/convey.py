@@ -354,10 +354,10 @@ def velocity_map(grid: Grid, curve: Sequence[Floats] | None = None) -> "style.Fi
     return figure
 
 
-def _curve(study: ConveyCurve, title: str) -> "style.Figure":
+def _curve(study: ConveyCurve, title: str, ax: "style.Axes | None" = None) -> "style.Figure":
     frame = points(study)
     column = next(iter(frame))
-    figure, axes = style.chart(title=title, x=tables.title(column), y="velocity [mm/s]")
+    figure, axes = style.chart(ax=ax, title=title, x=tables.title(column), y="velocity [mm/s]")
     x = frame[column]
     low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]
     if (high > low).any():

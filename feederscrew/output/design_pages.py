@@ -145,7 +145,7 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
     yield Table(tables.quantities(designs.outcome(d, study.devices)))
     if study.alternatives:
         yield Heading("Cheapest first: steel (1), steady air (2), a sensor with a valve (3)")
-        yield Table(designs.alternatives(study))
+        yield Table(designs.short_alternatives(study))
     if d["bowl"]:
         yield Table(tables.quantities(designs.dimensions(d)))
     if study.risks:

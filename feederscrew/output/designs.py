@@ -30,6 +30,7 @@ from feederscrew.output.tooling import settings_lines
 from feederscrew.part.record import Part
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -149,6 +150,22 @@ def alternatives(study: DesignStudy) -> Frame:
     return tables.of_rows(rows, names.split())
 
 
+def short_alternatives(study: DesignStudy) -> Frame:
+    """Return the best of each cost class for a page: its devices are in words."""
+    chains = ["; ".join(option.chain_words or option.chain) or "none" for option in study.alternatives]
+    return tables.frame(alternatives(study) | {"chain": chains})
+
+
+def short_device(text: str) -> str:
+    """Return a device of a bowl file for a page: 'narrowed track 13.35 mm' of 'narrowed_track: 13.35 mm'.
+
+    Of one with several values it is the name alone: the drawings have them.
+    """
+    kind, _, value = text.partition(": ")
+    name = (KINDS[kind].trade if kind in KINDS else "") or kind.replace("_", " ")
+    return name if value.startswith(("{", "[")) else f"{name} {value}".rstrip()
+
+
 def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
     """Return the rows of a long ride as a table."""
     becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
@@ -253,9 +270,7 @@ def short_attempts(study: DesignStudy) -> Frame:
     """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
     chains = []
     for attempt in study.attempts:
-        pairs = (device.partition(": ")[::2] for device in attempt.chain)
-        brief = (kind if value.startswith(("{", "[")) else f"{kind} {value}" for kind, value in pairs)
-        chains.append(", ".join(brief) or "none")
+        chains.append(", ".join(map(short_device, attempt.chain)) or "none")
     history = attempts(study).without(["peak_to_peak_mm"])  # the throw number says as much
     return tables.frame(history | {"chain": chains})
 
@@ -498,9 +513,9 @@ def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
     }
 
 
-def history_figure(study: DesignStudy) -> "style.Figure":
+def history_figure(study: DesignStudy, ax: "style.Axes | None" = None) -> "style.Figure":
     """Draw every short trial of a DesignStudy: the rate it would deliver, and what it lost."""
-    figure, axes = style.chart(7.0, 3.0, x="trial", y="parts per minute", grid="y")
+    figure, axes = style.chart(7.0, 3.0, ax=ax, x="trial", y="parts per minute", grid="y")
     places = np.arange(1, len(study.attempts) + 1)
     rates = [attempt.rate / PER_MINUTE for attempt in study.attempts]
     clean = [attempt.clean for attempt in study.attempts]
@@ -514,15 +529,19 @@ def history_figure(study: DesignStudy) -> "style.Figure":
             handles.append(bars[clean.index(good)])
             labels.append(words[good])
     letters = {"ha": "center", "va": "bottom", "fontsize": 7 if len(rates) < 12 else 5.5}
+    highest = max([target, *rates])
     for place, rate, attempt in zip(places, rates, study.attempts):
-        axes.text(place, rate, attempt.wanted, **letters)
+        # over a bar that is none there is room for a word that stands upright, and for no other
+        low = rate < LOW_BAR * highest and len(rates) > 1
+        axes.text(place, rate, attempt.wanted, **(letters | ({"rotation": 90} if low else {})))
     axes.set_xticks(places)
     axes.set_xlim(0.4, max(len(places), 8) + 0.6)  # a single one is a bar, not a block
-    axes.set_ylim(0.0, 1.12 * max([target, *rates]))
+    axes.set_ylim(0.0, 1.12 * highest)
     axes.legend(handles, labels, ncols=3, **(style.LEGEND | {"loc": "lower left", "bbox_to_anchor": (0, 1)}))
     return figure
 
 
+LOW_BAR = 0.06  # [1] of the highest: neighbours' labels would stand on one line
 RISK_PICTURE_PX, HEIGHT, CAPTION, EDGE = 460, 300, 34, 12  # pixels
 THIN, OVER = 0.05, 0.3  # of a part's size: how thick walls are drawn; how far they go on
 VIEWS = {"shingles": (-0.25, -1.0, 0.25), "wedges": (-0.45, -0.35, 1.0)}  # from where, along, across and up

@@ -125,7 +125,7 @@ def offers(study: DropStudy) -> list[offer.Offer]:
     return offered
 
 
-def counts_figure(study: DropStudy) -> "style.Figure":
+def counts_figure(study: DropStudy, ax: "style.Axes | None" = None) -> "style.Figure":
     """Draw the chart of a drop test with its intervals; the shares by every rule are marks."""
     result, names = study.result, study.aspects.names
     tally = result.tally
@@ -133,7 +133,7 @@ def counts_figure(study: DropStudy) -> "style.Figure":
     title += f", {tally.unsettled} unsettled" if tally.unsettled else ""
     title += ", partial" * result.drops.partial
     places, width = np.arange(len(names)), float(np.clip(0.9 * len(names) + 2.0, 5.2, 12.0))
-    figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
+    figure, axes = style.chart(width, 3.4, ax=ax, title=title, **PROBABILITIES)
     # bars with 95 % intervals, the band from gentle to violent launches behind
     low = 100.0 * np.minimum(tally.gentle, tally.violent)
     high = 100.0 * np.maximum(tally.gentle, tally.violent)
@@ -147,7 +147,7 @@ def counts_figure(study: DropStudy) -> "style.Figure":
         look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
         axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
     style.named_ticks(axes, places, names, length=3.0)
-    style.legend(figure, ncols=min(len(study.rules) + 2, 6))
+    style.legend(figure, ax=ax, ncols=min(len(study.rules) + 2, 6))
     return figure
 
 
@@ -406,12 +406,14 @@ def toss_offers(study: TossStudy) -> list[offer.Offer]:
     return offered
 
 
-def _toss_plan(study: TossStudy, ends: Points, distances: Floats) -> "style.Figure":
+def _toss_plan(
+    study: TossStudy, ends: Points, distances: Floats, ax: "style.Axes | None" = None
+) -> "style.Figure":
     faces, computed, measured_faces = study.result.faces, study.result.places / MM, study.launches.faces
     measured = ends[: len(computed)] / MM
     median = np.nanmedian(distances) / MM
     title = f"{study.part.name}: {len(computed)} tosses, median distance {median:.3g} mm"
-    figure, axes = style.chart(6.4, 5.6, title=title, x="x [mm]", y="y [mm]")
+    figure, axes = style.chart(6.4, 5.6, ax=ax, title=title, x="x [mm]", y="y [mm]")
     axes.set_aspect("equal")
     axes.plot(*np.stack([measured, computed]).transpose(2, 0, 1), color=style.FAINT, linewidth=0.8, zorder=1)
     kinds = np.full(len(faces), 2)
@@ -428,5 +430,5 @@ def _toss_plan(study: TossStudy, ends: Points, distances: Floats) -> "style.Figu
             look = {"marker": marker, "color": colour, "s": 18, "linewidths": 0.0}
             axes.scatter(*computed[kinds == kind].T, label=f"computed, {label}", **look)
     axes.scatter(*measured.T, marker=".", s=6, color=style.INK, label="measured")
-    style.legend(figure, ncols=3)
+    style.legend(figure, ax=ax, ncols=3)
     return figure

@@ -270,12 +270,12 @@ def offers(study: FloorStudy) -> list[offer.Offer]:
     return offered
 
 
-def _map(study: FloorStudy, kind: str, title: str) -> "style.Figure":
+def _map(study: FloorStudy, kind: str, title: str, ax: "style.Axes | None" = None) -> "style.Figure":
     over, labels, _, own_point = MAPS[kind]
     grid = over(study, PICTURE_CELLS)
     return regime_map(
         grid, "acceleration_z_m_s2", title=title, labels=labels, value="acceleration V'_z [m/s²]",
-        bowl_point=own_point(study.bowl), note=_map_notes(kind, grid),
+        bowl_point=own_point(study.bowl), note=_map_notes(kind, grid), ax=ax,
     )  # fmt: skip
 
 
@@ -283,14 +283,18 @@ PART, CONTACT = "#dfe6ec", style.ACCENT
 DRIVE, FRICTION, MOTION, NORMAL = "#0072b2", "#b5482a", "#2f7d5b", "#5b3a8e"
 
 
-def plan(posture: Posture, heading: float, motion: FloorMotion) -> "style.Figure":
+def plan(
+    posture: Posture, heading: float, motion: FloorMotion, ax: "style.Axes | None" = None
+) -> "style.Figure":
     """Draw the part from above at the upper reversal, a FloorMotion, at a heading [rad], with its forces."""
     spread = np.ptp(turned(posture.outline, heading), axis=0)
     aspect = f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
     state = MOTION_STATES[int(motion.state)]
     title = f"{aspect}, heading {np.degrees(heading):.4g}° at the upper reversal: {state}"
     height = 1.5 + 5.0 * float(np.clip(1.3 * spread[1] / spread[0], 0.5, 1.0))
-    figure, axes = style.chart(6.4, height, title=title, x="x in the floor [mm]", y="y in the floor [mm]")
+    figure, axes = style.chart(
+        6.4, height, ax=ax, title=title, x="x in the floor [mm]", y="y in the floor [mm]"
+    )
     size = np.ptp(posture.outline, axis=0).max() / MM
     outline, contact = turned(posture.outline, heading) / MM, turned(posture.contact, heading) / MM
     polygon(axes, outline)
@@ -325,7 +329,7 @@ def plan(posture: Posture, heading: float, motion: FloorMotion) -> "style.Figure
         handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.ROLLING_AXIS_LINE))
     axes.set_aspect("equal")
     axes.margins(0.4, 0.24)
-    style.legend(figure, handles=handles, ncols=len(handles), labelcolor=style.INK)
+    style.legend(figure, ax=ax, handles=handles, ncols=len(handles), labelcolor=style.INK)
     return figure
 
 
@@ -376,11 +380,11 @@ def dress_phases(figure: "style.Figure", panels: Sequence["style.Axes"], phase: 
     style.legend(figure, handles=handles, ncols=len(handles))
 
 
-def _alignment_figure(study: FloorStudy, title: str) -> "style.Figure":
+def _alignment_figure(study: FloorStudy, title: str, ax: "style.Axes | None" = None) -> "style.Figure":
     """The alignment acceleration over the heading, where known by print, with the stable heading."""
     grid, direction = _alignment(study), float(np.degrees(study.stable_heading))
     labels = {"x": "heading θ [deg]", "y": "alignment acceleration θ'' [rad/s²]"}
-    figure, axes = style.chart(6.4, 3.8, title=title, **labels)
+    figure, axes = style.chart(6.4, 3.8, ax=ax, title=title, **labels)
     if (printed := grid.get("published_alignment_rad_s2")) is not None:
         label = "as published [4.17], sliding or not"
         axes.plot(grid["heading_deg"], printed, color=style.SPARE_COLOURS[3], linestyle="--", label=label)
@@ -444,14 +448,14 @@ HATCH_COLOUR = "#8d979f"
 
 def regime_map(
     grid: Grid, column: str, *, title: str, labels: Sequence[str], value: str,
-    bowl_point: Sequence[float] | None = None, note: Sequence[str] = (),
+    bowl_point: Sequence[float] | None = None, note: Sequence[str] = (), ax: "style.Axes | None" = None,
 ) -> "style.Figure":  # fmt: skip
     """Draw a column of a Grid in colour with contour lines, and every region where it means something else.
 
     ``labels`` are those of the two axes, ``value`` that of the colour bar. ``bowl_point`` is the bowl's own
     point in the axes' units. Each ``note`` is a line under the title.
     """
-    figure, axes = style.chart(6.8, 4.8, title=title, x=labels[0], y=labels[1], grid="none")
+    figure, axes = style.chart(6.8, 4.8, ax=ax, title=title, x=labels[0], y=labels[1], grid="none")
     x, y, values = grid.first.in_unit, grid.second.in_unit, np.asarray(grid.values[column]).T
     if np.isfinite(values).any():
         places = [grid.names.index(name) for name in COVERED_REGIMES if name in grid.names]
@@ -484,7 +488,7 @@ def regime_map(
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     if regions:
         with matplotlib.rc_context(hatching):
-            style.legend(figure, "lower left", handles=regions, ncols=len(regions))
+            style.legend(figure, "lower left", ax=ax, handles=regions, ncols=len(regions))
     return figure
 
 

@@ -1,25 +1,38 @@
 """The answer, the table and the picture of a record: what a notebook shows."""
 
 import base64
+import inspect
 import math
+import sys
+import tempfile
+import webbrowser
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from html import escape
 from importlib import import_module
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from feederscrew import bowl as bowls
+from feederscrew import check
 from feederscrew.arrays import Array, Floats
 from feederscrew.bowl import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import MOTION_STATES
 from feederscrew.output import offers, style, tables
+from feederscrew.output.columns import conditions
+from feederscrew.output.folder import ResultFolder, safe_name
+from feederscrew.output.offers import Offer
 from feederscrew.part.record import Part
+from feederscrew.studies.arguments import settings_of
 from feederscrew.units import DEGREE, GRAM, MINUTE, MM, counted, listed, printable
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
@@ -34,6 +47,7 @@ if TYPE_CHECKING:
     from feederscrew.studies.drop import PlateStudy
     from feederscrew.studies.floor import FloorStudy
     from feederscrew.studies.headings import HeadingsStudy
+    from feederscrew.studies.report import ReportStudy
     from feederscrew.studies.slide import SlideStudy
     from feederscrew.studies.tooling import ToolingStudy
     from feederscrew.studies.track import TrackStudy
@@ -44,7 +58,7 @@ if TYPE_CHECKING:
 shading = heavy("feederscrew.output.shading")
 PERCENT = 0.01  # [SI]
 MOST_SHARES = 8  # aspects in a line
-View = Callable[[], Any]  # makes the frame or the figure of an offer
+View = Callable[..., Any]  # makes the frame or the figure of an offer
 VIEW_PX = 360, 280  # [px] of a part
 
 
@@ -232,6 +246,31 @@ def _inertia(study: "InertiaStudy") -> str:
     return f"{study.part.name}: {mass} g, centre of mass {centre} mm, principal moments {moments} g mm2"
 
 
+def _design_files(study: "DesignStudy") -> list[Offer]:
+    """The files of a design, with the machine below its bowl."""
+    from feederscrew.designing.design import Built, build_machine, with_machine
+    from feederscrew.output import design_pages
+
+    settings = () if study.bowl is None else settings_of(study.bowl)
+    built = Built() if study.partial else build_machine(study, settings)
+    return design_pages.offers(with_machine(study, built), settings, built)
+
+
+def _tooling_files(study: "ToolingStudy") -> list[Offer]:
+    """The files of tooling, with a bowl file that says what the study's bowl is."""
+    from feederscrew.output import tooling
+
+    return tooling.offers(study, settings_of(study.bowl))
+
+
+def _report_files(study: "ReportStudy") -> list[Offer]:
+    """The page of a report."""
+    from feederscrew.output import report
+    from feederscrew.output.page.as_html import html as page_of
+
+    return [offers.text("report.html", lambda: page_of(report.page(study)))]
+
+
 @dataclass(frozen=True)
 class RecordView:
     """How a record is shown: its answer in a line, and what offers the files of its command."""
@@ -239,6 +278,8 @@ class RecordView:
     line: Callable[[Any], str] | None = None
     offers: str = ""  # module of ``output`` and its function, '' of a record that is no study
     arguments: tuple[Any, ...] = ()  # that it is handed as well
+    command: str = ""  # under which the files are recorded; '' : the module of ``output``
+    files: Callable[[Any], list[Offer]] | None = None  # what is saved, where that takes more
 
 
 VIEWS = {  # by the name of the record's class
@@ -258,25 +299,27 @@ VIEWS = {  # by the name of the record's class
     "TrackStudy": RecordView(_track, "track.offers"),
     "Rate": RecordView(_rate),
     "RateStudy": RecordView(lambda x: f"{x.part.name} {_rate(x.rate)}", "rate.offers"),
-    "TuneStudy": RecordView(_tune, "rate.tune_offers"),
-    "MachineSheet": RecordView(_machine, "machine.offers"),
-    "ToolingStudy": RecordView(_tooling, "tooling.offers", ((),)),
+    "TuneStudy": RecordView(_tune, "rate.tune_offers", (), "tune"),
+    "MachineSheet": RecordView(_machine, "machine.offers", (), "bowl"),
+    "ToolingStudy": RecordView(_tooling, "tooling.offers", ((),), "tooling", _tooling_files),
     "TrialStudy": RecordView(_trial, "trial.tables.offers"),
-    "DesignStudy": RecordView(_design, "design_pages.offers", ((),)),
-    "FamilyStudy": RecordView(_family, "design_pages.family_offers"),
+    "DesignStudy": RecordView(_design, "design_pages.offers", ((),), "design", _design_files),
+    "FamilyStudy": RecordView(_family, "design_pages.family_offers", (), "design"),
     "CompareStudy": RecordView(
         lambda x: f"{x.part.name}: {counted(len(x.rules), 'rule')} beside counts of {x.measured.source}",
         "compare.offers",
     ),
     "SetsStudy": RecordView(None, "compare.sets_offers"),
     "FeedingStudy": RecordView(None, "compare.offers"),
-    "CalibrateStudy": RecordView(_calibrate, "compare.calibration_offers"),
+    "CalibrateStudy": RecordView(_calibrate, "compare.calibration_offers", (), "calibrate"),
     "DropStudy": RecordView(
         lambda x: f"{x.part.name}: {x.drops} drops, {_shares(x.aspects.names, x.tally.p)}", "drop.offers"
     ),
-    "PlateStudy": RecordView(_plate, "plate.offers"),
+    "PlateStudy": RecordView(_plate, "plate.offers", (), "drop"),
     "InertiaStudy": RecordView(_inertia, "inertia.offers"),
-    "ReportStudy": RecordView(lambda x: f"{x.part.name} {_aspects(x.shares.aspects)}"),
+    "ReportStudy": RecordView(
+        lambda x: f"{x.part.name} {_aspects(x.shares.aspects)}", "", (), "report", _report_files
+    ),
 }
 
 
@@ -291,13 +334,7 @@ def frame(record: object, name: str | None = None) -> "DataFrame":
     offered = _views_of(record, ".csv")
     if name is not None or offered:
         return tables.data_frame(_choose_view(record, offered, name, "table")())
-    # numbers and words of the document that a command writes where it writes no table
-    numbers: dict[str, Any] = {}
-    for item in _offers_of(record):
-        if isinstance(item, offers.Offer) and item.name.endswith(".json") and item.view is not None:
-            numbers = {key: value for key, value in item.view().items() if _single(value)}
-            break
-    numbers = numbers or _numbers(record)
+    numbers = _document_numbers(record) or _numbers(record)
     # arrays of one length are columns where a record has rows, else its single numbers are one row
     lengths = [len(value) for name, value in numbers.items() if not _single(value) and "." not in name]
     rows = max(set(lengths), key=lengths.count, default=0)
@@ -308,9 +345,92 @@ def frame(record: object, name: str | None = None) -> "DataFrame":
     return tables.data_frame(tables.frame(columns))
 
 
-def plot(record: object, name: str | None = None) -> "Figure":
+def row(record: object) -> "DataFrame":
+    """Return a record in one row: the numbers and words of the document that its command writes.
+
+    Of a record without such a document it is its table.
+    """
+    numbers = _document_numbers(record)
+    return tables.data_frame(tables.frame({k: [v] for k, v in numbers.items()})) if numbers else frame(record)
+
+
+def _document_numbers(record: object) -> dict[str, Any]:
+    """Single numbers and words of the document of a record's command; none where it writes none."""
+    for item in _offers_of(record):
+        if item.name.endswith(".json") and item.view is not None:
+            return {key: value for key, value in item.view().items() if _single(value)}
+    return {}
+
+
+def plot(record: object, name: str | None = None, ax: "Axes | None" = None) -> "Figure":
     """Return a picture of a record as a matplotlib Figure, as ``records.ReadableRecord.plot`` says."""
-    return _choose_view(record, _views_of(record, ".png"), name, "picture")()
+    views = _views_of(record, ".png")
+    if ax is None:
+        return _choose_view(record, views, name, "picture")()
+    into = {key: view for key, view in views.items() if "ax" in inspect.signature(view).parameters}
+    if name in views and name not in into:
+        mend = f"leave it out, or draw {listed(list(into))}" if into else "leave it out"
+        raise ArgumentError("ax", f"picture {name!r} has several panels", mend)
+    return _choose_view(record, into, name, "picture of one chart")(ax=ax)
+
+
+def save(record: Any, folder: str | PathLike[str], pictures: bool = True) -> Path:
+    """Write the files of a record's command, as ``records.ReadableRecord.save`` says."""
+    view = _view_of(record)
+    if view.files is None and not view.offers:
+        what = f"no command writes files of a {type(record).__name__}"
+        raise ArgumentError("folder", what, "save the record that a command gives")
+    order, bowl = getattr(record, "order", None), getattr(record, "bowl", None)  # an order of a machine
+    part = getattr(record if order is None else order, "part", None)
+    source = None if bowl is None else bowl.source
+    inputs = {} if part is None else dict(part.inputs)
+    inputs |= getattr(record, "inputs", {}) | bowls.identity(source)
+    place = ResultFolder(
+        check.path("folder", folder), bowls.name(source) if part is None else part.name, inputs
+    )
+    offers.write(place, _offers_of(record) if view.files is None else view.files(record), pictures=pictures)
+    effective = ({} if part is None else conditions(part)) | (
+        {} if bowl is None else bowls.texts(settings_of(bowl))
+    )
+    warnings = [str(line) for line in getattr(record, "warnings", ())]
+    place.keep(view.command or view.offers.partition(".")[0], effective=effective, warnings=warnings)
+    return place.path
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A page that shows a part, to be turned."""
+
+    path: Path
+    page: str
+
+    def __repr__(self) -> str:
+        return f"Shown({str(self.path)!r})"
+
+    def _repr_html_(self) -> str:
+        """Return the page in a frame, as a notebook shows it."""
+        return f'<iframe srcdoc="{escape(self.page)}" style="width:100%;height:520px;border:0"></iframe>'
+
+
+def part_page(part: Part) -> str:
+    """Return the page of a part on each of its aspects, to be turned: HTML that needs no other file."""
+    from feederscrew.output import report
+    from feederscrew.output.page.as_html import html as page_of
+    from feederscrew.output.page.blocks import Chapter, Page
+    from feederscrew.studies.aspects import aspects
+
+    views = Chapter(tuple(report.aspect_views(part, aspects(part, drops=0))))
+    return page_of(Page(part.name, _part(part), (views,), "part"))
+
+
+def shown(part: Part) -> Shown:
+    """Return the page of a part; opened in a browser where no notebook shows it."""
+    page = part_page(part)
+    path = Path(tempfile.mkdtemp(prefix="feeder-")) / f"{safe_name(part.name)}.html"
+    path.write_text(page, encoding="utf-8")
+    if "ipykernel" not in sys.modules:
+        webbrowser.open(path.as_uri())
+    return Shown(path, page)
 
 
 def html(record: object) -> str:

@@ -136,8 +136,8 @@ def offers(study: SlideStudy) -> list[offer.Offer]:
         "regimes": (regimes, "Regimes of a part over its heading and the acceleration ratio"),
     }
 
-    def draw_fine(draw: Callable[[SlideMap], "Figure"], place: int) -> "Figure":
-        return draw(fine()[place])
+    def draw_fine(draw: Callable[..., "Figure"], place: int, ax: "Axes | None" = None) -> "Figure":
+        return draw(fine()[place]) if ax is None else draw(fine()[place], ax)
 
     pictures = [
         offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, draw_fine, draw, place)
@@ -145,7 +145,7 @@ def offers(study: SlideStudy) -> list[offer.Offer]:
         for kind, (draw, alt) in draws.items()
     ]
     alt = "Limiting friction of an aligned part"
-    pictures.append(offer.picture("slide_curves.png", alt, lambda: curves(fine())))
+    pictures.append(offer.picture("slide_curves.png", alt, lambda ax=None: curves(fine(), ax)))
     return [offer.table("slide.csv", _cells, study.maps), *pictures]
 
 
@@ -174,9 +174,9 @@ def surface(slide: SlideMap) -> "Figure":
     return figure
 
 
-def contours(slide: SlideMap) -> "Figure":
+def contours(slide: SlideMap, ax: "Axes | None" = None) -> "Figure":
     """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point."""
-    figure, axes = _map_axes(slide, "Limiting friction")
+    figure, axes = _map_axes(slide, "Limiting friction", ax)
     friction = slide.grid.values["mu_limit"]
     x, y = slide.grid.first.in_unit, slide.grid.second.values
     # contour lines, each with its value written at an angle: those that the map reaches
@@ -200,9 +200,9 @@ def contours(slide: SlideMap) -> "Figure":
     return figure
 
 
-def regimes(slide: SlideMap) -> "Figure":
+def regimes(slide: SlideMap, ax: "Axes | None" = None) -> "Figure":
     """Draw what the bowl's own friction allows in each cell, with the bowl's own point."""
-    figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
+    figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}", ax)
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
     shades = mpl_colors.to_rgba_array([SLIDE_COLOURS[name] for name in slide.grid.names])
     cells = (255.0 * shades).round().astype(np.uint8)[slide.grid.codes.T]
@@ -218,14 +218,14 @@ def regimes(slide: SlideMap) -> "Figure":
         if shares[name] > 0
     ]
     if patches:
-        style.legend(figure, "lower left", handles=patches, ncols=len(patches))
+        style.legend(figure, "lower left", ax=ax, handles=patches, ncols=len(patches))
     return figure
 
 
-def curves(slides: Sequence[SlideMap]) -> "Figure":
+def curves(slides: Sequence[SlideMap], ax: "Axes | None" = None) -> "Figure":
     """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28]."""
     first, title = slides[0], "Limiting friction of an aligned part, α = θ"
-    figure, axes = style.chart(6.4, 4.2, title=title, x=RATIO, y=FRICTION)
+    figure, axes = style.chart(6.4, 4.2, ax=ax, title=title, x=RATIO, y=FRICTION)
     for slide, shade in zip(slides, _shades(len(slides))):  # forward limit [4.28] and, dashed, backward limit
         aligned, ratios = np.abs(slide.grid.first.values).argmin(), slide.grid.second.values
         forward, backward = (slide.grid.values[name][aligned] for name in ("mu_limit", "mu_backward"))
@@ -240,13 +240,13 @@ def curves(slides: Sequence[SlideMap]) -> "Figure":
     own = f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}"
     _note_point(axes, (first.ratio, first.friction), own, drop=9)
     axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN_LABEL)
-    style.legend(figure, "lower left", ncols=min(len(slides), 3) + 1, labelcolor=style.INK)
+    style.legend(figure, "lower left", ax=ax, ncols=min(len(slides), 3) + 1, labelcolor=style.INK)
     return figure
 
 
-def _map_axes(slide: SlideMap, title: str) -> tuple["Figure", "Axes"]:
+def _map_axes(slide: SlideMap, title: str, ax: "Axes | None") -> tuple["Figure", "Axes"]:
     title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
-    figure, axes = style.chart(6.4, 4.6, title=title, x=ANGLE, y=RATIO, grid="none")
+    figure, axes = style.chart(6.4, 4.6, ax=ax, title=title, x=ANGLE, y=RATIO, grid="none")
     widest = slide.grid.first.in_unit[-1]
     axes.set(xlim=(-widest, widest), ylim=(0, slide.grid.second.values[-1]))
     axes.set_xticks(np.linspace(-widest, widest, 7))

@@ -41,8 +41,15 @@ def figure(width: float = 6.4, height: float = 4.0) -> Any:
     return drawn
 
 
-def chart(width: float = 6.4, height: float = 4.0, **labels: Any) -> tuple[Any, Any]:
-    """Return such a figure and its only Axes, with ``labels`` as ``tidy`` takes them."""
+def chart(
+    width: float = 6.4, height: float = 4.0, *, ax: "Axes | None" = None, **labels: Any
+) -> tuple[Any, Any]:
+    """Return such a figure and its only Axes, or a user's own ``ax`` and its figure.
+
+    ``labels`` are as ``tidy`` takes them.
+    """
+    if ax is not None:
+        return ax.figure, tidy(ax, **labels)
     drawn = figure(width, height)
     return drawn, tidy(drawn.add_subplot(), **labels)
 
@@ -155,8 +162,11 @@ def note(axes: "Axes", text: str, place: Place, shift: Place = (0, 0), **look: A
     return axes.annotate(text, (x, y), (right, up), **usual | look)
 
 
-def legend(figure: "Figure", where: str = "lower center", **look: Any) -> None:
-    """Write the legend of a figure outside of its Axes, without a frame."""
+def legend(figure: "Figure", where: str = "lower center", ax: "Axes | None" = None, **look: Any) -> None:
+    """Write the legend of a figure outside of its Axes, without a frame; into a user's own ``ax``."""
+    if ax is not None:  # what else stands in that figure is not known
+        ax.legend(**({"frameon": False, "fontsize": 7} | look | {"ncols": 1}))
+        return
     figure.legend(**({"loc": f"outside {where}", "frameon": False, "fontsize": 8} | look))
 
 

@@ -27,7 +27,7 @@ COLUMN_UNITS = {  # the end of a column's name, the longest first, and how a hea
 }  # fmt: skip
 INTERVAL = ".."  # ends the name of a value with an interval
 UNIT_SIZES = {unit: size for units_of in units.UNITS_BY_DIMENSION.values() for unit, size in units_of.items()}
-SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ...
+SHARES = ("share", "efficiency", "purity", "yield")  # last words of columns of shares ...
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
 TABLE_DIGITS = 4  # significant, in a table for people
 GAP, LEAST = "  ", 12  # between columns; letters that a column always has
@@ -157,6 +157,13 @@ def data_frame(frame: Frame) -> "DataFrame":
     import pandas as pd
 
     return pd.DataFrame(frame)
+
+
+def joined(frames: "Iterable[DataFrame]") -> "DataFrame":
+    """Return data frames below each other as one, its rows numbered anew."""
+    import pandas as pd
+
+    return pd.concat(list(frames), ignore_index=True)
 
 
 def is_numeric(column: object) -> bool:

@@ -77,6 +77,8 @@ def chain(
         through = all(passage.verdict.passes > 0.0 for passage in passages)
         if through:
             word = track_sections.passage_fate(orientation, passages)
+            if orientation.returned and (other := _would_return(placed, orientation, orientations)):
+                word = f"{word}; else returned by {other.name}"
         else:
             word = f"{passages[-1].fate} by {passages[-1].device.name}"
         colour = PASSED_COLOUR if through and word.startswith("leaves") else REJECTED_COLOUR
@@ -94,8 +96,16 @@ def chain(
         if orientation.returned:  # by the bare track
             cell = left + FATE_COLUMN_PX, top, column, ROW
             _draw_from_above(_axes(page, cell, size, True), orientation, None, None, REJECTED_COLOUR)
-            write_text(page, cell[0] + 8, top + ROW - 12, "meets no device", colour=REJECTED_COLOUR)
+            write_text(page, cell[0] + 8, top + ROW - 12, "before it meets a device", colour=REJECTED_COLOUR)
     return page
+
+
+def _would_return(
+    devices: Sequence[Device], orientation: Orientation, orientations: Sequence[Orientation]
+) -> Device | None:
+    """The first device that returns an orientation, should the bare track carry it after all."""
+    passages = (track_sections.worst_passage(device, orientation, orientations) for device in devices)
+    return next((passage.device for passage in passages if passage.verdict.passes <= 0.0), None)
 
 
 def limits(study: ToolingStudy, words: str) -> Figure:

@@ -1,5 +1,6 @@
 """The part in three dimensions over a cut: the orientation that leaves, and the nearest that falls."""
 
+import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -20,7 +21,9 @@ from feederscrew.tooling.isolating.chain import LEAST_SHARE
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.track_sections import Passage, Station, TrackSection, build_section
 
-VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of the lines over it
+VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of two lines over it
+CAPTION_LINE_PX = 24
+NAME_LETTERS, CAPTION_LETTERS = 46, 64  # of a line that is no wider than a view
 TO_VIEWER = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
 SENSOR_COLOUR, SENSOR_LINE = "#009e73", 1.15  # of sensor, nozzles; heights of the part a sensor is over it
 CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
@@ -33,16 +36,25 @@ def figure(
     views = _views(devices, orientations, shares, wanted_row)
     if not views:
         return None
-    count, high = len(views), VIEW_HEAD_PX + VIEW_HEIGHT_PX
+    captions = [_caption_lines(words) for _, words, _ in views]
+    head = VIEW_HEAD_PX + CAPTION_LINE_PX * (max(map(len, captions)) - 2)
+    count, high = len(views), head + VIEW_HEIGHT_PX
     page = style.page(VIEW_WIDTH_PX * count, high)
-    for place, (passage, words, colour) in enumerate(views):
+    for place, ((passage, _, colour), lines) in enumerate(zip(views, captions)):
         box = page.add_axes((place / count, 0.0, 1.0 / count, VIEW_HEIGHT_PX / high))
         _draw_view(box, passage, orientations, colour)
-        for line, text in enumerate(words):
-            look = {"fontsize": 7.5} if line else {"fontsize": 9, "fontweight": "bold"}
-            y = 1.0 - (30 + 24 * line) / high
+        for line, (text, is_name) in enumerate(lines):
+            look = {"fontsize": 9, "fontweight": "bold"} if is_name else {"fontsize": 7.5}
+            y = 1.0 - (30 + CAPTION_LINE_PX * line) / high
             page.text((place + 0.03) / count, y, text, va="center", color=colour, **look)
     return page
+
+
+def _caption_lines(words: Sequence[str]) -> list[tuple[str, bool]]:
+    """The lines over a view, none wider than it, each with whether it is of its name."""
+    name, *more = words
+    lines = [(line, True) for line in textwrap.wrap(name, NAME_LETTERS)]
+    return lines + [(line, False) for text in more for line in textwrap.wrap(text, CAPTION_LETTERS)]
 
 
 def _views(

@@ -262,14 +262,16 @@ def offers(study: TrackStudy, grid: Grid | None = None) -> list[offer.Offer]:
     return offered
 
 
-def _map(study: TrackStudy, grid: Grid, labels: Sequence[str], title: str) -> "Figure":
+def _map(
+    study: TrackStudy, grid: Grid, labels: Sequence[str], title: str, ax: "Axes | None" = None
+) -> "Figure":
     own = []  # the bowl's own values in the units of the axes
     for axis in (grid.first, grid.second):
         key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
         own.append(attrgetter(key.field)(study.bowl) / key.share / axis.unit)
     return floor.regime_map(
         grid, "acceleration_x_m_s2", title=title, labels=labels,
-        value="acceleration V'_X at the upper reversal [m/s²]", bowl_point=own, note=map_remarks(grid),
+        value="acceleration V'_X at the upper reversal [m/s²]", bowl_point=own, note=map_remarks(grid), ax=ax,
     )  # fmt: skip
 
 

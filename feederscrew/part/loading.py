@@ -9,21 +9,23 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from feederscrew import check, documents
 from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
 from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
 from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
-from feederscrew.part import card, formats, gate, mass, mesh_formats, scenes, threemf, topology
+from feederscrew.part import card, formats, gate, given, mass, mesh_formats, scenes, threemf, topology
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, find_density
 from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, PartFile, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.record import AspectNames, Part
-from feederscrew.units import QuantityError, factor, quantity, quantity_text
+from feederscrew.signatures import with_shown_signature
+from feederscrew.units import Quantity, QuantityError, factor, from_quantity, quantity, quantity_text
 
 spatial = heavy("scipy.spatial")
 
@@ -282,32 +284,41 @@ def _assign_cavities(
     return of_body
 
 
+def _solid_file(source: object) -> PartFile:
+    """The STL of a solid of build123d or cadquery, named as it is."""
+    name, data = given.solid_in_file(source)
+    return PartFile(name, name, name, "stl", data, hashlib.sha256(data).hexdigest())
+
+
 FILE_UNITS = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres", "um": "micrometres"}
 FED_PART_SIZE_M = (0.5e-3, 0.3)  # [m] largest dimension of what bowls feed
 USUAL_PART_SIZE_M = 2e-3  # [m] below it, an inch file read in mm is likelier than a part so small
 
 
+@with_shown_signature
 def load(
-    source: str | PathLike[str],
+    source: str | PathLike[str] | given.TriangleMesh | tuple[ArrayLike, ArrayLike],
     *,
     units: str | None = None,
-    density: str | float | None = None,
+    density: Quantity | None = None,
     centre_of_mass: str | Sequence[float] | None = None,
     names: str | PathLike[str] | AspectNames | None = None,
     body: str | int | None = None,
     allow_open: bool = False,
     stdin: IO[bytes] | None = None,
 ) -> Part:
-    """Read a part from a mesh file or a part card.
+    """Read a part from a mesh file or a part card, or take a mesh or a solid from memory.
 
     Parameters
     ----------
-    source : str or Path
-        STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input.
+    source : str, Path, mesh, (vertices, faces) or solid
+        STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input. Or a ``trimesh.Trimesh``,
+        corners (V, 3) with facets (F, 3), or a solid of build123d or cadquery, which is taken by its STL.
     units : str, optional
-        'mm', 'cm', 'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own),
-        else mm.
-    density : str or float [kg/m3], optional
+        'mm', 'cm', 'm', 'um' or 'in'; without it what a file's format states (GLB: m; 3MF and STEP: their
+        own), else mm. A mesh from memory is in metres, as all numbers of this library, unless it says
+        otherwise (``mesh.units``); a solid of build123d or cadquery is in mm.
+    density : str, float [kg/m3] or quantity of pint, optional
         A material or a value, '7.85 g/cm3'; steel without it.
     centre_of_mass : str or (3,) float, optional
         'x,y,z' in the file's axes and units, or with units, if the part is not homogeneous. The inertia
@@ -330,7 +341,12 @@ def load(
     FeederError
         If the file is damaged or bounds no single solid, or an argument or a part card cannot be used.
     """
-    check.path("source", source)
+    if not given.is_given(source):
+        check.kind("source", source, (str, PathLike), given.MEND)
+    try:
+        density = cast("str | float | None", from_quantity(density, "density"))
+    except QuantityError as fault:
+        raise ArgumentError("density", fault.what, fault.mend) from None
     if density is not None and not isinstance(density, str):
         weight = check.argument("density", density)
         if not LIGHTEST_SOLID_KG_M3 <= weight <= HEAVIEST_SOLID_KG_M3:
@@ -349,9 +365,14 @@ def load(
         mend = documents.hint(str(units), FILE_UNITS)
         raise ArgumentError("units", f"'{units}' is not a unit of a part file", mend)
     value, material = find_density(density)
-    file = read_file(source, stdin)
+    if given.is_given(source) and not given.cad_library(source):
+        file, soup = given.read_mesh(source)
+    else:
+        file = _solid_file(source) if given.is_given(source) else read_file(cast(str, source), stdin)
+        soup = None
     is_card = file.suffix in MESH_FORMATS[CARD_FORMAT].suffixes
-    if is_card or formats.detect_format(file.data, file.suffix)[0] == CARD_FORMAT:  # of standard input
+    # of standard input its first bytes say so
+    if soup is None and (is_card or formats.detect_format(file.data, file.suffix)[0] == CARD_FORMAT):
         if body is not None:
             raise ArgumentError("body", "a part card is of one body", "leave it out")
         options = {"units": units, "density": density, "centre_of_mass": centre_of_mass, "names": names}
@@ -361,8 +382,12 @@ def load(
         return card.read_card(file)
     if names is not None and not isinstance(names, AspectNames):
         names = card.read_aspect_names(check.path("names", names))
-    soup = read_soup(file)
-    unit, unit_warnings = _choose_unit(soup, units)
+    unit_warnings: tuple[str, ...] = ()
+    if soup is None:
+        soup = read_soup(file)
+        unit, unit_warnings = _choose_unit(soup, units)
+    else:
+        unit = units or soup.unit or "m"
     soup, chosen = (soup, None) if body is None else take_body(soup, body, file.where, unit)
     try:
         surface = gate.check_surface(soup.vertices, soup.faces, file.where, unit, allow_open)

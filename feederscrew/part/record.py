@@ -2,15 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from feederscrew.arrays import Floats, Points, Triangles
-from feederscrew.errors import FeederError
+from feederscrew.errors import FeederError, MeshError
+from feederscrew.heavy import heavy
 from feederscrew.part.hull import Hull
-from feederscrew.records import ReadableRecord
+from feederscrew.records import VIEWS_MODULE, ReadableRecord
 from feederscrew.units import MM
+
+trimesh = heavy("trimesh")
 
 MAX_FACETS = 20_000  # beyond, verdicts of devices take gigabytes and hours (100,000: 2.3 GB, no end)
 PART_MEND = "give a Part, as load returns it"
@@ -75,6 +79,36 @@ class Part(ReadableRecord):
     def corners(self) -> Points:
         """(V, 3) [m] corners of the surface, from the centre of mass; none of a part card."""
         return np.empty((0, 3)) if self.vertices is None else self.vertices - self.centre_of_mass
+
+    @property
+    def mesh(self) -> Any:
+        """The surface as a ``trimesh.Trimesh`` [m], in the axes of the file.
+
+        Raises
+        ------
+        MeshError
+            If the part is a part card, which has no shape.
+        """
+        if self.vertices is None:
+            raise MeshError(self.source, "is a part card, it has no shape", "give a mesh")
+        return trimesh.Trimesh(np.array(self.vertices), np.array(self.faces), process=False)
+
+    def show(self) -> Any:
+        """Show the part on each aspect, to be turned: in a notebook, or else in a browser.
+
+        Returns
+        -------
+        Shown
+            Its ``path`` is the page, one HTML file that needs no other and no network.
+
+        Raises
+        ------
+        MeshError
+            If the part is a part card, which has no shape.
+        """
+        if self.vertices is None:
+            raise MeshError(self.source, "is a part card, it has no shape", "give a mesh")
+        return import_module(VIEWS_MODULE).shown(self)
 
     @property
     def inputs(self) -> dict[str, str]:

@@ -6,6 +6,8 @@ with a deeper neighbour, change the published rules alone.
 """
 
 import itertools
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
@@ -29,6 +31,7 @@ from feederscrew.resting.landscape import SMOOTH_ANGLE, Landscape, angle, landsc
 from feederscrew.resting.rules import formulas, recommended, registry
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.rules.registry import ClassQuantities
+from feederscrew.signatures import with_shown_signature
 from feederscrew.units import MM, one_line
 
 FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
@@ -60,6 +63,26 @@ ALIKE_DIGITS = 4  # of height and area, in which equal facets agree
 
 
 @dataclass(frozen=True, eq=False)
+class Aspect(ReadableRecord):
+    """One resting aspect of a part, as ``aspects["A"]`` gives it."""
+
+    name: str
+    form: str  # 'flat', or what rolls: 'cylinder', 'cone', 'ball'
+    faces: int  # equal ones of the part
+    stable: bool
+    share: float  # [1] by the recommended answer, of a card by CSA; NaN where none is known
+    low: float  # [1] ends of its interval; NaN of a card
+    high: float  # [1]
+    height: float  # [m] of the centre of mass
+    contact_area: float  # [m2] of one face
+    normal: Floats  # (3,) outward; points down when the part rests on it
+    polygon: Points  # (K, 3) [m] of the contact, from the centre of mass
+    probabilities: dict[str, float]  # [1] by rule
+    barrier: float  # [m] least lift that tips the part; NaN where nothing does
+    tip_angle: float  # [rad] of a floor that tips a part that does not slide
+
+
+@dataclass(frozen=True, eq=False)
 class Aspects(ReadableRecord):
     """One row a class, the most likely first; A rows."""
 
@@ -84,6 +107,46 @@ class Aspects(ReadableRecord):
     ground: exact_tumbling.Ground | None = None  # faces, basins and barriers behind the rows
     complete: dict[str, Floats] = field(default_factory=dict)  # (A,) [1] by published rule, all facets
     warnings: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __iter__(self) -> Iterator[Aspect]:
+        return (self._aspect(row) for row in range(len(self.names)))
+
+    def __getitem__(self, name: str | int) -> Aspect:
+        """Return the aspect of a name, 'A', or of a place, 0 for the likeliest.
+
+        Raises
+        ------
+        KeyError, IndexError
+            If there is no such aspect; the line names those there are.
+        """
+        if isinstance(name, str):
+            if name not in self.names:
+                raise KeyError(f"no aspect {name!r}, known are {', '.join(self.names)}")
+            return self._aspect(self.names.index(name))
+        return self._aspect(range(len(self.names))[name])
+
+    def _aspect(self, row: int) -> Aspect:
+        share = self.chances.get(self.ranking)
+        answer = self.recommended
+        return Aspect(
+            name=self.names[row],
+            form=self.forms[row],
+            faces=int(self.faces[row]),
+            stable=bool(self.stable[row]),
+            share=math.nan if share is None else float(share[row]),
+            low=math.nan if answer is None else float(answer.low[row]),
+            high=math.nan if answer is None else float(answer.high[row]),
+            height=float(self.heights[row]),
+            contact_area=float(self.contact_areas[row]),
+            normal=self.normals[row],
+            polygon=self.polygons[row],
+            probabilities={rule: float(p[row]) for rule, p in self.probabilities.items()},
+            barrier=math.nan if self.barriers is None else float(self.barriers[row]),
+            tip_angle=math.nan if self.tip_angles is None else float(self.tip_angles[row]),
+        )
 
     @property
     def chances(self) -> dict[str, Floats]:
@@ -626,6 +689,7 @@ def names_text(part: Part, aspects: Aspects) -> str:
     return "\n".join([*lines, ""])
 
 
+@with_shown_signature
 def write_names(part: Part, aspects: Aspects, path: str | PathLike[str]) -> None:
     """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
 

@@ -17,6 +17,7 @@ from feederscrew.part.record import PART_MEND, Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import ASPECTS_MEND, Aspects
 from feederscrew.resting.aspects import find as find_aspects
+from feederscrew.signatures import with_shown_signature
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 TOUCHING_SHARE = 2e-4  # of the part's size: what is lower than that over the floor touches it
@@ -98,6 +99,7 @@ def _borders(faces: Triangles, low: Bools) -> Ints:
     return np.concatenate([edges, np.repeat(np.flatnonzero(alone)[:, None], 2, axis=1)])
 
 
+@with_shown_signature
 def posture(part: Part, aspects: Aspects, aspect: str) -> Posture:
     """Return how a part stands on one aspect: its contact, its outline and the height of its centre of mass.
 

@@ -1,153 +1,95 @@
-"""What a caller of the library may hand over, quantities as text or in SI units; and what is read first."""
+"""Check what a caller of the library hands over, and turn it into SI units; read a bowl."""
 
-import difflib
 import functools
 import inspect
 import math
-from collections.abc import Callable, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
 from os import PathLike
-from typing import Any, TypeAlias, TypedDict, TypeVar, Unpack, cast
+from typing import Any, TypeAlias, TypeVar, Unpack, cast
 
 from feederscrew import bowl as bowls
 from feederscrew import check, documents
 from feederscrew import units as si
 from feederscrew.bowl import Bowl
-from feederscrew.bowl.reading import checked, find_key
-from feederscrew.bowl.schema import BOWL_KEYS, Key
+from feederscrew.bowl.reading import Setting, settings_of_text
+from feederscrew.bowl.values import BowlValues, Overrides, adjusted, refuse_unknown, value_texts
 from feederscrew.dropping import launch_conditions as condition_keys
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import PART_MEND, Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules.formulas import EXPONENTS
+from feederscrew.signatures import with_shown_signature
+from feederscrew.units import Quantity
 
-Setting: TypeAlias = str | float | None  # '2 mm', a number in SI units, a word; None: as the bowl has it
-Overrides: TypeAlias = str | Sequence[str] | Mapping[str, str | float]  # or a dict, by the full name of a key
 Path: TypeAlias = str | PathLike[str]
-Quantity: TypeAlias = str | float  # '2 mm', or a number in SI units
 Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the smaller and the larger
 Function = TypeVar("Function", bound=Callable[..., object])
-BY_WORD = {key.word: key for key in BOWL_KEYS}
+Fold: TypeAlias = Callable[[dict[str, Any], Any], None]  # puts a former keyword's value into the arguments
 SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
 EXPONENT_RANGE = -10.0, 10.0  # [1] of a surface: calibrate tries some below 0 as well
 BOWL_MEND = "give a Bowl, as read_bowl returns it"
-OVERRIDES_MEND = "give a dict, {'drive.frequency': '50 Hz'}, or texts, 'drive.frequency=50 Hz'"
-
-DriveSettings = TypedDict(  # noqa: UP013 - a line for each of eighty keys says no more
-    "DriveSettings",
-    {  # written by docs/bowl_file.py
-        "amplitude": Setting, "peak_to_peak": Setting, "frequency": Setting, "vibration_angle": Setting,
-        "direction": Setting, "phase": Setting, "second_harmonic": Setting,
-        "second_harmonic_phase": Setting, "second_harmonic_angle": Setting, "static": Setting,
-        "kinetic": Setting, "static_backward": Setting, "kinetic_backward": Setting, "wall": Setting,
-        "gravity": Setting, "climb": Setting, "bank": Setting, "radius": Setting, "width": Setting,
-        "hand": Setting, "bowl_mass": Setting, "bowl_inertia": Setting, "base_inertia": Setting,
-        "spring_angle": Setting, "leaf_width": Setting, "leaf_thickness": Setting, "leaf_length": Setting,
-        "leaf_modulus": Setting, "damping": Setting, "supply": Setting, "centre_x": Setting,
-        "centre_y": Setting, "centre_z": Setting, "inertia_x": Setting, "inertia_y": Setting,
-        "product_yz": Setting, "product_xz": Setting, "product_xy": Setting, "bolts": Setting,
-        "bolt_hole": Setting, "bolt_circle": Setting, "mains": Setting, "least_diameter": Setting,
-        "diameter_per_length": Setting, "diameter_per_width": Setting, "greatest_diameter": Setting,
-        "diameter_step": Setting, "least_climb": Setting, "clearance": Setting, "least_clearance": Setting,
-        "greatest_clearance": Setting, "headroom": Setting, "depth": Setting, "fill_height": Setting,
-        "packing": Setting, "carried": Setting, "fill_density": Setting, "hopper_interval": Setting,
-        "retune": Setting, "least_detuning": Setting, "greatest_detuning": Setting,
-        "greatest_acceleration": Setting, "greatest_stroke": Setting, "banks": Setting,
-        "fatigue_stress": Setting, "half_wave_diameter": Setting, "least_spring_angle": Setting,
-        "greatest_spring_angle": Setting, "greatest_spring_radius": Setting,
-        "steepest_spring_angle": Setting, "sheet": Setting, "sheet_density": Setting,
-        "tooling_mass": Setting, "slowest": Setting, "fastest": Setting, "handbook_speed": Setting,
-        "bolt_share": Setting, "shape": Setting, "outlet_height": Setting, "outlet_angle": Setting,
-        "drains": Setting, "drain_hole": Setting,
-    },
-    total=False,
-)  # fmt: skip
+OVERRIDES = "overrides"
 
 
-class BowlSettings(DriveSettings, total=False):
-    """The same with ``restitution``, which drops have as well."""
+def former_keywords(
+    into: str = "bowl", former: Mapping[str, Fold] | None = None, **records: type
+) -> Callable[[Function], Function]:
+    """Return a decorator of a function that still takes the keywords of an earlier release.
 
-    restitution: Setting
+    Each of them is folded into an argument of today, and a DeprecationWarning says what to write. A keyword
+    that never was one is a TypeError, which says what is near.
 
-
-class BowlFile(TypedDict, total=False):
-    """The bowl of a report: keywords of ``read_bowl``."""
-
-    path: Path | None
-    overrides: Overrides
-
-
-def with_settings(function: Function) -> Function:
-    """Return a function that says its settings one by one.
-
-    ``inspect.signature`` lists each in place of ``**settings``, and the TypeError of an unknown keyword says
-    which one is near.
+    Parameters
+    ----------
+    into : str
+        The argument that takes keys of a bowl and ``overrides``: 'bowl', or 'bowls' of several.
+    former : dict, optional
+        Of other former keywords: a function that puts the value into the arguments.
+    **records : type
+        Arguments that are records, whose fields were keywords.
     """
-    signature = inspect.signature(function)
-    own = [p for p in signature.parameters.values() if p.kind is not inspect.Parameter.VAR_KEYWORD]
-    words = [key.word for key in BOWL_KEYS if key.word in BowlSettings.__optional_keys__]
-    settings = [
-        inspect.Parameter(word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Setting)
-        for word in words
-        if word not in signature.parameters
-    ]
-    names = [parameter.name for parameter in (*own, *settings)]
 
-    @functools.wraps(function)
-    def with_known_keywords(*arguments: object, **keywords: object) -> object:
-        unknown = next((name for name in keywords if name not in names), None)
-        if unknown is None:
-            return function(*arguments, **keywords)
-        sections = [key.name for key in BOWL_KEYS if key.word == unknown and unknown not in words]
-        if sections:
-            full = " or ".join(f"overrides={{'{name}': ...}}" for name in sections)
-            fault = f"has no keyword {unknown!r}, a key of {len(sections)} sections - write {full}"
-        else:
-            near = difflib.get_close_matches(unknown, names, n=1)
-            known = f"known are {', '.join(p.name for p in own)} and the keys of a bowl file"
-            mend = f"did you mean {near[0]!r}?" if near else known
-            fault = f"got an unexpected keyword argument {unknown!r} - {mend}"
-        raise TypeError(f"{function.__name__}() {fault}")
+    def decorate(function: Function) -> Function:
+        parameters = inspect.signature(function).parameters
+        of_record = {f.name: name for name, record in records.items() for f in fields(record)}
 
-    cast(Any, with_known_keywords).__signature__ = signature.replace(parameters=[*own, *settings])
-    return cast(Function, with_known_keywords)
+        @functools.wraps(function)
+        def call(*arguments: object, **keywords: Any) -> object:
+            old = {name: keywords.pop(name) for name in [*keywords] if name not in parameters}
+            if not old:
+                return function(*arguments, **keywords)
+            of_bowl = {k: v for k, v in old.items() if k not in of_record and k not in (former or {})}
+            overrides = of_bowl.pop(OVERRIDES, ())
+            refuse_unknown(function.__name__, of_bowl, [*parameters])
+            bound = inspect.signature(function).bind(*arguments, **keywords)
+            mends = []
+            for name, value in old.items():
+                if name in (former or {}):
+                    cast(Mapping[str, Fold], former)[name](bound.arguments, value)
+                    mends.append(f"{name}: see help({function.__name__})")
+                elif name in of_record:
+                    argument = of_record[name]
+                    known = bound.arguments.get(argument) or records[argument]()
+                    bound.arguments[argument] = replace(known, **{name: value})
+                    mends.append(f"{name}: write {argument}={records[argument].__name__}({name}=...)")
+            if of_bowl or overrides:
+                own = bound.arguments.get(into)
+                if isinstance(own, (list, tuple)):
+                    changed: Any = [adjusted(a_bowl(one), overrides, of_bowl) for one in own]
+                else:
+                    changed = adjusted(a_bowl(own or bowls.default()), overrides, of_bowl)
+                bound.arguments[into] = changed
+                names = ", ".join(f"{name}=..." for name in of_bowl) or "..."
+                mends.append(f"{', '.join(of_bowl) or OVERRIDES}: write bowl.with_values({names})")
+            text = f"{function.__name__}() takes these keywords for one more release: {'; '.join(mends)}"
+            warnings.warn(text, DeprecationWarning, stacklevel=2)
+            return function(*bound.args, **bound.kwargs)
 
+        return with_shown_signature(cast(Function, call))
 
-def override_texts(overrides: Overrides, settings: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return overrides and settings as texts, 'drive.frequency=50 Hz'; of one key the last holds.
-
-    A dict of ``overrides`` is by the full name of a key, ``settings`` by keyword of ``BowlSettings``;
-    numbers are in SI units. Raises ArgumentError if a value is not one that its key may have, or no such
-    key exists.
-    """
-    texts: list[str] = []
-
-    def add(key: Key, value: object, argument: str) -> None:
-        if isinstance(value, str):
-            text = value
-        elif key.choices:
-            raise ArgumentError(argument, f"is {value!r:.40}", f"give {key.bounds}")
-        else:
-            number = check.argument(argument, value)
-            unit = next(unit for unit, scale in si.UNITS_BY_DIMENSION[key.dimension].items() if scale == 1.0)
-            text = f"{number!r} {unit}".strip()
-        try:
-            checked(key, text, argument, kind=ArgumentError)
-        except ArgumentError as fault:
-            raise ArgumentError(argument, fault.what.removeprefix(f"{key.name}: "), fault.mend) from None
-        texts.append(f"{key.name}={text}")
-
-    if isinstance(overrides, Mapping):
-        for name, value in overrides.items():
-            check.kind("overrides", name, str, OVERRIDES_MEND)
-            add(find_key(name, f"overrides {si.one_line(name)}"), value, name)
-    elif isinstance(overrides, str):
-        texts.append(overrides)
-    else:
-        texts += several("overrides", overrides, str, OVERRIDES_MEND)
-    for name, setting in settings.items():
-        if setting is not None:
-            add(BY_WORD[name], setting, name)
-    return tuple(texts)
+    return decorate
 
 
 def a_part(part: object) -> Part:
@@ -155,36 +97,38 @@ def a_part(part: object) -> Part:
     return check.kind("part", part, Part, PART_MEND)
 
 
-def a_bowl(bowl: object, overrides: Overrides = (), settings: Mapping[str, Any] | None = None) -> Bowl:
-    """Return the bowl with overrides and settings in it; raises ArgumentError where it is none."""
-    own: Bowl = check.kind("bowl", bowl, Bowl, BOWL_MEND)
-    texts = override_texts(overrides, settings or {})
-    return bowls.adjust(own, texts) if texts else own
+def a_bowl(bowl: object) -> Bowl:
+    """Return the bowl; raises ArgumentError where it is none."""
+    return cast(Bowl, check.kind("bowl", bowl, Bowl, BOWL_MEND))
 
 
-def some_bowls(
-    bowls: object, overrides: Overrides = (), settings: Mapping[str, Any] | None = None
-) -> tuple[Bowl, ...]:
-    """Return one bowl, or several, as a tuple, each with overrides and settings in it."""
+def some_bowls(bowls: object) -> tuple[Bowl, ...]:
+    """Return one bowl, or several, as a tuple; raises ArgumentError where one is none, or there is none."""
     mend = f"{BOWL_MEND}, or several in a list"
     each = (bowls,) if isinstance(bowls, Bowl) else several("bowls", bowls, Bowl, mend)
     if not each:
         raise ArgumentError("bowls", "is empty", BOWL_MEND)
-    return tuple(a_bowl(bowl, overrides, settings) for bowl in each)
+    return each
+
+
+def bowl_of_file(keywords: Mapping[str, Any]) -> Bowl:
+    """Return the bowl of a dict of path and overrides; raises ArgumentError where it has another key."""
+    if strange := sorted(set(keywords) - {"path", OVERRIDES}):
+        raise ArgumentError("bowl", f"has a key {strange[0]!r}", BOWL_MEND)
+    return read_bowl(**keywords)
+
+
+def settings_of(bowl: Bowl) -> tuple[Setting, ...]:
+    """Return the settings of a bowl; of one that was changed after it was read each value that is no default.
+
+    Raises FeederError if no file can say what it is.
+    """
+    return bowl.settings or settings_of_text(bowl.to_yaml(), "bowl")
 
 
 def an_aspect(name: str | None) -> str | None:
     """Return the name of an aspect; None stays None."""
     return None if name is None else check.kind("aspect", name, str, "give the name of an aspect, 'A'")
-
-
-def a_file_of_bowl(value: object) -> BowlFile:
-    """Return the keywords of ``read_bowl``; raises ArgumentError where they are no dict of these."""
-    mend = "give a dict of path and overrides"
-    keywords = {} if value is None else check.kind("bowl", value, Mapping, mend)
-    if strange := sorted(set(keywords) - {"path", "overrides"}):
-        raise ArgumentError("bowl", f"has a key {strange[0]!r}", mend)
-    return cast(BowlFile, keywords)
 
 
 def several(name: str, items: object, wanted: type, mend: str) -> tuple[Any, ...]:
@@ -211,12 +155,13 @@ def share(name: str, value: float, low: float = 0.0) -> float:
 
 
 def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -> float:
-    """Return a quantity of a dimension of ``units``, '2 mm' or a number in SI units, in SI units.
+    """Return '2 mm', a number in SI units or a quantity of pint in SI units, of a dimension of ``units``.
 
     Raises ArgumentError if ``value`` is neither, or below ``low`` [SI]; the line names the argument.
     """
     try:
-        number = si.quantity(value, dimension) if isinstance(value, str) else value
+        number: Any = si.from_quantity(value, dimension)
+        number = si.quantity(number, dimension) if isinstance(number, str) else number
     except si.QuantityError as fault:
         raise ArgumentError(name, fault.what, fault.mend) from None
     return check.argument(name, number, low)
@@ -243,10 +188,10 @@ def conditions(**ranges: Condition) -> dict[str, str | None]:
     texts: dict[str, str | None] = {}
     for name, value in ranges.items():
         if value is not None:
-            unit = SI[condition_keys.CONDITION_KEYS[name][0]]
+            dimension = condition_keys.CONDITION_KEYS[name][0]
             ends = value if isinstance(value, (tuple, list)) else (value,)
             texts[name] = ":".join(
-                end if isinstance(end, str) else f"{check.argument(name, end)!r} {unit}".strip()
+                end if isinstance(end, str) else f"{amount(name, end, dimension)!r} {SI[dimension]}".strip()
                 for end in ends
             )
     return texts
@@ -270,9 +215,9 @@ def surface(value: str | float | None) -> float | None:
     return None if value is None else check.argument("surface", value, *EXPONENT_RANGE)
 
 
-@with_settings
-def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: Unpack[BowlSettings]) -> Bowl:
-    """Read a bowl from its file, from settings, or take the defaults.
+@with_shown_signature
+def read_bowl(path: Path | None = None, overrides: Overrides = (), **values: Unpack[BowlValues]) -> Bowl:
+    """Read a bowl from its file, from values, or take the defaults.
 
     Parameters
     ----------
@@ -280,14 +225,18 @@ def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: U
         Bowl file (YAML).
     overrides : dict, str or sequence of str
         {'drive.frequency': '50 Hz'} or 'drive.frequency=50 Hz'; the last of one key holds.
-    **settings : str or float [SI]
+    **values : str or float [SI] or quantity of pint
         Keys of a bowl file by their last word, amplitude='0.3 mm'. They go over the overrides, and these
         over the file.
+
+    Returns
+    -------
+    Bowl
 
     Raises
     ------
     Faults
         Every fault of the file and of the overrides.
     """
-    texts = override_texts(overrides, settings)
-    return bowls.read(None if path is None else check.path("path", path), texts)
+    refuse_unknown("read_bowl", values, ("path", OVERRIDES))
+    return bowls.read(None if path is None else check.path("path", path), value_texts(overrides, values))

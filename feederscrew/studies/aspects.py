@@ -1,6 +1,6 @@
 """The studies of ``feeder aspects`` and ``inertia``: how a part rests, how often, what tips it; its mass."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,11 +10,12 @@ from feederscrew.arrays import Array
 from feederscrew.part.mass import MassBalance, mass_balance
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.aspects import Aspects, find, require_ground
+from feederscrew.resting.aspects import Aspect, Aspects, find, require_ground
 from feederscrew.resting.exact_tumbling import Transition, transitions
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.running import OnCores
+from feederscrew.signatures import with_shown_signature
 from feederscrew.studies import arguments, simulation_cache
 
 if TYPE_CHECKING:
@@ -35,6 +36,16 @@ class AspectsStudy(ReadableRecord):
     aspects: Aspects
     tally: "Tally | None" = None  # of the drop test
 
+    def __len__(self) -> int:
+        return len(self.aspects)
+
+    def __iter__(self) -> Iterator[Aspect]:
+        return iter(self.aspects)
+
+    def __getitem__(self, name: str | int) -> Aspect:
+        """Return the aspect of a name, 'A', or of a place, as ``Aspects`` does."""
+        return self.aspects[name]
+
     @property
     def recommended(self) -> Recommended | None:
         """The answer to take: the drop test where there is one, else the closed form; None of a card."""
@@ -54,6 +65,7 @@ class AspectsStudy(ReadableRecord):
         return transitions(require_ground(self.part, self.aspects))
 
 
+@with_shown_signature
 def aspects(
     part: Part,
     *,
@@ -132,6 +144,7 @@ def aspects(
     return with_drops(closed, test, launch)
 
 
+@with_shown_signature
 def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
     """Return the resting aspects of a part as a record of arrays, in SI units.
 

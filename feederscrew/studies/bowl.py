@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, Unpack, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.plan import SolidOptions, TrackTooLow
 from feederscrew.studies import arguments, solidbowl
-from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
+from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import MIN_POSITIVE, arriving, check_wanted
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
@@ -153,7 +153,7 @@ def machine(settings: Sequence[Setting]) -> MachineSheet:
     return _sheet(bowl, settings, depth, (density or ASSUMED_DENSITY, filled_with), None)
 
 
-def bowl(
+def size_machine(
     settings: Sequence[Setting],
     part: Part,
     target: float,
@@ -256,7 +256,12 @@ def bowl(
     return replace(_sheet(driven, settings, size.depth, (search.bulk, PART), order), solid=body)
 
 
-@with_settings
+def _read_path(given: dict[str, Any], path: object) -> None:
+    if path is not None:
+        given["bowl"] = bowls.read(check.path("path", path))
+
+
+@former_keywords(former={"path": _read_path})
 def size_bowl(
     part: Part,
     target: Quantity,
@@ -266,9 +271,7 @@ def size_bowl(
     rule: str = RECOMMENDED_RULE,
     gap: Quantity = 0.0,
     fill: float = 1.0,
-    path: Path | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
+    bowl: Bowl | None = None,
 ) -> MachineSheet:
     """Size the bowl for a part and a rate, with its springs, tuning and drift, as ``feeder bowl``.
 
@@ -282,8 +285,8 @@ def size_bowl(
         That counts; whatever passes the devices without it.
     heading, rule, gap, fill
         As for ``rate``.
-    path, overrides, **settings
-        As for ``read_bowl``: what they give is kept, the rest is sized.
+    bowl : Bowl, optional
+        What its file or ``with_values`` gave is kept, its devices too; the rest is sized.
 
     Returns
     -------
@@ -293,13 +296,13 @@ def size_bowl(
     space = arguments.amount("gap", gap, "length", 0.0)
     wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle, solid = arguments.angle("heading", heading), arguments.a_part(part)
-    file = None if path is None else check.path("path", path)
-    effective = bowls.settings(file, arguments.override_texts(overrides, settings))
+    chosen = arguments.a_bowl(bowls.default() if bowl is None else bowl)
+    effective = arguments.settings_of(chosen)
     name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
-    tried = bowls.verified(file)
-    void = tried is None or any(tried.void(solid, bowls.record(effective), __version__, name))
+    tried = bowls.verified(chosen.source)
+    void = tried is None or any(tried.void(solid, chosen, __version__, name))
     own: dict[str, Any] = {"aspect": aspect, "heading": angle, "rule": rule, "gap": space, "fill": fill}
-    return bowl(effective, solid, wanted, as_tried=not void, **own)
+    return size_machine(effective, solid, wanted, as_tried=not void, **own)
 
 
 def _orientations_by_drive(

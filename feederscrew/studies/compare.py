@@ -30,6 +30,7 @@ from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.calibration import Fit, fit_counts, fit_passes
 from feederscrew.resting.profiles import DeviceCounts
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
+from feederscrew.signatures import with_shown_signature
 from feederscrew.studies import arguments
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.rate import shares
@@ -174,6 +175,7 @@ class SetsStudy(ReadableRecord):
         return tuple(dict.fromkeys(listed))
 
 
+@with_shown_signature
 def compare(
     part: Part,
     counts: str | PathLike[str],
@@ -342,6 +344,7 @@ class CalibrateStudy(_Counted):
     fits: tuple[Fit, ...]
 
 
+@with_shown_signature
 def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
     """Fit the exponent of a surface to counts by aspect or by device, as ``feeder calibrate``.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Unpack
 
 import numpy as np
 
@@ -20,7 +19,7 @@ from feederscrew.geometry import grids
 from feederscrew.machine import checks
 from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import BowlSettings, Overrides, with_settings
+from feederscrew.studies.arguments import former_keywords
 from feederscrew.units import DEG, MM
 
 
@@ -110,15 +109,13 @@ class ConveyMap(ReadableRecord):
         return np.asarray(STATUSES)[self.grid.values["status"].astype(int)]
 
 
-@with_settings
-def convey(bowl: Bowl, *, overrides: Overrides = (), **settings: Unpack[BowlSettings]) -> ConveyStudy:
+@former_keywords()
+def convey(bowl: Bowl) -> ConveyStudy:
     """Compute how a part travels on the bowl's track, as ``feeder convey``.
 
     Parameters
     ----------
     bowl : Bowl
-    overrides, **settings
-        As for ``read_bowl``, amplitude='0.3 mm': in place of the bowl's own.
 
     Returns
     -------
@@ -130,7 +127,7 @@ def convey(bowl: Bowl, *, overrides: Overrides = (), **settings: Unpack[BowlSett
     ConfigError
         If the bowl cannot convey.
     """
-    bowl = arguments.a_bowl(bowl, overrides, settings)
+    bowl = arguments.a_bowl(bowl)
     return ConveyStudy(bowl, answer.answer(bowl))
 
 

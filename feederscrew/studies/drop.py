@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Unpack
 
 import numpy as np
 
@@ -18,8 +17,9 @@ from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find, require_ground
 from feederscrew.resting.rules.recommended import launch_of_name
 from feederscrew.running import RunSettings
+from feederscrew.signatures import with_shown_signature
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import Condition, DriveSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.arguments import Condition, Quantity, former_keywords
 
 RULES_DRAWN = ("csa", "surface")  # rules that the drops are shown with
 MIN_SECONDS_S = 1e-6  # [s]
@@ -55,6 +55,7 @@ class DropStudy(ReadableRecord):
         return drop_test.telling(self.result.traces)
 
 
+@with_shown_signature
 def drop(
     part: Part,
     launch: str = "feed",
@@ -148,7 +149,7 @@ class PlateStudy(ReadableRecord):
         return any(plate.partial for plate in self.plates)
 
 
-@with_settings
+@former_keywords("bowls")
 def shake(
     part: Part,
     bowls: Bowl | Sequence[Bowl],
@@ -166,8 +167,6 @@ def shake(
     friction: Condition = None,
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[DriveSettings],
 ) -> PlateStudy:
     """Run a virtual dynamic bowl test, as ``feeder drop --plate``: parts on a plate with each bowl's drive.
 
@@ -190,8 +189,6 @@ def shake(
         Called after every batch with the parts done, on all plates together, and how many there will be.
     before : callable, optional
         Called once all inputs are found right, before anything is compiled.
-    overrides, **settings
-        As for ``read_bowl``, amplitude='0.3 mm': in place of each bowl's own.
 
     Returns
     -------
@@ -207,7 +204,7 @@ def shake(
     own = {"fall": fall, "spin": spin, "speed": speed, "restitution": restitution, "friction": friction}
     ranges, run = arguments.conditions(**own), RunSettings(seed, jobs, progress, before)
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
-    driven = arguments.some_bowls(bowls, overrides, settings)
+    driven = arguments.some_bowls(bowls)
     launch_of_name(launch)
     _check_run(run)
     pace = plate_test.EXACT_PACE

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar, Unpack
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import Posture, choose_posture
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import likeliest
 
 TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
@@ -82,15 +82,13 @@ class FloorStudy(ReadableRecord):
         return headings, self.cells(self.bowl, headings)
 
 
-@with_settings
+@former_keywords()
 def floor(
     part: Part,
     bowl: Bowl,
     aspect: str | None = None,
     *,
     heading: Quantity = 0.0,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> FloorStudy:
     """Compute the forces on a part on the bowl's floor and what it does, as ``feeder floor``.
 
@@ -102,15 +100,13 @@ def floor(
         Its name; the likeliest without it.
     heading : str or float [rad]
         '90 deg': how it lies to the drive.
-    overrides, **settings
-        As for ``read_bowl``: in place of the bowl's own.
 
     Raises
     ------
     FeederError
         If the part has no such aspect, or the drive is not ``limits.plain``.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     angle = arguments.amount("heading", heading, "angle")
     limits.plain(bowl)
     stand, why = choose_posture(part, aspect, "floor", partial(likeliest, bowl=bowl))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Unpack
 
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.mechanics import headings as wall
@@ -12,7 +11,7 @@ from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import BowlSettings, Overrides, with_settings
+from feederscrew.studies.arguments import former_keywords
 from feederscrew.studies.rate import arriving
 
 
@@ -39,15 +38,13 @@ class HeadingsStudy(ReadableRecord):
         return replace(self, postures=postures, headings=of_aspect)
 
 
-@with_settings
+@former_keywords()
 def headings(
     part: Part,
     bowl: Bowl,
     aspect: str | None = None,
     *,
     aspects: Aspects | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> HeadingsStudy:
     """Find how a part lies along the track's wall, as ``feeder headings``.
 
@@ -60,15 +57,13 @@ def headings(
         One alone; every stable one without it.
     aspects : Aspects, optional
         Of the part, with the answer to take; what arrives from the bowl's moving floor without it.
-    overrides, **settings
-        As for ``read_bowl``: in place of the bowl's own.
 
     Raises
     ------
     FeederError
         If there is no such aspect, the bowl is smaller than the part, or the part is a card.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     track = bowl.track
     resting = arriving(part, bowl) if aspects is None else aspects
     stable = [name for name, stays in zip(resting.names, resting.stable) if stays]

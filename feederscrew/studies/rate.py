@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER as RECOMMENDED
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import OnCores
 from feederscrew.studies import arguments, simulation_cache
-from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
+from feederscrew.studies.arguments import Path, Quantity, former_keywords
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.orientation_names import rows
@@ -56,7 +56,7 @@ class Shares(ReadableRecord):
         return {} if self.measured is None else {self.measured.source: self.measured.sha256}
 
 
-@with_settings
+@former_keywords()
 def shares(
     part: Part,
     bowl: Bowl,
@@ -69,8 +69,6 @@ def shares(
     jobs: int | None = None,
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> Shares:
     """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
 
@@ -96,8 +94,6 @@ def shares(
         Cores for that; all there are without it. Nothing else depends on it.
     progress, before : callable, optional
         Of drops and of parts on the floor, as for ``aspects``.
-    overrides, **settings
-        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
@@ -109,7 +105,7 @@ def shares(
     FeederError
         Every fault of the file; if the part has no shape to drop.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     run = OnCores(jobs, progress, before)
     require_rule(rule)
     seed, fed = arguments.whole("seed", seed, 0), arguments.count("fed", fed)
@@ -223,7 +219,7 @@ class RateStudy(ReadableRecord):
         )
 
 
-@with_settings
+@former_keywords()
 def rate(
     part: Part,
     bowl: Bowl,
@@ -240,8 +236,6 @@ def rate(
     fed: int | None = None,
     seed: int = 1,
     aspect_shares: Shares | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> RateStudy:
     """Compute the well-oriented parts per second, with each factor, as ``feeder rate``.
 
@@ -275,8 +269,6 @@ def rate(
         Of these parts.
     aspect_shares : Shares, optional
         What ``shares`` returned, in place of all of them.
-    overrides, **settings
-        As for ``read_bowl``, amplitude='0.3 mm': in place of the bowl's own.
 
     Returns
     -------
@@ -289,7 +281,7 @@ def rate(
         If the part has no outline, more facets than can be followed past devices, or no such aspect, no such
         rule has probabilities of it, or the bowl has no steady state.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     mend = "give devices in a list, as a bowl's devices are"
     chain = bowl.devices if devices is None else arguments.several("devices", devices, Device, mend)
     aspect_shares = the_shares(aspect_shares)

@@ -1,11 +1,11 @@
 """The study of ``feeder report``: what the other studies find of one part in one bowl, each on request."""
 
 import os
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from typing import Unpack
 
 from feederscrew import bowl as bowls
 from feederscrew import check
@@ -18,7 +18,7 @@ from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.studies import arguments, convey, solidbowl
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import rate as rates
-from feederscrew.studies.arguments import BowlFile, BowlSettings, Overrides, Path, Quantity, with_settings
+from feederscrew.studies.arguments import Path, Quantity, former_keywords
 from feederscrew.studies.aspects import AspectsStudy, InertiaStudy, inertia
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.convey import ConveyMap, ConveyStudy
@@ -137,7 +137,7 @@ class ReportStudy(ReadableRecord):
         """The bowl for the target, or the machine of the bowl file; None without either."""
         if self.target is not None:
             heading = self.heading if self.counted else None
-            return machines.bowl(
+            return machines.size_machine(
                 self.settings, self.part, self.target,
                 aspect=self.counted, heading=heading, rule=self.rule, gap=self.gap, fill=self.fill,
                 aspects=self.resting.aspects, as_tried=self.as_tried,
@@ -153,14 +153,14 @@ class ReportStudy(ReadableRecord):
         return solidbowl.of_sheet(self.machine, self.settings, self.resting.aspects)
 
 
-@with_settings
+@former_keywords()
 def report(
     part: Part,
     aspect: str | None = None,
     *,
     heading: Quantity | None = None,
     target: Quantity | None = None,
-    bowl: BowlFile | None = None,
+    bowl: Bowl | None = None,
     gap: Quantity = 0.0,
     fill: float = 1.0,
     rule: str = RECOMMENDED,
@@ -172,8 +172,6 @@ def report(
     command: str = "",
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> ReportStudy:
     """Gather all that is known of a part in a bowl, as ``feeder report``: each chapter when it is asked for.
 
@@ -185,8 +183,8 @@ def report(
     heading : str or float [rad], optional
     target : str or float [1/s], optional
         Rate that a bowl is sized for.
-    bowl : dict, optional
-        path, overrides: as for ``read_bowl``.
+    bowl : Bowl, optional
+        As ``read_bowl`` returns it; that of the defaults without it.
     gap, fill, rule, launch, probabilities, fed, seed
         As for ``rate``.
     sent : int, optional
@@ -195,8 +193,6 @@ def report(
         That repeats the report.
     progress, before : callable, optional
         As for ``shares``.
-    overrides, **settings
-        As for ``read_bowl``; they go over those of ``bowl``.
 
     Returns
     -------
@@ -208,18 +204,16 @@ def report(
     FeederError
         If there is no such aspect or rule, or the bowl file has faults.
     """
-    file = arguments.a_file_of_bowl(bowl)
-    path = file.get("path")
-    texts = arguments.override_texts(file.get("overrides", ()), {})
-    texts += arguments.override_texts(overrides, settings)
-    path = None if path is None else check.path("path", path)
+    if isinstance(bowl, Mapping):
+        text = "report() takes a dict as bowl for one more release: write bowl=read_bowl(path, overrides)"
+        warnings.warn(text, DeprecationWarning, stacklevel=3)
+        bowl = arguments.bowl_of_file(bowl)
+    chosen = arguments.a_bowl(bowls.default() if bowl is None else bowl)
     part, angle = arguments.a_part(part), arguments.angle("heading", heading)
     space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     wanted = None if target is None else arguments.amount("target", target, "rate")
     rates.check_wanted(part, aspect, angle)
-    bowl_settings = bowls.settings(path, texts)
-    chosen = bowls.record(bowl_settings)
     aspect_shares = rates.shares(
         part, chosen,
         rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
@@ -229,9 +223,9 @@ def report(
     rule = aspects.ranking if rule == RECOMMENDED else rule  # a card has no such answer
     return ReportStudy(
         resting=AspectsStudy(part, aspects),
-        settings=bowl_settings,
+        settings=arguments.settings_of(chosen),
         bowl=chosen,
-        path=path,
+        path=chosen.source,
         aspect=posture(part, aspects, aspects.likeliest if aspect is None else aspect).name,
         heading=angle,
         rule=arguments.a_rule(rule, aspects),
@@ -240,7 +234,7 @@ def report(
         target=wanted,
         counted=aspect,
         shares=aspect_shares,
-        inputs=part.inputs | bowls.identity(path) | aspect_shares.inputs,
+        inputs=part.inputs | bowls.identity(chosen.source) | aspect_shares.inputs,
         command=command,
         sent=sent,
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Unpack
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from feederscrew.geometry.grids import Grid, GridAxis, evaluate
 from feederscrew.mechanics import limits
 from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.arguments import Quantity, former_keywords
 
 ROUND_STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
 PLAIN_TOP = 3.0  # G that every sliding map reaches
@@ -74,14 +73,12 @@ class SlideStudy(ReadableRecord):
         return tuple(sliding_map(self.bowl, slide_map.beta, shape=shape) for slide_map in self.maps)
 
 
-@with_settings
+@former_keywords()
 def slide(
     bowl: Bowl,
     angles: Iterable[Quantity] = (),
     *,
     as_published: bool = False,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> SlideStudy:
     """Compute when a part slips, which way, and when it hops, as ``feeder slide``.
 
@@ -92,15 +89,13 @@ def slide(
         Vibration angles, a map each; the bowl's without them.
     as_published : bool
         Keep mu_limit where [4.27] is negative, as past the hop.
-    overrides, **settings
-        As for ``read_bowl``: in place of the bowl's own.
 
     Raises
     ------
     ConfigError
         If the drive is not ``limits.plain``.
     """
-    bowl = arguments.a_bowl(bowl, overrides, settings)
+    bowl = arguments.a_bowl(bowl)
     betas = [arguments.amount("angles", angle, "angle") for angle in angles]
     maps = tuple(
         sliding_map(bowl, beta, as_published=as_published)

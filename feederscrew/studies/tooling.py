@@ -4,7 +4,7 @@ import functools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias, Unpack, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import Shares, arriving, the_shares
 from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.devices.orientation_names import rows
@@ -163,34 +163,39 @@ class ToolingStudy(ReadableRecord):
         return small_part_remarks(self.part, allowances, self.bowl.track.width)
 
 
-@with_settings
+@dataclass(frozen=True)
+class ToolingSearch:
+    """How cuts are looked for: what a workshop can make, and how long the search may take."""
+
+    rule: str = RECOMMENDED_RULE  # whose probabilities are taken
+    turn: bool = DesignConstraints.turn  # devices that turn parts over may be used
+    vary: bool = DesignConstraints.vary  # other banks, grooves and widths of the track are tried
+    step: Quantity = DesignConstraints.step  # [m] values of cuts are whole multiples of it
+    cutter: Quantity = DesignConstraints.cutter  # [m] radius of the corners of holes
+    seed: int = HoleSearch.seed  # of the search for holes
+    verdicts: int = HoleSearch.verdicts  # the most in the search for the holes of one orientation
+    seconds: Quantity = SEARCH_SECONDS  # [s] after which the search ends
+
+
+@former_keywords(search=ToolingSearch)
 def tooling(
     part: Part,
     bowl: Bowl,
     aspect: str | None = None,
     *,
     heading: Quantity | None = None,
-    rule: str = RECOMMENDED_RULE,
-    margin: Quantity = DESIGN_MARGIN_M,
-    purity: float = 1.0,
-    efficiency: float = 0.0,
-    outcome: str = DesignConstraints.outcome,
     up: str | Sequence[str] = DesignConstraints.up,
+    outcome: str = DesignConstraints.outcome,
     without: str | Sequence[str] = DesignConstraints.without,
-    turn: bool = DesignConstraints.turn,
     air: bool = DesignConstraints.air,
-    vary: bool = DesignConstraints.vary,
-    step: Quantity = DesignConstraints.step,
-    cutter: Quantity = DesignConstraints.cutter,
+    margin: Quantity = DESIGN_MARGIN_M,
     play: Quantity = designing.PLAY_M,
     tolerance: Quantity = designing.TOLERANCE_M,
-    seed: int = HoleSearch.seed,
-    verdicts: int = HoleSearch.verdicts,
-    seconds: Quantity = SEARCH_SECONDS,
+    purity: float = 1.0,
+    efficiency: float = 0.0,
     aspect_shares: Shares | Aspects | None = None,
+    search: ToolingSearch | None = None,
     progress: Callable[[int, int], None] | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> ToolingStudy:
     """Find cuts that isolate an orientation of a part, as ``feeder tooling``.
 
@@ -203,44 +208,33 @@ def tooling(
         The one wanted; every orientation without it.
     heading : str or float [rad], optional
         Of that aspect.
-    rule : str
-        Whose probabilities are taken.
+    up : str or sequence of str
+        Other aspects that count as the one wanted, 'B,C'.
+    outcome : str
+        How parts leave: 'lying', 'hanging' or 'any'.
+    without : str or sequence of str
+        Kinds of devices that are not used, 'wiper,cut_out'.
+    air : bool
+        Whether air that blows all the time may be used, where cuts and blades are not enough.
     margin : str or float [m]
         By which the wanted orientation passes and the others fail, at least.
+    play, tolerance : str or float [m]
+        Of the part from the wall and of its size; both are added to the margin.
     purity : float [1]
         Of what leaves, that is enough.
     efficiency : float [1]
         Of what is offered, that is asked for.
-    outcome : str
-        How parts leave: 'lying', 'hanging' or 'any'.
-    up : str or sequence of str
-        Other aspects that count as the one wanted, 'B,C'.
-    without : str or sequence of str
-        Kinds of devices that are not used, 'wiper,cut_out'.
-    turn : bool
-        Whether devices that turn parts over may be used.
-    air : bool
-        Whether air that blows all the time may be used, where cuts and blades are not enough.
-    vary : bool
-        Whether other banks, grooves and widths of the track are tried.
-    step : str or float [m]
-        Values of cuts are whole multiples of it.
-    cutter : str or float [m]
-        Radius of the corners of holes.
-    play, tolerance : str or float [m]
-        Of the part from the wall and of its size; both are added to the margin.
-    seed : int
-        Of the search for holes.
-    verdicts : int
-        The most in the search for the holes of one orientation.
-    seconds : str or float [s]
-        After which the search ends.
     aspect_shares : Shares or Aspects, optional
         Of ``shares``.
+    search : ToolingSearch, optional
+        Rule, steps and cutter of the workshop, seed, and how long is looked for holes.
     progress : callable, optional
         Called with how many orientations are done, and of how many.
-    overrides, **settings
-        As for ``read_bowl``: in place of the bowl's own.
+
+    Returns
+    -------
+    ToolingStudy
+        Its ``design`` is that of the orientation asked for, ``designs`` are those of all.
 
     Raises
     ------
@@ -248,7 +242,9 @@ def tooling(
         If the part has no mesh or very many facets, is too large for the bowl, or has no such orientation or
         rule.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
+    looked = check.kind("search", search or ToolingSearch(), ToolingSearch, "give a ToolingSearch")
+    rule = looked.rule
     aspect, angle = arguments.an_aspect(aspect), arguments.angle("heading", heading)
     lengths = {"margin": margin, "play": play, "tolerance": tolerance}
     clear, play, tolerance = (arguments.amount(k, value, "length", 0.0) for k, value in lengths.items())
@@ -267,17 +263,17 @@ def tooling(
     shares = np.nan_to_num([orientation.chances[rule] for orientation in coming])
     check.of_an_aspect(aspect, angle)
     wanted = None if aspect is None else designing.place(coming, aspect, angle, part.source)
-    search = HoleSearch(
-        seed=arguments.whole("seed", seed, 0),
-        verdicts=arguments.whole("verdicts", verdicts),
-        until=time.monotonic() + arguments.amount("seconds", seconds, "time", 0.0),
+    holes = HoleSearch(
+        seed=arguments.whole("seed", looked.seed, 0),
+        verdicts=arguments.whole("verdicts", looked.verdicts),
+        until=time.monotonic() + arguments.amount("seconds", looked.seconds, "time", 0.0),
     )
     may_use = DesignConstraints(
         outcome=check.choice("outcome", outcome, OutcomeKind),
         without=may_be_left_out(without), up=may_be_up(part, aspects, up),
-        vary=bool(vary), turn=turn, air=air,
-        step=arguments.amount("step", step, "length", SHOP_ROUNDING_M),
-        cutter=arguments.amount("cutter", cutter, "length", 0.0),
+        vary=bool(looked.vary), turn=looked.turn, air=air,
+        step=arguments.amount("step", looked.step, "length", SHOP_ROUNDING_M),
+        cutter=arguments.amount("cutter", looked.cutter, "length", 0.0),
     )  # fmt: skip
     for kind in leaning():  # the stretch that makes gaps in this bowl, where it may be used and makes some
         steeper = kind.parting(DESIGN_KEY) if may_use.allows(kind.kind) else None
@@ -288,7 +284,7 @@ def tooling(
             may_use = replace(may_use, separation=steeper)
             break
     request = {"purity": purity, "efficiency": efficiency, "before": bowl.devices, "constraints": may_use}
-    request |= {"margin": clear, "search": search}
+    request |= {"margin": clear, "search": holes}
     places = range(len(coming)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(coming)
     if progress is not None:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar, Unpack
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from feederscrew.rates import tipping
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import Posture, choose_posture
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import likeliest
 from feederscrew.tooling import orientations
 
@@ -66,15 +66,13 @@ class TrackStudy(ReadableRecord):
         return grids.evaluate(first.axis, second.axis, function, motion_maps.TRACK_REGIMES)
 
 
-@with_settings
+@former_keywords()
 def track(
     part: Part,
     bowl: Bowl,
     aspect: str | None = None,
     *,
     heading: Quantity | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> TrackStudy:
     """Compute the reactions on a part on the track against the wall, as ``feeder track``.
 
@@ -87,8 +85,6 @@ def track(
     heading : str or float [rad], optional
         As laid down: pushed to the wall, the part turns to the stable heading of that range. The most
         frequent that stays on the track without it.
-    overrides, **settings
-        As for ``read_bowl``: in place of the bowl's own.
 
     Raises
     ------
@@ -96,7 +92,7 @@ def track(
         If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or
         the drive is not ``limits.plain``.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     angle = arguments.angle("heading", heading)
     limits.plain(bowl)
     posture, why = choose_posture(part, aspect, "track", partial(likeliest, bowl=bowl))

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.running import RunSettings
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import Shares, check_wanted, the_shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.tooling.devices.orientation_names import rows
@@ -95,7 +95,7 @@ class TrialStudy(ReadableRecord):
         return tuple(listed)
 
 
-@with_settings
+@former_keywords("bowls")
 def trial(
     part: Part,
     bowls: Bowl | Sequence[Bowl],
@@ -114,8 +114,6 @@ def trial(
     jobs: int = 1,
     progress: Callable[[int, int], None] | None = None,
     before: Callable[[], None] | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> TrialStudy:
     """Send parts along the vibrating, tooled track of one or several bowls, as ``feeder trial``.
 
@@ -151,8 +149,6 @@ def trial(
         Called with how many parts are done, and of how many.
     before : callable, optional
         Called before anything is compiled.
-    overrides, **settings
-        As for ``read_bowl``: in place of each bowl's own.
 
     Returns
     -------
@@ -167,7 +163,7 @@ def trial(
         If nothing was finished.
     """
     part, aspect = arguments.a_part(part), arguments.an_aspect(aspect)
-    driven = arguments.some_bowls(bowls, overrides, settings)
+    driven = arguments.some_bowls(bowls)
     aspect_shares = the_shares(aspect_shares)
     counts = {"parts": parts, "landing": landing, "queue": queue}
     parts, landing, queue = (arguments.count(name, value) for name, value in counts.items())

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Unpack
+from typing import Any
 
 from feederscrew import check
 from feederscrew.bowl.devices import unknown_aspects
@@ -15,7 +15,7 @@ from feederscrew.rates import stream, well_oriented
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
+from feederscrew.studies.arguments import Path, Quantity, former_keywords
 from feederscrew.studies.rate import MIN_POSITIVE, RECOMMENDED, Shares, check_wanted, shares, the_shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
@@ -50,7 +50,11 @@ class TuneStudy(ReadableRecord):
         return (*unknown_aspects(self.devices, self.aspects.names), *self.aspects.warnings)
 
 
-@with_settings
+def _take_arriving(given: dict[str, Any], arriving: Callable[[Bowl], Shares] | None) -> None:
+    given["aspect_shares"] = given.get("aspect_shares") or arriving
+
+
+@former_keywords(former={"arriving": _take_arriving})
 def tune(
     part: Part,
     bowl: Bowl,
@@ -67,11 +71,8 @@ def tune(
     probabilities: Path | None = None,
     fed: int | None = None,
     seed: int = 1,
-    aspect_shares: Shares | None = None,
-    arriving: Callable[[Bowl], Shares] | None = None,
+    aspect_shares: Shares | Callable[[Bowl], Shares] | None = None,
     progress: Callable[[int, int], None] | None = None,
-    overrides: Overrides = (),
-    **settings: Unpack[BowlSettings],
 ) -> TuneStudy:
     """Find settings of the drive that reach a rate, as ``feeder tune``.
 
@@ -84,13 +85,13 @@ def tune(
         The one wanted.
     target : str or float [1/s]
         '60/min' of it.
-    heading, devices, gap, fill, rule, launch, probabilities, fed, seed, known, overrides, **settings
+    heading, devices, gap, fill, rule, launch, probabilities, fed, seed
         As for ``rate``.
     worst : bool
         Meet the target at the worst of every start, of friction a fifth lower and higher and, where parts
         hop, of restitution over its spread.
-    arriving : callable, optional
-        From a bowl to the Shares that arrive at its drive; ``shares`` without it.
+    aspect_shares : Shares or callable, optional
+        Of ``shares``, or what returns those that arrive at the drive of a bowl; ``shares`` without it.
     progress : callable, optional
         Called with how many settings are computed, and of how many.
 
@@ -104,11 +105,12 @@ def tune(
     FeederError
         If the part never leaves in that orientation, or no setting gives the rate.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     wanted_rate = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
-    shared = the_shares(aspect_shares)
+    arriving = aspect_shares if callable(aspect_shares) else None
+    shared = None if callable(aspect_shares) else the_shares(aspect_shares)
     check_wanted(part, aspect, angle)
 
     def fed_there(driven: Bowl) -> Shares:
@@ -117,7 +119,7 @@ def tune(
         )
 
     chain = bowl.devices if devices is None else tuple(devices)
-    shares_at = cache(fed_there if shared or arriving is None else arriving)
+    shares_at = cache(arriving or fed_there)
     here = shares_at(bowl)
     on_the_track = orientations(part, here.aspects, bowl.track)
 

@@ -117,7 +117,7 @@ class Figure:
 
     number: str
     caption: str
-    draw_data: Callable[[str, Any], "style.Figure"]  # of its title and its data
+    draw_data: Callable[..., "style.Figure"]  # of its title and its data
     data: Callable[[], Data]
 
     @property
@@ -319,26 +319,27 @@ def numbers(figure: Figure) -> Frame:
     return tables.frame({name: np.ravel(a) for name, a in zip((*data.columns, "hops"), arrays)})
 
 
-def draw(figure: Figure) -> "style.Figure":
-    """Return a figure of the thesis as a matplotlib Figure."""
-    return figure.draw_data(f"Figure {figure.number}. {figure.caption}", figure.data())
+def draw(figure: Figure, ax: "style.Axes | None" = None) -> "style.Figure":
+    """Return a figure of the thesis as a matplotlib Figure, drawn into ``ax`` where it has one picture."""
+    own = {} if ax is None else {"ax": ax}
+    return figure.draw_data(f"Figure {figure.number}. {figure.caption}", figure.data(), **own)
 
 
-def _draw_bars(title: str, data: Bars) -> "style.Figure":
+def _draw_bars(title: str, data: Bars, ax: "style.Axes | None" = None) -> "style.Figure":
     bars = len(data.aspects) * (len(data.profiles) + 0.9)
     width = float(np.clip(bars * (0.42 if len(data.profiles) < 4 else 0.30) + 1.0, 4.6, 9.5))
-    figure, axes = style.chart(width, 3.6, title=title, x="aspect", y="probability [%]", grid="y")
+    figure, axes = style.chart(width, 3.6, ax=ax, title=title, x="aspect", y="probability [%]", grid="y")
     compare.bars(axes, data.aspects, data.profiles, data.printed_shares, (width - 0.9) / bars)
     handles = list(axes.containers)
     if data.printed_shares:
         handles += axes.plot([], [], color=style.INK, linewidth=1.1, label="in print")
-    style.legend(figure, handles=handles, ncols=min(len(handles), 4 if width < 9.0 else 8))
+    style.legend(figure, ax=ax, handles=handles, ncols=min(len(handles), 4 if width < 9.0 else 8))
     return figure
 
 
-def _draw_lines(title: str, data: ByRatio) -> "style.Figure":
+def _draw_lines(title: str, data: ByRatio, ax: "style.Axes | None" = None) -> "style.Figure":
     x, y = "aspect ratio, thickness / width [1]", f"probability by {data.rule} [%]"
-    figure, axes = style.chart(6.6, 4.4, title=title, x=x, y=y)
+    figure, axes = style.chart(6.6, 4.4, ax=ax, title=title, x=x, y=y)
     handles = []
     for (name, values), (colour, dashes) in zip(data.lines.items(), ASPECT_LINES):
         label = f"aspect {name}"
@@ -352,7 +353,7 @@ def _draw_lines(title: str, data: ByRatio) -> "style.Figure":
         face = style.INK if is_filled else "white"
         handles += axes.plot([], [], color=style.INK, markerfacecolor=face, label=label, **look)
     axes.set_ylim(bottom=0.0)
-    style.legend(figure, handles=handles, ncols=4)
+    style.legend(figure, ax=ax, handles=handles, ncols=4)
     return figure
 
 
@@ -387,8 +388,8 @@ def _draw_limits(title: str, data: FigureGrid) -> "style.Figure":
     return figure
 
 
-def _draw_contours(title: str, data: FigureGrid) -> "style.Figure":
-    figure, axes = style.chart(6.6, 4.2, title=title, x=slide.ANGLE, y=slide.RATIO, grid="none")
+def _draw_contours(title: str, data: FigureGrid, ax: "style.Axes | None" = None) -> "style.Figure":
+    figure, axes = style.chart(6.6, 4.2, ax=ax, title=title, x=slide.ANGLE, y=slide.RATIO, grid="none")
     levels = [level for level in slide.LEVELS if level <= data.values.max()]
     shades = matplotlib.colormaps[slide.LEVEL_COLOURS](np.linspace(0.05, 0.75, len(levels)))
     angles = np.linspace(-89.9, 89.9, 361)

@@ -1,5 +1,6 @@
 """Each table and figure of the thesis with its cells, verdicts and findings: as files and as one page."""
 
+import inspect
 import math
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -21,6 +22,8 @@ from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, NOT_CH
 from feederscrew.units import listed
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from feederscrew.records import DataFrame
     from feederscrew.records import Figure as DrawnFigure
 
@@ -136,11 +139,14 @@ class Reproduction(ReadableRecord):
         _require(name, item_of, "table or figure")
         return data_frame(entries(item_of[name]))
 
-    def plot(self, name: str | None = None) -> "DrawnFigure":
+    def plot(self, name: str | None = None, ax: "Axes | None" = None) -> "DrawnFigure":
         """Return a figure of the thesis as ``ReadableRecord.plot``: the first, or '5-6'."""
         name = THESIS_FIGURES[0].number if name is None else name
         _require(name, FIGURE_OF, "figure")
-        return figures.draw(FIGURE_OF[name])
+        draws = inspect.signature(FIGURE_OF[name].draw_data).parameters
+        if ax is not None and "ax" not in draws:
+            raise ArgumentError("ax", f"figure {name} has several pictures", "leave `ax` out")
+        return figures.draw(FIGURE_OF[name], ax)
 
 
 def reproduce() -> Reproduction:

@@ -10,14 +10,14 @@ from feederscrew.designing import short_trials, tooling_trials
 from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling as tables
-from feederscrew.studies.tooling import tooling, tooling_without
+from feederscrew.studies.tooling import ToolingSearch, tooling, tooling_without
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating import chain
 
 
 @pytest.fixture(scope="module")
 def study(block):
-    return tooling(block.part, bowls.read(None, []), "A", rule="csa", verdicts=1)
+    return tooling(block.part, bowls.read(None, []), "A", search=ToolingSearch(rule="csa", verdicts=1))
 
 
 @dataclass
@@ -32,7 +32,7 @@ class Verdicts:
 
 
 def searched(study, kinds):
-    return tooling_without(kinds, study.part, study.bowl, "A", rule="csa", verdicts=1)
+    return tooling_without(kinds, study.part, study.bowl, "A", search=ToolingSearch(rule="csa", verdicts=1))
 
 
 @pytest.mark.parametrize("denials", [0, 1, 3])

@@ -192,7 +192,7 @@ def test_feeder_bowl_takes_the_drive_that_was_tried_till_it_is_changed(
     def unreachable(*_, **__):
         raise FeederError("target", "no bowl reaches it", "split it")
 
-    monkeypatch.setattr(designing.machines, "bowl", unreachable)
+    monkeypatch.setattr(designing.machines, "size_machine", unreachable)
     config.write_text(designs.bowl_file(study(4000.0 / 60.0, part=part), (), built.sheet))
     line = ("bowl", box, "--target", "4000/min", "--format", "json")
     done = run(*line, "--config", config)

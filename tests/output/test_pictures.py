@@ -16,15 +16,16 @@ from scipy.spatial.transform import Rotation
 from feederscrew.batch import summary
 from feederscrew.bowl import read, settings
 from feederscrew.bowl.reading import key_ranges
+from feederscrew.designing.record import Alternative
 from feederscrew.mechanics.limits import published_ratio
-from feederscrew.output import aspects, batch, designs, plate, shading, style
+from feederscrew.output import aspects, batch, designs, plate, shading, style, tooling_views
 from feederscrew.output import compare as compare_output
 from feederscrew.output import convey as convey_output
 from feederscrew.output import floor as floor_output
 from feederscrew.output import headings as headings_output
 from feederscrew.output import slide as slide_output
 from feederscrew.output.page.as_html import html
-from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page
+from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Table
 from feederscrew.output.tables import regime_words
 from feederscrew.output.trial.rides import DeviceRide
 from feederscrew.part import load
@@ -449,3 +450,50 @@ def test_the_regime_map_shows_its_codes_and_contour_lines_follow_4_27():
     inner = np.abs(angle) < 60
     expected = published_ratio(1.0, math.radians(20), np.radians(angle[inner]))
     assert ratio[inner] == pytest.approx(expected, rel=1e-3)
+
+
+def overlapping(figure, texts):
+    """Pairs of texts whose boxes share ground."""
+    figure.canvas.draw()
+    boxes = [text.get_window_extent(figure.canvas.get_renderer()) for text in texts]
+    return [(a, b) for k, a in enumerate(boxes) for b in boxes[k + 1 :] if a.overlaps(b)]
+
+
+@pytest.mark.parametrize("rates", [(0.0,) * 12, (0.0, 0.0, 1.2, 0.0), (0.0,)])
+def test_the_labels_of_bars_without_height_do_not_lie_on_each_other(rates):
+    """They stood side by side on the axis: 'hanginghanginghanging'."""
+    attempts = [SimpleNamespace(rate=rate, clean=False, wanted="A@188 or hanging") for rate in rates]
+    figure = designs.history_figure(SimpleNamespace(attempts=attempts, request=SimpleNamespace(target=1.0)))
+    (axes,) = figure.axes
+    low = [text for text, rate in zip(axes.texts, rates) if rate == 0.0]
+    assert overlapping(figure, low) == []
+    assert all(text.get_rotation() == (90.0 if len(rates) > 1 else 0.0) for text in low)
+
+
+def test_the_captions_of_views_side_by_side_stay_over_their_own(monkeypatch):
+    """They ran into each other where a device has a long name."""
+    words = ("A@188 is laid over at the narrowed track beside a height bar",
+             "margin -0.64 mm, where it bears least; outline: support's hull, dot: weight")  # fmt: skip
+    monkeypatch.setattr(tooling_views, "_views", lambda *chain: [(None, words, "k"), (None, words, "k")])
+    monkeypatch.setattr(tooling_views, "_draw_view", lambda *view: None)
+    figure = tooling_views.figure([], [], np.ones(1), 0)
+    figure.canvas.draw()
+    assert overlapping(figure, figure.texts) == []
+    for place, text in enumerate(figure.texts):
+        box = text.get_window_extent(figure.canvas.get_renderer())
+        view = figure.axes[2 * place // len(figure.texts)].get_window_extent()
+        assert view.x0 <= box.x0 and box.x1 <= view.x1 and box.y0 >= view.y1 - 2.0
+
+
+def test_devices_and_shares_of_a_design_are_in_words_on_its_page():
+    """The page had a dump of YAML, and a yield of 0.0030 where the text says 0.299 %."""
+    assert designs.short_device("narrowed_track: 13.35 mm") == "narrowed track 13.35 mm"
+    assert designs.short_device("sorter: {of: A@90, play: 0.2 mm}") == "vision reject"
+    chain = ("sorter: {of: A@90}",), ("camera from above",)
+    option = Alternative(3, "holds", (1.0, 0.9, 1.1), 1.0, 0.00299, *chain)
+    study = SimpleNamespace(alternatives=(option, Alternative(1, "not tried")))
+    page = html(Page("p", "", (Chapter((Table(designs.short_alternatives(study)),)),)))
+    assert "{of" not in page.split("</style>")[1] and "camera from above" in page
+    assert (
+        "yield <small>[%]</small>" in page and ">0.299<" in page and "0.003" not in page.split("</style>")[1]
+    )

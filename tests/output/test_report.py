@@ -13,6 +13,7 @@ import shapes
 import trimesh
 from scipy.spatial.transform import Rotation
 
+import feederscrew as fs
 from feederscrew import bowl as bowls
 from feederscrew.output import DPI, style, tables
 from feederscrew.output import report as report_output
@@ -129,14 +130,14 @@ def test_html_loads_nothing_from_outside_and_has_the_cells_of_the_csv(light, cas
 
 
 def test_what_cannot_be_computed_or_does_not_travel_is_said_and_markup_is_text(bracket):
-    made = page(report(bracket, overrides=["track.radius=10 mm"]), chapters=chapters("track", "rate"))
+    made = page(report(bracket, bowl=fs.read_bowl(radius="10 mm")), chapters=chapters("track", "rate"))
     for section in made.sections:
         (notes,) = section.blocks
         assert notes.loud and len(notes.lines) == 1 and " - " in notes.lines[0]
     assert made.warnings == tuple(f"{s.title}: {s.blocks[0].lines[0]}" for s in made.sections)
     assert made.tiles == ()
     # A bowl too steep to travel.
-    steep = report(bracket, overrides=["track.climb=40 deg"])
+    steep = report(bracket, bowl=fs.read_bowl(climb="40 deg"))
     velocity, rate = page(steep, chapters=chapters("velocity", "rate")).sections
     assert "no steady state" in velocity.warnings[0]
     assert velocity.tiles == (blocks.Tile("travels", "–", "no steady state"),)

@@ -15,7 +15,7 @@ from feederscrew.output import record_views, tables
 from feederscrew.output.page.as_html import escape, texts_of
 from feederscrew.output.tables import heading_note
 from feederscrew.resting.aspects import find
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling.orientations import orientations
 
 PARTS = Path(__file__).parents[2] / "parts"
@@ -157,6 +157,6 @@ def test_the_files_of_a_record_are_offered_by_a_function_that_is_there(name):
 
 
 def test_a_study_of_tooling_has_a_table():
-    own = {"rule": "csa", "verdicts": 1, "vary": False}
+    own = {"search": ToolingSearch(rule="csa", verdicts=1, vary=False)}
     study = tooling(fs.load(PARTS / "squarenut_m5.stl"), fs.read_bowl(), "A", **own)
     assert {"aspect", "share"} <= set(study.to_frame().columns)

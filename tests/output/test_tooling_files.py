@@ -21,7 +21,7 @@ from feederscrew.output import shading, solid_files, tooling_drawing, tooling_fi
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
 from feederscrew.tooling.devices.kinds import make_device
@@ -133,7 +133,7 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
 def isolated():
     """The bracket's aspect A at 270 deg, which a hole isolates, and its settings."""
     settings = bowls.settings(None, ["track.width=45 mm"])
-    own = {"heading": 1.5 * np.pi, "without": ("sorter",), "vary": False}
+    own = {"heading": 1.5 * np.pi, "without": ("sorter",), "search": ToolingSearch(vary=False)}
     return tooling(BRACKET, bowls.record(settings), "A", **own), settings
 
 
@@ -218,7 +218,19 @@ def test_what_leaves_is_drawn_as_it_leaves(lying):
     off = [replace(one, falls_off=True) for one in lying[1]]
     page = tooling_figures.chain(lying[0].devices, off, even(off))
     assert len(page.axes) == len(off)
-    assert sum(text.get_text() == "meets no device" for text in page.texts) == len(off)
+    assert sum(text.get_text() == "before it meets a device" for text in page.texts) == len(off)
+
+
+def test_what_the_track_does_not_carry_is_said_to_be_returned_as_the_table_says(lying):
+    """The picture said that it meets no device, and the table that the vision reject returns it."""
+    every = [replace(one, falls_off=place == 1) for place, one in enumerate(lying[1])]
+    like = every[0].aspect, every[0].heading, 0.5e-3
+    sorter = make_device("sorter", "here", like=like, sees="outline").rewritten()
+    wide = make_device("narrowed_track", "here", limit=0.03)
+    for devices, returns in (([wide, sorter], True), ([wide], False)):
+        page = tooling_figures.chain(devices, every, even(every))
+        shown = " ".join(text.get_text() for text in page.texts)
+        assert ("falls off the track; else returned by vision reject" in shown) == returns
 
 
 def test_rails_are_cut_across_under_what_hangs():

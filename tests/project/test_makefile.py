@@ -101,6 +101,7 @@ def test_the_site_has_every_page_once_and_no_other(tree):
     assert "--strict" in build and "--config-file" not in build
     config = (ROOT / "mkdocs.yml").read_text()
     pages = re.findall(r"- ([\w/]+\.md)$", config.partition("\nnav:")[2], re.MULTILINE)
-    made = ["api.md", "changelog.md", "overview.md"]  # by docs/site/pages.py
+    books = (f"notebooks/{book.stem}.md" for book in (ROOT / "docs/notebooks").glob("*.ipynb"))
+    made = ["api.md", "changelog.md", "overview.md", *books]  # by docs/site/pages.py
     there = [path.relative_to(ROOT / "docs").as_posix() for path in (ROOT / "docs").rglob("*.md")]
     assert sorted(pages) == sorted([*made, *(page for page in there if not page.startswith("measured"))])

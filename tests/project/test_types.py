@@ -24,31 +24,34 @@ found: fs.Aspects = fs.find_aspects(part)
 names: tuple[str, ...] = found.names
 standing: fs.Posture = fs.posture(part, found, names[0])
 fs.write_names(part, found, Path("names.yaml"))
+one: fs.Aspect = resting["A"]
 print(fs.inertia(part).to_frame(), resting.plot("aspects"), part)
 fs.compare(part, "counts.csv", launch="drop")
 fs.calibrate(part, Path("counts.csv"))
 fs.drop(part, launch="drop", drops=2000, seed=2, jobs=2, traced=3, fall=("20 mm", 0.05), friction="0.3")
-fs.shake(part, [bowl, plain], seconds=1.0, restitution=0.2, frequency="60 Hz")
+fs.shake(part, [bowl, plain], seconds=1.0, restitution=0.2)
 
-velocity: float = fs.convey(bowl, amplitude="0.3 mm", overrides={"track.climb": "2 deg"}).answer.velocity
-answer: fs.Answer = fs.convey(bowl, amplitude=0.3e-3).answer
-fs.slide(bowl, ["20 deg", 0.5], static=0.3)
-fs.floor(part, bowl, "A", heading="90 deg", gravity=9.8)
-fs.track(part, bowl, "A", heading=0.5, bank="5 deg")
-fs.headings(part, bowl, width="30 mm")
+velocity: float = fs.convey(bowl.with_values({"track.climb": "2 deg"}, amplitude="0.3 mm")).answer.velocity
+answer: fs.Answer = fs.convey(bowl.with_values(amplitude=0.3e-3)).answer
+fs.slide(bowl, ["20 deg", 0.5])
+fs.floor(part, bowl, "A", heading="90 deg")
+fs.track(part, bowl, "A", heading=0.5)
+fs.headings(part, bowl)
 
 known: fs.Shares = fs.shares(part, bowl, launch="feed", fed=200, seed=2)
 devices: tuple[Device, ...] = bowl.devices
-rate: fs.Rate = fs.rate(part, bowl, "A", devices=devices, gap="2 mm", aspect_shares=known, climb="2 deg").rate
+rate: fs.Rate = fs.rate(part, bowl, "A", devices=devices, gap="2 mm", aspect_shares=known).rate
 fs.tune(part, bowl, "A", "15/min", worst=True, rule="csa")
-fs.size_bowl(part, 1.0, "A", path="b.yaml", overrides="track.width=30 mm", hand="left")
-fs.tooling(part, bowl, "A", margin="0.1 mm", purity=0.98, without=["wiper"], seconds="2 min", width="30 mm")
-fs.trial(part, bowl, "A", parts=40, queue=60, seconds=20, amplitude="0.2 mm", progress=print)
-study = fs.design(part, "60/min", bowl, up="B,C", diameter=("200 mm", 0.4), draws=10, frequency="50 Hz")
+fs.size_bowl(part, 1.0, "A", bowl=bowl)
+searched = fs.ToolingSearch(seconds="2 min", vary=False)
+fs.tooling(part, bowl, "A", margin="0.1 mm", purity=0.98, without=["wiper"], search=searched)
+fs.trial(part, bowl, "A", parts=40, queue=60, seconds=20, progress=print)
+study = fs.design(part, "60/min", bowl, up="B,C", diameter=("200 mm", 0.4), search=fs.DesignSearch(draws=10))
 designed: fs.Bowl | None = study.bowl
 family = fs.design([part, part], target=1.0, jobs=2)
 worst: tuple[float, float, float] = family.members[0].delivered
-fs.report(part, "A", target="60/min", bowl={"path": "b.yaml"}, gap="2 mm", amplitude="0.2 mm")
+fs.report(part, "A", target="60/min", bowl=bowl, gap="2 mm")
+frame = fs.sweep(fs.convey, bowl, frequency=["40 Hz", 50.0], amplitude=["0.1 mm"], jobs=2)
 fs.reproduce().to_frame("3-9")
 print(study.status, repr(answer), standing.height, rate.parts.low)
 try:
@@ -57,7 +60,7 @@ except (fs.MeshError, fs.ConfigError, fs.Faults, fs.FeederError) as fault:
     print(fault.lines)
 """
 WRONG = """
-fs.convey(bowl, amplitud="0.3 mm")
+bowl.with_values(amplitud="0.3 mm")
 fs.convey(part)
 fs.rate(part, bowl, "A", gap=[2])
 fs.tooling(part, bowl, purity="much")

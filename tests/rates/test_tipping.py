@@ -23,9 +23,9 @@ from feederscrew.rates import tipping as verdicts
 from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.tipping import OVER, ROCKS, STAYS, over_period, steady, tipping
 from feederscrew.resting.aspects import find
-from feederscrew.studies.bowl import bowl as sized
+from feederscrew.studies.bowl import size_machine as sized
 from feederscrew.studies.rate import Shares, passages, rate
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.studies.track import track
 from feederscrew.studies.tune import tune
 from feederscrew.tooling.devices.base import UNSURE
@@ -98,7 +98,7 @@ def test_a_ball_rolls_back_and_is_not_counted_but_for_the_highest_rate(ball):
     assert (made.parts.value, made.parts.low) == (0.0, 0.0)
     assert made.parts.high == pytest.approx(made.offered.high)
     with pytest.raises(FeederError, match=r"aspect A, heading .*: lies on its round side and rolls back"):
-        tune(part, BOWL, "A", 1.0, rule="csa", arriving=lambda bowl: known)
+        tune(part, BOWL, "A", 1.0, rule="csa", aspect_shares=lambda bowl: known)
     with pytest.raises(FeederError, match=r"track\.climb: the part lies on its round side and rolls back"):
         sized(bowls.settings(None), part, 1.0, rule="csa", aspects=known.aspects)
 
@@ -138,7 +138,7 @@ def test_a_lying_pin_along_the_wall_is_not_in_the_way_of_those_across_it(monkeyp
 
 def test_tune_tooling_passages_and_a_sized_bowl_reckon_without_what_tips_over():
     part, found = pin(1)
-    own = {"rule": "csa", "arriving": lambda bowl: Shares(found)}
+    own = {"rule": "csa", "aspect_shares": lambda bowl: Shares(found)}
     study = tune(part, BOWL, "A", 400.0 / 60.0, **own)
     assert {one.over for one in study.settings} == {("B@0",), ()}
     for one in study.settings:
@@ -148,7 +148,7 @@ def test_tune_tooling_passages_and_a_sized_bowl_reckon_without_what_tips_over():
         assert parts.value == pytest.approx(one.solution.rate, rel=1e-9)
     standing = tune(part, BOWL, "B", 5.0 / 60.0, **own)
     assert {one.solution.answer.regime for one in standing.settings} == {"hop"}
-    study = tooling(part, BOWL, rule="csa", aspect_shares=found)
+    study = tooling(part, BOWL, search=ToolingSearch(rule="csa"), aspect_shares=found)
     assert study.warnings == (SAID,)
     isolated = {one.name: made for one, made in zip(study.orientations, study.designs)}
     assert isolated["B@0"].reasons == ("B@0 can tip over on the track at this drive",)

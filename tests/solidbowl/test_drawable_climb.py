@@ -42,7 +42,7 @@ def drawn(tmp_path, track, climb):
     lines += [] if climb is None else [f"track.climb={np.degrees(climb)} deg"]
     settings = bowls.settings(tmp_path / "bowl.yaml", lines)
     wanted = solidbowl.solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
-    return machines.bowl(settings, PART, 0.05, aspects=ASPECTS, solid=wanted, rule="csa")
+    return machines.size_machine(settings, PART, 0.05, aspects=ASPECTS, solid=wanted, rule="csa")
 
 
 def test_it_is_the_one_that_the_bowl_takes_by_itself_and_a_step_less_is_refused(tmp_path, spaced):

@@ -18,7 +18,7 @@ from feederscrew.rates import drive_settings, stream
 from feederscrew.resting.aspects import find
 from feederscrew.studies import rate as rates
 from feederscrew.studies.rate import Shares, most_frequent, rate, shares
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.studies.tune import tune
 from feederscrew.tooling.devices.kinds import KINDS
 
@@ -82,7 +82,7 @@ def test_rate_says_of_each_setting_what_tune_says_and_each_drive_is_asked_once()
 
     for worst in (False, True):
         asked = []
-        own = {"arriving": lambda bowl: asked.append(bowl) or at(bowl), "worst": worst}  # noqa: B023
+        own = {"aspect_shares": lambda bowl: asked.append(bowl) or at(bowl), "worst": worst}  # noqa: B023
         settings = tune(block, BOWL, "A", TARGET, **own).settings
         assert len(asked) == len(set(asked)) and BOWL in asked and len(settings) >= 2
         for setting in settings:
@@ -96,8 +96,10 @@ def test_rate_says_of_each_setting_what_tune_says_and_each_drive_is_asked_once()
 
 
 def test_devices_that_turn_parts_are_used_where_they_may_be_and_bring_more():
-    own = {"rule": "csa", "vary": False, "without": "cut_out"}
-    plain, turned = (tooling(BAR, STRAIGHT, "B", turn=turn, **own).design for turn in (False, True))
+    searches = [ToolingSearch(rule="csa", vary=False, turn=turn) for turn in (False, True)]
+    plain, turned = (
+        tooling(BAR, STRAIGHT, "B", without="cut_out", search=search).design for search in searches
+    )
     assert not any(KINDS[cut.device.kind].turns for cut in plain.cuts)
     assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
     assert turned.efficiency > 2.0 * plain.efficiency

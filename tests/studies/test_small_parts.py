@@ -17,7 +17,7 @@ from feederscrew.output import tooling as tooling_output
 from feederscrew.part.record import MAX_FACETS, small_part_remarks
 from feederscrew.studies.headings import headings
 from feederscrew.studies.rate import passages, rate
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling.devices.blades import Wiper
 
 BOWL, MANY_BOWL = (replace(bowls.default(), devices=(Wiper("bowl.yaml:1", limit=h),)) for h in (2e-4, 5e-3))
@@ -30,7 +30,7 @@ def chip(folder, scale=1.0):
 
 def test_margin_play_and_tolerance_are_compared_with_the_part(tmp_path):
     part = chip(tmp_path)
-    study = tooling(part, bowls.default(), "A", rule="csa", verdicts=50)
+    study = tooling(part, bowls.default(), "A", search=ToolingSearch(rule="csa", verdicts=50))
     for lines in (study.warnings, tooling_output.document(study)["warnings"]):
         text = next(line for line in lines if "tolerance" in line)
         # together 0.25 mm: 42 % of 0.6 mm, and more than 0.23 mm
@@ -57,7 +57,7 @@ def test_a_part_of_very_many_facets_is_refused_by_one_line_where_it_would_travel
     mesh.export(tmp_path / "many.stl")
     part = feeder.load(tmp_path / "many.stl")
     for study in (
-        lambda: tooling(part, MANY_BOWL, rule="csa"),
+        lambda: tooling(part, MANY_BOWL, search=ToolingSearch(rule="csa")),
         lambda: rate(part, MANY_BOWL, rule="csa"),
         lambda: passages(part, MANY_BOWL, feeder.aspects(part, drops=0).aspects, "csa"),
         lambda: feeder.design(part, "30/min"),

@@ -12,7 +12,7 @@ from on_track import block, coming, device, load, lying, named, pick
 from feederscrew import bowl as bowls
 from feederscrew.errors import ArgumentError
 from feederscrew.rates.tipping import is_surely_gone
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling import falling, footprints
 from feederscrew.tooling.devices import openings
 from feederscrew.tooling.devices.base import UNSURE
@@ -28,7 +28,7 @@ BOWL = bowls.read(None, ("track.climb=0 deg", "track.bank=0 deg"))
 BROAD = replace(BOWL.track, width=0.04)
 SWEEP = math.radians(30.0)
 BANKED = bowls.read(None, ["track.width=30 mm", "track.bank=6 deg"])
-OWN = {"rule": "csa", "without": "cut_out"}
+OWN = {"search": ToolingSearch(rule="csa"), "without": "cut_out"}
 
 
 def rectangle(length, width, first=0.0):

@@ -14,7 +14,7 @@ from feederscrew import bowl as bowls
 from feederscrew.output import tooling as tables
 from feederscrew.rates.tipping import steady
 from feederscrew.studies.rate import rate
-from feederscrew.studies.tooling import tooling
+from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling.isolating import chain, design, hole_search
 from feederscrew.tooling.isolating.chain import DesignConstraints, design_task, propose
 from feederscrew.tooling.isolating.hole_search import HoleSearch
@@ -52,7 +52,7 @@ def mirrored(every):
 
 def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
     monkeypatch.setattr(hole_search, "STARTS", 20)
-    study = tooling(block(), ROOMY, verdicts=2000, without="sorter", vary=False)
+    study = tooling(block(), ROOMY, search=ToolingSearch(verdicts=2000, vary=False), without="sorter")
     reasons = [one.reasons[0] for one in study.designs if not one.isolated]
     assert len(reasons) == 4  # what stands tall on a small foot goes wherever the block lying flat goes
     assert sum("which stands on a larger foot and is no higher" in one for one in reasons) >= 2
@@ -63,7 +63,7 @@ def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
 
 
 def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking():
-    own = {"heading": 0.0, "verdicts": 1, "without": SENSOR, "vary": False}
+    own = {"heading": 0.0, "without": SENSOR, "search": ToolingSearch(verdicts=1, vary=False)}
     study = tooling(block(22, 13, 6), BOWL, "C", **own)
     made, one = study.design, study.orientations[study.wanted]
     own = {"search": HoleSearch(verdicts=1), "constraints": DesignConstraints(without=SENSOR)}
@@ -77,7 +77,9 @@ def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking():
 
 def test_a_cut_is_not_eased_without_end_for_what_falls_off_at_any_width():
     """It was infinitely wide where a shank, which rolls off, was all that a narrowed track had to return."""
-    study = tooling(load("hexbolt_m8x25"), BOWL, "B", verdicts=1, without=SENSOR, vary=False)
+    study = tooling(
+        load("hexbolt_m8x25"), BOWL, "B", search=ToolingSearch(verdicts=1, vary=False), without=SENSOR
+    )
     every, narrow = study.orientations, next(k for k in chain.numeric_kinds() if k.kind == "narrowed_track")
     needed = chain.limits(narrow, every)
     cut = narrow("own").valued(float(needed[study.wanted]) + 5e-4)
@@ -126,7 +128,9 @@ def test_every_cut_holds_what_it_says_holes_part_mirror_images_and_enough_purity
 def test_a_headed_pin_is_fed_hanging():
     head, shank = shapes.cylinder(5.0, 4.0, 32), shapes.cylinder(2.0, 20.0, 32)
     head.apply_translation([0, 0, 12.0])
-    study = tooling(shapes.part(head.union(shank)), ROOMY, "A", seconds=20.0, vary=False)
+    study = tooling(
+        shapes.part(head.union(shank)), ROOMY, "A", search=ToolingSearch(seconds=20.0, vary=False)
+    )
     made = study.design
     along = [k for k, one in enumerate(study.orientations) if one.aspect == "A" and one.length > 0.02]
     leaves = study.shares[along].sum()
@@ -164,7 +168,14 @@ def test_a_design_goes_on_behind_the_devices_of_the_bowl(bracket, tmp_path):
     assert behind.efficiency == pytest.approx(alone.efficiency)
     path, one = tmp_path / "bowl.yaml", every[low]
     path.write_text("track: {radius: 150 mm, width: 200 mm}\ndevices:\n  - wiper: 19 mm\n")
-    study = tooling(part, bowls.read(path), one.aspect, heading=one.heading, without="cut_out", vary=False)
+    study = tooling(
+        part,
+        bowls.read(path),
+        one.aspect,
+        heading=one.heading,
+        without="cut_out",
+        search=ToolingSearch(vary=False),
+    )
     text = tables.bowl_file(study, bowls.settings(path))
     assert text.count("wiper: 19 mm") == 1
     path.write_text(text)
@@ -232,13 +243,13 @@ def test_what_rolls_is_held_by_a_bank_or_lies_in_a_groove(dowel, name, friction,
 
 
 def test_the_design_of_a_dowel_begins_with_its_bank(dowel):
-    own, part = {"rule": "csa", "vary": False}, load("dowel_6x20")
+    own, part = {"search": ToolingSearch(rule="csa", vary=False)}, load("dowel_6x20")
     made = tooling(part, ROLLING, "A", heading=0.0, **own).design
     first, *others = made.cuts
     assert made.isolated and (first.device.kind, first.device.text) == ("bank", "7 deg")
     assert np.isnan(first.margin_pass) and first.returns == ()
     assert made.devices == (first.device, *(cut.device for cut in others))
-    own, headings = {"rule": "csa", "without": "bank"}, (0.0, math.pi / 2)
+    own, headings = {"search": ToolingSearch(rule="csa"), "without": "bank"}, (0.0, math.pi / 2)
     level, across = (tooling(part, ROLLING, "A", heading=one, **own).design for one in headings)
     assert all(cut.device.kind != "bank" for cut in level.cuts)
     assert not across.isolated and "can roll back" in across.reasons[0]
@@ -246,8 +257,8 @@ def test_the_design_of_a_dowel_begins_with_its_bank(dowel):
     one = replace(named(dowel, "A@90"), wall_grip=0.3)
     assert one.may_roll_back and not bank.onward(one).may_roll_back
     # It leaves out of the groove in which what lies across turns.
-    own = {"heading": 0.0, "rule": "csa", "verdicts": 1}
-    varied, level = (tooling(part, BOWL, "A", vary=vary, **own).design for vary in (True, False))
+    searches = [ToolingSearch(rule="csa", verdicts=1, vary=vary) for vary in (True, False)]
+    varied, level = (tooling(part, BOWL, "A", heading=0.0, search=one).design for one in searches)
     assert [cut.device.text for cut in varied.cuts] == ["{angle: 55 deg}"]
     assert varied.isolated and varied.efficiency == pytest.approx(0.9927, abs=2e-4)
     assert level.efficiency == pytest.approx(0.8559, abs=2e-4)
@@ -309,8 +320,8 @@ def test_other_tracks_and_sweeps_are_tried_where_a_face_clears_itself(flat):
 
 def test_what_falls_off_has_a_track_as_wide_as_it_is(tmp_path):
     narrow = bowls.read(None, ["track.width=9 mm"])
-    own = {"heading": math.pi / 2, "rule": "csa", "verdicts": 1}
-    study = tooling(block(), narrow, "A", **own)  # 20 mm across
+    search = ToolingSearch(rule="csa", verdicts=1)
+    study = tooling(block(), narrow, "A", heading=math.pi / 2, search=search)  # 20 mm across
     made, one = study.design, study.orientations[study.wanted]
     assert made.isolated and made.width == study.bowl.track.width
     assert one.width + 1e-3 <= made.width < one.width + 2.1e-3 and not one.falls_off
@@ -318,7 +329,8 @@ def test_what_falls_off_has_a_track_as_wide_as_it_is(tmp_path):
     for settings in (["track.width=9 mm", "track.bank=0 deg"], []):
         (tmp_path / "tooling.yaml").write_text(tables.bowl_file(study, bowls.settings(None, settings)))
         assert bowls.read(tmp_path / "tooling.yaml").track.width == pytest.approx(made.width, abs=1e-12)
-    assert tooling(block(), narrow, "A", vary=False, **own).design.width is None
+    search = replace(search, vary=False)
+    assert tooling(block(), narrow, "A", heading=math.pi / 2, search=search).design.width is None
 
 
 PROFILES = {  # [mm] radius, height
@@ -358,7 +370,7 @@ def test_a_device_that_changes_no_number_is_left_out_and_what_drops_parts_stays(
 @pytest.mark.parametrize("name", PROFILES)
 def test_no_device_of_these_parts_is_idle(name):
     part = shapes.part(trimesh.creation.revolve(PROFILES[name], sections=24), name)
-    study = tooling(part, BOWL, "A", rule="csa", verdicts=1)
+    study = tooling(part, BOWL, "A", search=ToolingSearch(rule="csa", verdicts=1))
     made, every = study.design, study.orientations
     own = [one for one in made.cuts if not one.device.serves]
     assert own and all(one.device.serves for one in made.cuts if one not in own)

@@ -143,7 +143,9 @@ def test_a_lead_in_is_read_drawn_and_written_anew(tmp_path):
     assert copy.lead == pytest.approx((2.5e-3, 12.5e-3, 40e-3, 30e-3))
     # A shank whose tip lies on the rail is not sure to go down.
     bowl = read(tmp_path, "rails: {from: 4.4 mm, to: 11.45 mm}")
-    study = tooling_study.tooling(load("hexbolt_m8x25"), bowl, rule="csa", verdicts=1, seconds=1e-3)
+    study = tooling_study.tooling(
+        load("hexbolt_m8x25"), bowl, search=tooling_study.ToolingSearch(rule="csa", verdicts=1, seconds=0.001)
+    )
     one = named(study.orientations, "A@188")
     assert 1e3 * neck(one).tip == pytest.approx(-2.41, abs=0.05)  # nearer to the wall than its weight
     narrow = verdict(bowl.devices[0], one, study.orientations)
@@ -154,7 +156,9 @@ def test_a_lead_in_is_read_drawn_and_written_anew(tmp_path):
 
 def test_the_screw_is_fed_between_rails_and_its_trial_agrees(tmp_path):
     part = load("hexbolt_m8x25")
-    design = tooling_study.tooling(part, bowls.read(None, []), "A", rule="csa").design
+    design = tooling_study.tooling(
+        part, bowls.read(None, []), "A", search=tooling_study.ToolingSearch(rule="csa")
+    ).design
     (slot,) = [cut.device for cut in design.cuts if cut.device.hangs]
     assert 0.2e-3 < slot.span[1] - slot.span[0] - 6.643e-3 < 0.6e-3
     assert slot.lead[0] < slot.span[0] and slot.lead[1] > slot.span[1]

@@ -41,6 +41,7 @@ PLAYER = (
     "<output>0.00 s</output></span>"
 )
 SHORT = 3  # significant digits of a percentage, and of a number at the head of a page
+LONG_LETTERS = 36  # of a cell that needs a wide column
 NOTHING = "–"  # in an empty cell
 FOLLOWING = (  # what the script shows: its name, what a reader calls it
     ("velocity", "velocity"), ("regime", "the part"), ("throw", "throw number"),
@@ -223,12 +224,17 @@ def _table(frame: tables.Frame) -> str:
         for place, (cell, count) in enumerate(zip(column, decimals)):
             if number and count < most and "e" not in cell and cell != NOTHING:
                 pad[place] = f' data-pad="{"" if count else "."}{"0" * (most - count)}"'
-    lines = [
-        f"<tr>{''.join(f'<td{m}{pad}>{escape(cell)}</td>' for m, pad, cell in zip(marks, own, row))}</tr>"
-        for own, row in zip(zip(*pads), zip(*columns))
-    ]
+    lines = []
+    for own, row in zip(zip(*pads), zip(*columns)):
+        cells = (f"<td{_long(m, cell)}{pad}>{escape(cell)}</td>" for m, pad, cell in zip(marks, own, row))
+        lines.append(f"<tr>{''.join(cells)}</tr>")
     kind = ' class="pairs"' if _pairs(kinds.Table(frame)) else ' class="many"' if len(heads) > MANY else ""
     return _grid(kind, head, lines)
+
+
+def _long(mark: str, cell: str) -> str:
+    """The class of a cell: one of many words is no narrow column of them, which would make its row tall."""
+    return mark or (' class="long"' if len(cell) > LONG_LETTERS else "")
 
 
 def texts_of(frame: tables.Frame) -> tuple[list[tuple[str, str]], list[bool], list[list[str]]]:

@@ -30,7 +30,7 @@ MOST = 24  # orientations that come most often have a row
 STAYS: dict[int, str] = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves hanging
 
 
-def matrix(run: TrialRun) -> Figure:
+def matrix(run: TrialRun, ax: "style.Axes | None" = None) -> Figure:
     """Draw in which orientation parts of a TrialRun came, and in which they left or what became of them."""
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried_counts[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
@@ -40,8 +40,7 @@ def matrix(run: TrialRun) -> Figure:
     shares = counts / run.tried_counts[rows][:, None]
     titles = [names[m] for m in out]
     titles += [STAYS.get(fate, course.FATES[fate].replace("_", "\n")) for fate in lost]
-    figure = style.figure(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows))
-    axes = figure.add_subplot()
+    figure, axes = style.chart(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows), ax=ax, grid="none")
     axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.25, aspect="auto")
     axes.hlines(np.arange(1, len(rows)) - 0.5, -0.5, len(titles) - 0.5, color="white", linewidth=1.5)
     axes.vlines(np.arange(1, len(titles)) - 0.5, -0.5, len(rows) - 0.5, color="white", linewidth=1.5)

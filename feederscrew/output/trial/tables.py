@@ -41,7 +41,7 @@ def pictures(study: TrialStudy) -> list[offer.Offer]:
     run, over = study.runs[0], "Paths over each device, from above"
     stills = "A part that passes and one that does not"
     return [
-        offer.picture("trial.png", "Orientations in and out", lambda: figures.matrix(run)),
+        offer.picture("trial.png", "Orientations in and out", lambda ax=None: figures.matrix(run, ax)),
         offer.picture("trial_paths.png", over, lambda: figures.paths(run)),
         offer.picture("trial_stills.png", stills, lambda: film.stills(study.part, run)),
     ]
