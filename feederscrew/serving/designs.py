@@ -1,0 +1,246 @@
+"""Designs that a browser asks for: the call of ``feeder design``, the process, and what it left."""
+
+import contextlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from feederscrew.errors import printable
+from feederscrew.part.density import MATERIALS
+from feederscrew.running import STAGE_VARIABLE
+from feederscrew.serving import guard
+from feederscrew.serving.refusal import Refusal, in_words_of_the_page
+from feederscrew.serving.uploads import Upload
+
+MACHINES = {  # what a reader chooses: label, and the options of the design
+    "50": ("leaf springs, 50 Hz mains", ("--drive", "leaf-spring", "--set", "machine.mains=50 Hz")),
+    "60": ("leaf springs, 60 Hz mains", ("--drive", "leaf-spring", "--set", "machine.mains=60 Hz")),
+    "two": ("two-axis drive", ("--drive", "two-axis")),
+}
+RATES = (0.1, 3000.0)  # [1/min] that may be asked for
+MOST_DESIGNS = 100  # of one run: each keeps its folder
+LINES_SHOWN = 400  # of what a design says
+STOPPED = (130, 143)  # exit statuses of a design that was stopped, as the command line has them
+STOP_WITHIN_S, KILL_WITHIN_S = 20.0, 5.0  # after an interrupt and after a termination
+OTHERWISE = "choose another rate, machine or material, or give this part to feeder design on the command line"
+
+
+@dataclass(frozen=True)
+class Order:
+    """What a page asks for: a part, and the values of its fields."""
+
+    upload: Upload
+    rate: float  # [1/min]
+    material: str
+    machine: str
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any], upload: Upload) -> "Order":
+        """Return the order of a page. Raises Refusal of a value that the page does not offer."""
+        rate, material, machine = (values.get(name) for name in ("rate", "material", "machine"))
+        if material not in [density.name for density in MATERIALS]:
+            raise Refusal(400, "material: is not one of the list - choose one")
+        if machine not in list(MACHINES):
+            raise Refusal(400, "machine: is not one of the list - choose one")
+        if isinstance(rate, bool) or not isinstance(rate, int | float) or not RATES[0] <= rate <= RATES[1]:
+            what = f"is not from {RATES[0]:g} to {RATES[1]:g}"
+            raise Refusal(400, f"parts a minute: {what} - give another number")
+        return cls(upload, float(rate), material, machine)
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """The arguments of ``feeder design``, without its folder."""
+        own = "--target", f"{self.rate:g}/min", "--density", self.material, "--units", self.upload.units
+        return "design", str(self.upload.path), *own, *MACHINES[self.machine][1]
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """What the page is told of it."""
+        return {"rate": self.rate, "material": self.material, "machine": self.machine}
+
+
+class DesignState(StrEnum):
+    """What became of a design so far."""
+
+    RUNNING = "running"
+    STOPPING = "stopping"
+    DONE = "done"
+    STOPPED = "stopped"
+    FAILED = "failed"
+
+
+class Guard:
+    """The process that ends designs and removes the folder of a server that was killed."""
+
+    def __init__(self, folder: Path) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-I", "-S", guard.__file__, str(folder)],
+            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True,
+            start_new_session=True,
+        )  # fmt: skip
+        self._turn = threading.Lock()
+
+    def tell(self, word: str, process: int) -> None:
+        """Tell it of a group of processes: 'run' or 'end'."""
+        with self._turn, contextlib.suppress(OSError, ValueError):
+            if self._process.stdin is not None:
+                self._process.stdin.write(f"{word} {process}\n")
+                self._process.stdin.flush()
+
+    def close(self) -> None:
+        """End it: it removes the folder."""
+        with self._turn, contextlib.suppress(OSError, ValueError):
+            if self._process.stdin is not None:
+                self._process.stdin.close()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(KILL_WITHIN_S)
+
+
+class DesignJob:
+    """A command that designs, with what it says and the files it leaves in a folder of results."""
+
+    def __init__(
+        self, key: str, program: Sequence[str], order: Order, folder: Path,
+        tell_guard: Callable[[str, int], None],
+    ) -> None:  # fmt: skip
+        self.id, self.order, self.folder, self._tell_guard = key, order, folder, tell_guard
+        self.results, self._stage_file = folder / "results", folder / "stage.json"
+        self._lines: deque[str] = deque(maxlen=LINES_SHOWN)
+        self._stop_asked = False
+        self._answer: dict[str, Any] | None = None
+        try:
+            self.results.mkdir(parents=True)
+            self._process = subprocess.Popen(
+                [*program, *order.arguments, "-o", str(self.results)],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                errors="replace",
+                cwd=folder,
+                start_new_session=True,  # Ctrl-C in the terminal of the server reaches the server alone
+                env={**os.environ, "NO_COLOR": "1", STAGE_VARIABLE: str(self._stage_file)},
+            )
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        tell_guard("run", self._process.pid)
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        output = self._process.stdout
+        if output is not None:
+            with output:
+                self._lines.extend(line.rstrip() for line in output)
+        self._process.wait()
+        self._tell_guard("end", self._process.pid)
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it is still at work."""
+        return self._process.poll() is None
+
+    @property
+    def lines(self) -> list[str]:
+        """The last lines that it said, with the name of the part in place of its path."""
+        if not self.is_running:
+            self._reader.join(timeout=1.0)
+        upload, places = self.order.upload, (str(self.results), str(self.folder))
+        lines = [printable(line).replace(str(upload.path), upload.name) for line in self._lines]
+        for place in places:
+            lines = [line.replace(f"{place}{os.sep}", "").replace(place, "results") for line in lines]
+        return lines
+
+    @property
+    def state(self) -> DesignState:
+        """What became of it so far."""
+        if self.is_running:
+            return DesignState.STOPPING if self._stop_asked else DesignState.RUNNING
+        if self._process.returncode and (self._stop_asked or self._process.returncode in STOPPED):
+            return DesignState.STOPPED
+        return DesignState.DONE if self._process.returncode == 0 or self.answer else DesignState.FAILED
+
+    @property
+    def fault(self) -> str:
+        """Why it failed, in the words of the page; '' where it did not."""
+        if self.state != DesignState.FAILED:
+            return ""
+        faults = [line.removeprefix("Error: ") for line in self.lines if line.startswith("Error: ")]
+        return in_words_of_the_page(
+            faults[-1] if faults else "the design: ended without an answer", OTHERWISE
+        )
+
+    @property
+    def stage(self) -> dict[str, Any]:
+        """How far it is: stage, done, total, seconds gone and to go; empty where nothing is said."""
+        return _json_file(self._stage_file) if self.is_running else {}
+
+    def files(self) -> dict[str, Path]:
+        """Return the files that it left, by their path below the folder of its part; empty while it runs."""
+        if self.is_running:
+            return {}
+        return {
+            "/".join(path.relative_to(self.results).parts[1:]): path
+            for path in sorted(self.results.rglob("*"))
+            if path.is_file() and not path.is_symlink()
+        }
+
+    @property
+    def answer(self) -> dict[str, Any]:
+        """The document of its answer, ``design.json``; empty where there is none, or none yet."""
+        if self._answer is None and not self.is_running:
+            self._answer = _json_file(self.files().get("design.json"))
+        return self._answer or {}
+
+    def document(self) -> dict[str, Any]:
+        """Return what a list of designs says of it."""
+        answer = self.answer
+        names = ("status", "wanted", "delivered_per_minute")
+        return {
+            "id": self.id,
+            "part": self.order.upload.document,
+            "order": self.order.document,
+            "state": self.state,
+            **{name: answer.get(name) for name in names},
+        }
+
+    def stop(self) -> None:
+        """Ask it to end, as Ctrl-C does."""
+        self._stop_asked = True
+        self._signal(signal.SIGINT)
+
+    def end(self) -> None:
+        """End it and whatever it has started, within some seconds."""
+        for ending, seconds in ((signal.SIGTERM, STOP_WITHIN_S), (signal.SIGKILL, KILL_WITHIN_S)):
+            if not self.is_running:
+                break
+            self._stop_asked = True
+            self._signal(ending)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(seconds)
+        self._reader.join(timeout=1.0)
+
+    def _signal(self, number: int) -> None:
+        with contextlib.suppress(ProcessLookupError):
+            if self.is_running:
+                os.killpg(self._process.pid, number)
+
+
+def _json_file(path: Path | None) -> dict[str, Any]:
+    """The document in a file; empty where there is none, or no document."""
+    if path is not None:
+        with contextlib.suppress(OSError, ValueError, RecursionError):
+            document = json.loads(path.read_text(encoding="utf-8"))
+            return document if isinstance(document, dict) else {}
+    return {}
