@@ -23,8 +23,10 @@ END_WITHIN_S = 40.0  # after Ctrl-C or SIGTERM, a running design with it
 def serve(port: int, browser: bool, quiet: bool) -> None:
     """Example: feeder serve
 
-    Show the main job as a page on 127.0.0.1: drop a part file, see its resting aspects turn, choose material,
-    rate and machine, start a design, stop it, read its page and download its folder.
+    Show the main job as a page on 127.0.0.1. Drop a part file, see its resting aspects turn, and click the
+    one on which parts must leave. Choose rate, material, outcome, what may be used, machine and bowl at hand.
+    Start a design, stop it, read its page and download its folder. What falls short has the next steps as
+    buttons. The designs of the run are listed, each with the name of its part.
 
     It prints the address with a token of this run; without the token nobody else on the machine is answered.
     Nothing leaves the machine. One design runs at a time. What is uploaded and computed lies in a temporary

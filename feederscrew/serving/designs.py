@@ -8,65 +8,25 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 from feederscrew.errors import printable
-from feederscrew.part.density import MATERIALS
 from feederscrew.running import STAGE_VARIABLE
 from feederscrew.serving import guard
-from feederscrew.serving.refusal import Refusal, in_words_of_the_page
-from feederscrew.serving.uploads import Upload
+from feederscrew.serving.next_steps import next_steps
+from feederscrew.serving.orders import Order
+from feederscrew.serving.refusal import in_words_of_the_page
 
-MACHINES = {  # what a reader chooses: label, and the options of the design
-    "50": ("leaf springs, 50 Hz mains", ("--drive", "leaf-spring", "--set", "machine.mains=50 Hz")),
-    "60": ("leaf springs, 60 Hz mains", ("--drive", "leaf-spring", "--set", "machine.mains=60 Hz")),
-    "two": ("two-axis drive", ("--drive", "two-axis")),
-}
-RATES = (0.1, 3000.0)  # [1/min] that may be asked for
 MOST_DESIGNS = 100  # of one run: each keeps its folder
 LINES_SHOWN = 400  # of what a design says
 STOPPED = (130, 143)  # exit statuses of a design that was stopped, as the command line has them
 STOP_WITHIN_S, KILL_WITHIN_S = 20.0, 5.0  # after an interrupt and after a termination
 OTHERWISE = "choose another rate, machine or material, or give this part to feeder design on the command line"
-
-
-@dataclass(frozen=True)
-class Order:
-    """What a page asks for: a part, and the values of its fields."""
-
-    upload: Upload
-    rate: float  # [1/min]
-    material: str
-    machine: str
-
-    @classmethod
-    def of(cls, values: Mapping[str, Any], upload: Upload) -> "Order":
-        """Return the order of a page. Raises Refusal of a value that the page does not offer."""
-        rate, material, machine = (values.get(name) for name in ("rate", "material", "machine"))
-        if material not in [density.name for density in MATERIALS]:
-            raise Refusal(400, "material: is not one of the list - choose one")
-        if machine not in list(MACHINES):
-            raise Refusal(400, "machine: is not one of the list - choose one")
-        if isinstance(rate, bool) or not isinstance(rate, int | float) or not RATES[0] <= rate <= RATES[1]:
-            what = f"is not from {RATES[0]:g} to {RATES[1]:g}"
-            raise Refusal(400, f"parts a minute: {what} - give another number")
-        return cls(upload, float(rate), material, machine)
-
-    @property
-    def arguments(self) -> tuple[str, ...]:
-        """The arguments of ``feeder design``, without its folder."""
-        own = "--target", f"{self.rate:g}/min", "--density", self.material, "--units", self.upload.units
-        return "design", str(self.upload.path), *own, *MACHINES[self.machine][1]
-
-    @property
-    def document(self) -> dict[str, Any]:
-        """What the page is told of it."""
-        return {"rate": self.rate, "material": self.material, "machine": self.machine}
 
 
 class DesignState(StrEnum):
@@ -117,6 +77,7 @@ class DesignJob:
         self.results, self._stage_file = folder / "results", folder / "stage.json"
         self._lines: deque[str] = deque(maxlen=LINES_SHOWN)
         self._stop_asked = False
+        self._began, self._ended = time.monotonic(), 0.0
         self._answer: dict[str, Any] | None = None
         try:
             self.results.mkdir(parents=True)
@@ -144,6 +105,7 @@ class DesignJob:
             with output:
                 self._lines.extend(line.rstrip() for line in output)
         self._process.wait()
+        self._ended = time.monotonic()
         self._tell_guard("end", self._process.pid)
 
     @property
@@ -210,9 +172,22 @@ class DesignJob:
         return {
             "id": self.id,
             "part": self.order.upload.document,
-            "order": self.order.document,
+            "order": self.order.values,
             "state": self.state,
             **{name: answer.get(name) for name in names},
+        }
+
+    def progress(self) -> dict[str, Any]:
+        """Return all that a page shows of it but the links to its files."""
+        return {
+            **self.document(),
+            "lines": self.lines,
+            "stage": self.stage,
+            "seconds": (self._ended or time.monotonic()) - self._began,
+            "fault": self.fault,
+            "why": self.answer.get("why") or "",
+            "command": self.order.command,
+            "next": [step.document for step in next_steps(self.order, self.answer)],
         }
 
     def stop(self) -> None:

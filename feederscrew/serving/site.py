@@ -25,9 +25,10 @@ from werkzeug.wrappers import Request, Response
 
 from feederscrew.errors import FeederError, printable
 from feederscrew.part.density import MATERIALS
-from feederscrew.serving.designs import MACHINES, MOST_DESIGNS, DesignJob, Guard, Order
+from feederscrew.serving.designs import MOST_DESIGNS, DesignJob, Guard
+from feederscrew.serving.orders import ANY_HEADING, BEST_HEADING, MACHINES, OUTCOMES, MayUse, Order
 from feederscrew.serving.refusal import Refusal, in_words_of_the_page
-from feederscrew.serving.uploads import ENDINGS, PART_BYTES, UNITS, Uploads
+from feederscrew.serving.uploads import BOWL_BYTES, ENDINGS, PART_BYTES, UNITS, Uploads
 
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")  # of this machine, as a browser may write them
@@ -120,6 +121,9 @@ class Site:
             case "POST", ["part", key]:  # the same file in another unit
                 upload = self.uploads.read_again(key, request.args.get("units", ""), self._needed())
                 return _json(upload.document)
+            case "POST", ["bowl"]:  # the file of a bowl at hand
+                data = _body(request, BOWL_BYTES, "a bowl file", "leave out what is no bowl file")
+                return _json(self.uploads.take_bowl(request.args.get("name", ""), data).document)
             case "GET", ["aspects", key]:
                 return Response(self.uploads.find(key).view(), mimetype="text/html")
             case "POST", ["design"]:
@@ -167,6 +171,12 @@ class Site:
             "units": UNITS,
             "materials": [material.name for material in MATERIALS],
             "machines": [[name, label] for name, (label, _) in MACHINES.items()],
+            "outcomes": list(OUTCOMES.items()),
+            "uses": [[use, use.label] for use in MayUse],
+            "headings": [
+                [ANY_HEADING, "any heading"],
+                [BEST_HEADING, "one heading, the best"],
+            ],
             "bytes": PART_BYTES,
         }
         filled = text.replace("{{values}}", json.dumps(values).replace("<", "\\u003c"))
@@ -185,8 +195,7 @@ class Site:
         """Return all that the page shows of a design."""
         files = [name for name in job.files() if name]
         links = {name: f"{TOKEN_PATH}{self.token}/design/{job.id}/files/{quote(name)}" for name in files}
-        own = {"lines": job.lines, "stage": job.stage, "fault": job.fault, "why": job.answer.get("why", "")}
-        return {**job.document(), **own, "files": links}
+        return {**job.progress(), "files": links}
 
     def start_design(self, request: Request) -> Response:
         """Start a design of a part that is here.
@@ -199,7 +208,9 @@ class Site:
             values = None
         if not isinstance(values, dict):
             raise Refusal(400, "the values of the design are not JSON - use the page of feeder serve")
-        order = Order.of(values, self.uploads.find(values.get("part")))
+        bowl = values.get("bowl")
+        own_bowl = None if bowl is None else self.uploads.find_bowl(bowl)
+        order = Order.of(values, self.uploads.find(values.get("part")), own_bowl)
         with self._alone():
             if any(job.is_running for job in self.designs.values()):
                 raise Refusal(409, "a design is running - stop it first")

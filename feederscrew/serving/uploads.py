@@ -6,6 +6,7 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
+from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError, printable
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output.folder import safe_name
@@ -14,12 +15,16 @@ from feederscrew.output.page.blocks import Chapter, Page, Table
 from feederscrew.output.report import aspect_views
 from feederscrew.part import load
 from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 from feederscrew.serving.refusal import Refusal, in_words_of_the_page
 from feederscrew.studies.aspects import aspects
+from feederscrew.tooling.orientations import orientations
 from feederscrew.units import MM
 
 PART_BYTES = 64 * 2**20  # that a part file may have
 KEPT_BYTES = 1024 * 2**20  # of all part files that are kept: the oldest that no design needs go
+BOWL_BYTES, BOWL_ENDINGS = 256 * 2**10, ("yaml", "yml")
 MOST_UPLOADS = 200  # part files of one run
 ENDINGS = tuple(
     suffix for name, form in MESH_FORMATS.items() if name != CARD_FORMAT for suffix in form.suffixes
@@ -40,19 +45,34 @@ class Upload:
     path: Path
     size_mm: tuple[float, float, float]  # of its box, as it lies in the file
     aspects: tuple[str, ...]
-    warnings: tuple[str, ...]
+    lies: dict[str, str]  # how it lies on each aspect that is stable: 'on its largest face'
+    headings: dict[str, tuple[str, ...]]  # [deg] at which it comes along the track, by its stable aspects
 
     @property
     def document(self) -> dict[str, object]:
         """What the page is told of it."""
         return {
             "id": self.id, "name": self.name, "units": self.units, "size_mm": self.size_mm,
-            "aspects": self.aspects,
+            "aspects": self.aspects, "lies": self.lies, "headings": self.headings,
         }  # fmt: skip
 
     def view(self) -> str:
         """Return the page of its resting aspects."""
         return (self.path.parent / "view.html").read_text(encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class BowlFile:
+    """The file of a bowl at hand."""
+
+    id: str
+    name: str  # as it is shown
+    path: Path
+
+    @property
+    def document(self) -> dict[str, str]:
+        """What the page is told of it."""
+        return {"id": self.id, "name": self.name}
 
 
 class Uploads:
@@ -64,6 +84,7 @@ class Uploads:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.kept: dict[str, Upload] = {}  # by id, the oldest first
+        self.bowls: dict[str, BowlFile] = {}
         self._numbers = itertools.count(1)
         self._one_at_a_time = threading.Lock()
 
@@ -125,6 +146,40 @@ class Uploads:
             return before
         return self.take(before.name, units, before.path.read_bytes(), needed)
 
+    def find_bowl(self, key: object) -> BowlFile:
+        """Return a bowl file by its id. Raises Refusal where there is none."""
+        bowl = self.bowls.get(key) if isinstance(key, str) else None
+        if bowl is None:
+            raise Refusal(409, "that bowl file is not here - choose it again")
+        return bowl
+
+    def take_bowl(self, name: str, data: bytes) -> BowlFile:
+        """Keep a bowl file that can be read, its bytes ``data``. Raises Refusal."""
+        shown = printable(name)[-NAME_LETTERS:]
+        stem, _, ending = shown.rpartition(".")
+        if not stem or ending.lower() not in BOWL_ENDINGS:
+            raise Refusal(
+                415, f"{shown}: not a bowl file - give one that ends in .{', .'.join(BOWL_ENDINGS)}"
+            )
+        with self._one_at_a_time:
+            number = next(self._numbers)
+            if number > MOST_UPLOADS:
+                raise Refusal(429, f"{MOST_UPLOADS} files were sent in this run - start feeder serve again")
+            path = self.folder / str(number) / f"{_file_stem(stem)}.yaml"
+            try:
+                path.parent.mkdir(parents=True)
+                path.write_bytes(data)
+                bowls.read(path)
+            except FeederError as fault:
+                shutil.rmtree(path.parent, ignore_errors=True)
+                lines = " ".join(fault.lines).replace(str(path), shown)
+                raise Refusal(422, in_words_of_the_page(lines, "mend the file")) from fault
+            except BaseException:
+                shutil.rmtree(path.parent, ignore_errors=True)
+                raise
+            bowl = self.bowls[str(number)] = BowlFile(str(number), shown, path)
+        return bowl
+
     def _read(self, key: str, name: str, units: str, path: Path, data: bytes) -> Upload:
         path.parent.mkdir(parents=True)
         path.write_bytes(data)
@@ -140,9 +195,11 @@ class Uploads:
         (path.parent / "view.html").write_text(view, encoding="utf-8")
         corners = study.part.corners / MM
         size = (corners.max(axis=0) - corners.min(axis=0)).tolist()
-        return Upload(
-            key, name, units, path, (size[0], size[1], size[2]), tuple(study.aspects.names), warnings
-        )
+        rows = [row for row in table.rows() if row["stable"]]
+        headings = {row["aspect"]: () for row in rows} | _headings(study.part, study.aspects)
+        lies = {row["aspect"]: str(row["lies"]) for row in rows}
+        names = tuple(study.aspects.names)
+        return Upload(key, name, units, path, (size[0], size[1], size[2]), names, lies, headings)
 
     def _tidy(self, needed: frozenset[str]) -> None:
         """Forget the oldest files that no design needs, until the others are within KEPT_BYTES."""
@@ -153,6 +210,19 @@ class Uploads:
             if key not in needed:
                 shutil.rmtree(self.kept.pop(key).path.parent, ignore_errors=True)
                 del sizes[key]
+
+
+def _headings(part: Part, resting: Aspects) -> dict[str, tuple[str, ...]]:
+    """The headings [deg] at which a part comes along a track, as its orientations are named, by aspect."""
+    by_aspect: dict[str, tuple[str, ...]] = {}
+    try:
+        coming = orientations(part, resting, bowls.default().track)
+    except FeederError:  # too large for that bowl: the design says what it needs
+        return by_aspect
+    for orientation in coming:
+        aspect, _, heading = orientation.name.partition("@")
+        by_aspect[aspect] = (*by_aspect.get(aspect, ()), heading)
+    return by_aspect
 
 
 def _file_stem(stem: str) -> str:

@@ -4,6 +4,7 @@ import errno
 import io
 import json
 import os
+import shlex
 import shutil
 import signal
 import socket
@@ -32,10 +33,15 @@ OWN = {"Host": HOST, "Origin": f"http://{HOST}"}
 VALUES = {"material": "steel", "machine": "50", "rate": 60}
 WRITES = """
 import json, pathlib, sys
+rate = float(sys.argv[sys.argv.index("--target") + 1].removesuffix("/min"))
+answer = {"status": "holds", "why": "all fills do", "wanted": "A@90", "delivered_per_minute": 70.0}
+if rate > 60:
+    nearest = {"rate_per_minute": 57.9}
+    answer = {"status": "falls short", "why": "too slow", "wanted": "A@90", "nearest": nearest}
 folder = pathlib.Path(sys.argv[-1]) / pathlib.Path(sys.argv[2]).stem
 folder.mkdir()
 (folder / "design.html").write_text("<h1>holds</h1>")
-(folder / "design.json").write_text(json.dumps({"status": "holds", "why": "all fills do"}))
+(folder / "design.json").write_text(json.dumps(answer))
 (folder / "tooling.step").write_text("ISO")
 print("trial 1 of 1:", *sys.argv[1:-1], flush=True)
 """
@@ -246,6 +252,78 @@ def test_a_design_takes_what_the_page_offers_is_run_and_its_folder_read(page, si
         assert page.get(f"/design/{told['id']}/files/{path}").status_code == 404
 
 
+CHOSEN = (  # values of the page's fields, and the options that they are; {} is the last heading
+    ({}, ""),
+    ({"up": "B"}, "--up B"),
+    ({"up": "B", "heading": "best"}, "--aspect B"),
+    ({"up": "B", "heading": None}, "--aspect B --heading {}deg"),
+    ({"outcome": "hanging"}, "--outcome hanging"),
+    ({"may_use": ["camera"]}, "--without jet"),
+    ({"may_use": []}, "--without jet,sorter"),
+    ({"diameter": 250}, "--diameter 250mm:250mm"),
+)
+
+
+def test_what_is_chosen_on_the_page_is_an_option_of_the_command_line(page, run):
+    part = page.send().get_json()
+    heading = part["headings"]["B"][-1]
+    for values, options in CHOSEN:
+        chosen = {name: heading if value is None else value for name, value in values.items()}
+        told = page.ended(page.order(part["id"], **chosen).get_json()["id"])
+        own = f"--units mm {options.format(heading)}".strip()
+        assert f"{own} --drive leaf-spring --set machine.mains=50 Hz -o" in told["lines"][0]
+        assert told["order"] | chosen == told["order"] and own in told["command"]
+        # the command takes it: it asks for the part, which is not there
+        words = shlex.split(told["command"])[1:]
+        assert run(*words).stderr.splitlines()[-1] == "Error: wedge.off: no such file - check the path"
+
+
+def test_values_that_the_page_does_not_offer_are_refused(page, site):
+    part = page.send().get_json()
+    wrong = [
+        {"up": "Z"},
+        {"up": 3},
+        {"up": "A", "heading": "1; rm"},
+        {"outcome": "standing"},
+        {"heading": "90"},
+    ]
+    wrong += [{"may_use": ["laser"]}, {"may_use": "air"}, {"diameter": 1e9}, {"diameter": "250"}]
+    assert {page.order(part["id"], **values).status_code for values in wrong} == {400}
+    assert page.order(part["id"], bowl="7").status_code == 409 and not site.designs
+
+
+def test_the_file_of_a_bowl_at_hand_is_read_and_goes_into_the_design(page, site):
+    bad = page.post("/bowl", b"track: {width: 8}\n", {"name": "mine.yaml"})
+    assert bad.status_code == 422 and bad.get_json()["error"].startswith("mine.yaml:1:")
+    assert page.post("/bowl", b"{", {"name": "mine.txt"}).status_code == 415
+    assert not list(site.folder.rglob("*.yaml"))
+    bowl = page.post("/bowl", b"track: {width: 8 mm}\n", {"name": "../mine.yaml"}).get_json()
+    told = page.ended(page.order(page.send().get_json()["id"], bowl=bowl["id"]).get_json()["id"])
+    (path,) = site.folder.rglob("*.yaml")
+    assert f"--config {path.parent.relative_to(site.folder)}" not in told["lines"][0]
+    assert "--config" in told["lines"][0] and "--config ../mine.yaml" in told["command"]
+    assert told["order"]["bowl"] == bowl["id"] and path.parent.parent == site.folder / "parts"
+
+
+def test_what_falls_short_has_at_most_three_next_steps_that_are_orders(page):
+    """The one that was tried and holds comes first, then what the order ruled out, then other sides."""
+    part = page.send().get_json()["id"]
+    holds = page.ended(page.order(part).get_json()["id"])
+    assert holds["next"] == []
+    values = {"rate": 90, "may_use": ["air"], "up": "A", "heading": "best", "outcome": "lying"}
+    short = page.ended(page.order(part, **values).get_json()["id"])
+    assert (short["status"], short["why"]) == ("falls short", "too slow")
+    assert [step["change"] for step in short["next"]] == [
+        {"rate": 57.0}, {"may_use": ["air", "camera"]}, {"heading": "any"},
+    ]  # fmt: skip
+    free = page.ended(page.order(part, rate=90).get_json()["id"])["next"]
+    assert [step["change"] for step in free][:2] == [{"rate": 57.0}, {"up": "A", "heading": "any"}]
+    for step in (*short["next"], *free):
+        order = {**short["order"], **step["change"]}
+        again = page.ended(page.order(order.pop("part"), **order).get_json()["id"])
+        assert again["order"] == {**short["order"], **step["change"]}
+
+
 def test_one_design_at_a_time_and_it_can_be_stopped_and_ends_with_the_server(page, site):
     part = page.send().get_json()["id"]
     site.program = (sys.executable, "-c", WAITS)
@@ -392,32 +470,50 @@ def test_idle_connections_are_bounded_and_do_not_shut_the_page_out(site, monkeyp
 
 FLOW = """<script>
 (async () => {
-  const until = async (holds) => { while (!holds()) await new Promise((done) => setTimeout(done, 200)); };
+  const until = async (holds) => { while (!holds()) await new Promise((done) => setTimeout(done, 100)); };
   const at = (name) => document.getElementById(name), bytes = await (await fetch("/bracket")).arrayBuffer();
   const files = new DataTransfer(), seen = {};
   files.items.add(new File([bytes], "bracket.stl"));
   at("file").files = files.files;
   at("file").dispatchEvent(new Event("change"));
   const inside = () => at("aspects").contentDocument;
-  await until(() => !at("lying").hidden && inside().querySelector(".has-views .view canvas"));
+  await until(() => !at("lying").hidden && inside()?.querySelector(".has-views .view .up"));
   const views = inside().querySelectorAll(".view canvas");
   const pixels = () => views[0].getContext("2d").getImageData(0, 0, 680, 544).data;
   const sum = () => pixels().reduce((all, one, k) => (all + one * (k % 97)) % 1e9, 0);
   const before = sum();
   await new Promise((done) => setTimeout(done, 400));
-  Object.assign(seen, { views: views.length, turns: sum() !== before });
-  at("start").click();
-  await until(() => !at("result").hidden);
+  // every view is whole, and each side can be chosen there or in the list
+  const below = [...views].map((view) => view.getBoundingClientRect().bottom);
+  const cut = Math.max(...below) > at("aspects").clientHeight;
+  Object.assign(seen, { views: views.length, turns: sum() !== before, cut });
+  const buttons = [...inside().querySelectorAll(".up")];
+  buttons[1].click();
+  const pressed = () => buttons.map((one) => one.getAttribute("aria-pressed")).indexOf("true");
+  Object.assign(seen, { up: at("up").value, heading: at("heading").value, pressed: pressed() });
+  const unnamed = [...document.querySelectorAll("input, select")].filter((one) => !one.labels?.length);
+  Object.assign(seen, { unnamed: unnamed.length, wide: document.documentElement.scrollWidth > innerWidth });
+  at("rate").value = 90;
+  at("order").requestSubmit();
+  await until(() => at("next").children.length);
+  const colour = () => getComputedStyle(at("state")).color;
+  const steps = at("next").children.length;
+  Object.assign(seen, { short: at("state").textContent, steps, shortColour: colour() });
+  at("next").children[0].click();
+  await until(() => at("state").textContent === "holds" && !at("result").hidden);
   const [state, files_shown, fault] = ["state", "files", "fault"].map((name) => at(name).textContent);
-  Object.assign(seen, { state, files: files_shown, fault });
+  Object.assign(seen, { state, files: files_shown, fault, colour: colour(), rate: at("rate").value });
+  seen.list = [...at("designs").children].map((one) => one.textContent);
+  seen.cookie = document.cookie;
   await fetch("/seen", { method: "POST", body: JSON.stringify(seen) });
 })();
 </script></body>"""
 
 
 @pytest.mark.needs("chromium")
-def test_the_main_flow_in_a_browser(tmp_path):
-    """A part is dropped, its views are drawn and turn by themselves, a design runs, its files are listed."""
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_main_flow_in_a_browser(tmp_path, width):
+    """A part is dropped, its views turn and a side is chosen; a design falls short, the next step holds."""
     (tmp_path / "own").mkdir()
     site = Site(tmp_path / "own/run", (sys.executable, "-c", WRITES))
     seen, told = {}, threading.Event()
@@ -445,7 +541,7 @@ def test_the_main_flow_in_a_browser(tmp_path):
     thread.start()
     flags = "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader"
     flags += f" --enable-unsafe-swiftshader --remote-debugging-port=0 --user-data-dir={tmp_path / 'profile'}"
-    command = [shutil.which("chromium"), *flags.split(), site.address]
+    command = [shutil.which("chromium"), *flags.split(), f"--window-size={width},900", site.address]
     browser = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         assert told.wait(120.0)
@@ -456,5 +552,14 @@ def test_the_main_flow_in_a_browser(tmp_path):
         made.shutdown()
         thread.join()
         made.server_close()
-    assert seen["views"] >= 5 and seen["turns"] and seen["fault"] == ""
-    assert seen["state"] == "holds" and "design.html" in seen["files"]
+    assert (
+        seen["views"] >= 5 and seen["turns"] and not seen["cut"] and not seen["wide"] and not seen["unnamed"]
+    )
+    assert (seen["up"], seen["heading"], seen["pressed"]) == ("B", "any", 1)
+    assert (seen["short"], seen["state"], seen["fault"], seen["rate"]) == ("falls short", "holds", "", "57")
+    assert (
+        1 <= seen["steps"] <= 3 and seen["colour"] != seen["shortColour"] and "design.html" in seen["files"]
+    )
+    first, second = ("bracket.stl (mm), 57 a minute, B up", "bracket.stl (mm), 90 a minute, B up")
+    assert [line.startswith(begin) for line, begin in zip(seen["list"], (first, second))] == [True, True]
+    assert seen["cookie"] == ""
