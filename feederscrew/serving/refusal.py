@@ -2,11 +2,14 @@
 
 import re
 
+from feederscrew.bowl.schema import BOWL_SECTIONS
+
 OFFERED = {  # arguments and options that the page has, by its words for them
     "units": "length unit", "density": "material", "target": "parts a minute", "drive": "machine",
 }  # fmt: skip
 NAMED = re.compile(r"`([a-z_]+)`|--([a-z][a-z-]*)")  # an argument of the library, an option of the command
 CALLED = re.compile(r"\b(?:pass|give|write|set|use)\s+(?:`([a-z_]+)`|--([a-z][a-z-]*))")
+BOWL_KEY = re.compile(rf"\b(?:{'|'.join(BOWL_SECTIONS)})\.[a-z_]+")  # a page has no field for it
 BETWEEN_WAYS = re.compile(r"(,? or |, )(?![^(]*\))")  # not within brackets
 ELSEWHERE = "mend the file in CAD, and drop it again"
 
@@ -58,7 +61,7 @@ def _offered_ways(mend: str) -> str:
 
 
 def _is_offered(way: str) -> bool:
-    return all((name[1] or name[2]) in OFFERED for name in NAMED.finditer(way))
+    return not BOWL_KEY.search(way) and all((name[1] or name[2]) in OFFERED for name in NAMED.finditer(way))
 
 
 def _relabelled(way: str) -> str:

@@ -358,6 +358,7 @@ def test_a_design_that_fails_says_why_in_words_of_the_page(page, site):
         ("close it in CAD, or pass `allow_open` to compute from what there is", "close it in CAD"),
         ("if the file is in inches, pass `units` in", "if the file is in inches, choose the length unit in"),
         ("take one with `body` (its number, its name, or largest), unite them in CAD", "unite them in CAD"),
+        ("feed it by hand, or raise sizing.greatest_diameter", "feed it by hand"),
         ("pass `allow_open`", "mend the file in CAD, and drop it again"),
         ("lower --target, or give --drive two-axis", "lower parts a minute, or choose the machine two-axis"),
     ],
