@@ -19,7 +19,7 @@ from feederscrew.errors import printable
 from feederscrew.running import STAGE_VARIABLE
 from feederscrew.serving import guard
 from feederscrew.serving.next_steps import next_steps
-from feederscrew.serving.orders import Order
+from feederscrew.serving.orders import PageOrder
 from feederscrew.serving.refusal import in_words_of_the_page
 
 MOST_DESIGNS = 100  # of one run: each keeps its folder
@@ -70,7 +70,7 @@ class DesignJob:
     """A command that designs, with what it says and the files it leaves in a folder of results."""
 
     def __init__(
-        self, key: str, program: Sequence[str], order: Order, folder: Path,
+        self, key: str, program: Sequence[str], order: PageOrder, folder: Path,
         tell_guard: Callable[[str, int], None],
     ) -> None:  # fmt: skip
         self.id, self.order, self.folder, self._tell_guard = key, order, folder, tell_guard

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from feederscrew.serving.orders import ANY_HEADING, MayUse, Order
+from feederscrew.serving.orders import ANY_HEADING, MayUse, PageOrder
 
 MOST_STEPS = 3
 HOLDS = "holds"  # also 'holds if parts arrive single': nothing is left to try
@@ -24,12 +24,12 @@ class NextStep:
         return {"label": self.label, "change": self.change}
 
 
-def next_steps(order: Order, answer: Mapping[str, Any]) -> list[NextStep]:
+def next_steps(order: PageOrder, answer: Mapping[str, Any]) -> list[NextStep]:
     """Return at most MOST_STEPS orders to try after one that does not hold, the likeliest first.
 
     Parameters
     ----------
-    order : Order
+    order : PageOrder
     answer : mapping
         ``design.json`` of it; empty where there is none.
 
@@ -46,7 +46,7 @@ def next_steps(order: Order, answer: Mapping[str, Any]) -> list[NextStep]:
     return list(_ways(order, answer))[:MOST_STEPS]
 
 
-def _ways(order: Order, answer: Mapping[str, Any]) -> Iterator[NextStep]:
+def _ways(order: PageOrder, answer: Mapping[str, Any]) -> Iterator[NextStep]:
     """All that can be changed, the likeliest first."""
     # what was tried and holds comes first
     nearest = answer.get("nearest")

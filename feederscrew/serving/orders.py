@@ -8,7 +8,7 @@ from typing import Any
 
 from feederscrew.part.density import MATERIALS
 from feederscrew.serving.refusal import Refusal
-from feederscrew.serving.uploads import BowlFile, Upload
+from feederscrew.serving.uploads import BowlUpload, Upload
 from feederscrew.tooling.devices.kinds import KINDS
 
 MACHINES = {  # what a reader chooses: label, and the options of the design
@@ -43,7 +43,7 @@ class MayUse(StrEnum):
 
 
 @dataclass(frozen=True)
-class Order:
+class PageOrder:
     """What a page asks for: a part, and the values of its fields."""
 
     upload: Upload
@@ -55,10 +55,10 @@ class Order:
     outcome: str = "any"  # of OUTCOMES
     may_use: tuple[MayUse, ...] = tuple(MayUse)
     diameter: float | None = None  # [mm] of the bowl at hand; None for any
-    bowl: BowlFile | None = None  # of the bowl at hand
+    bowl: BowlUpload | None = None  # of the bowl at hand
 
     @classmethod
-    def of(cls, values: Mapping[str, Any], upload: Upload, bowl: BowlFile | None = None) -> "Order":
+    def of(cls, values: Mapping[str, Any], upload: Upload, bowl: BowlUpload | None = None) -> "PageOrder":
         """Return the order of a page. Raises Refusal of a value that the page does not offer."""
         may_use = values.get("may_use", list(MayUse))
         if not isinstance(may_use, list) or not all(name in list(MayUse) for name in may_use):

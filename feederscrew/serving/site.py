@@ -26,7 +26,7 @@ from werkzeug.wrappers import Request, Response
 from feederscrew.errors import FeederError, printable
 from feederscrew.part.density import MATERIALS
 from feederscrew.serving.designs import MOST_DESIGNS, DesignJob, Guard
-from feederscrew.serving.orders import ANY_HEADING, BEST_HEADING, MACHINES, OUTCOMES, MayUse, Order
+from feederscrew.serving.orders import ANY_HEADING, BEST_HEADING, MACHINES, OUTCOMES, MayUse, PageOrder
 from feederscrew.serving.refusal import Refusal, in_words_of_the_page
 from feederscrew.serving.uploads import BOWL_BYTES, ENDINGS, PART_BYTES, UNITS, Uploads
 
@@ -210,7 +210,7 @@ class Site:
             raise Refusal(400, "the values of the design are not JSON - use the page of feeder serve")
         bowl = values.get("bowl")
         own_bowl = None if bowl is None else self.uploads.find_bowl(bowl)
-        order = Order.of(values, self.uploads.find(values.get("part")), own_bowl)
+        order = PageOrder.of(values, self.uploads.find(values.get("part")), own_bowl)
         with self._alone():
             if any(job.is_running for job in self.designs.values()):
                 raise Refusal(409, "a design is running - stop it first")

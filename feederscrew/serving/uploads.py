@@ -62,7 +62,7 @@ class Upload:
 
 
 @dataclass(frozen=True)
-class BowlFile:
+class BowlUpload:
     """The file of a bowl at hand."""
 
     id: str
@@ -84,7 +84,7 @@ class Uploads:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.kept: dict[str, Upload] = {}  # by id, the oldest first
-        self.bowls: dict[str, BowlFile] = {}
+        self.bowls: dict[str, BowlUpload] = {}
         self._numbers = itertools.count(1)
         self._one_at_a_time = threading.Lock()
 
@@ -146,14 +146,14 @@ class Uploads:
             return before
         return self.take(before.name, units, before.path.read_bytes(), needed)
 
-    def find_bowl(self, key: object) -> BowlFile:
+    def find_bowl(self, key: object) -> BowlUpload:
         """Return a bowl file by its id. Raises Refusal where there is none."""
         bowl = self.bowls.get(key) if isinstance(key, str) else None
         if bowl is None:
             raise Refusal(409, "that bowl file is not here - choose it again")
         return bowl
 
-    def take_bowl(self, name: str, data: bytes) -> BowlFile:
+    def take_bowl(self, name: str, data: bytes) -> BowlUpload:
         """Keep a bowl file that can be read, its bytes ``data``. Raises Refusal."""
         shown = printable(name)[-NAME_LETTERS:]
         stem, _, ending = shown.rpartition(".")
@@ -177,7 +177,7 @@ class Uploads:
             except BaseException:
                 shutil.rmtree(path.parent, ignore_errors=True)
                 raise
-            bowl = self.bowls[str(number)] = BowlFile(str(number), shown, path)
+            bowl = self.bowls[str(number)] = BowlUpload(str(number), shown, path)
         return bowl
 
     def _read(self, key: str, name: str, units: str, path: Path, data: bytes) -> Upload:
