@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from feederscrew_cli import grouped, options, orientation
-from feederscrew_cli.interrupt import INTERRUPTED, end_within
+from feederscrew_cli.interrupt import end_within, exit_status
 from feederscrew_cli.options import WHOLE_NUMBER, Output
 from feederscrew_cli.progress import Progress
 
@@ -81,7 +81,7 @@ def batch(
         out.say(f"Wrote {stopped.summary} (what is done; the rest is 'not computed')")
         count = f"{stopped.done} of {stopped.total} parts {'is' if stopped.done == 1 else 'are'} done"
         click.echo(f"Stopped: {count}; go on with --resume", err=True)
-        ctx.exit(INTERRUPTED)
+        ctx.exit(exit_status())
     out.depend(result.targets, result.sources)
     out.fault(*result.faults)
     if len(result.foreign) == 1:

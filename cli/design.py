@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
-from feederscrew_cli.interrupt import INTERRUPTED, hold_interrupts, note_interrupts
+from feederscrew_cli.interrupt import exit_status, hold_interrupts, note_interrupts
 from feederscrew_cli.options import Output, Values
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ def design(
             aspect_shares = orientation.shares(out, solid, record, share_options, own)
         study = design_part(solid, own, aspect_shares, is_shown=True)
     if study.partial:  # what is not proved is no success
-        context.exit(INTERRUPTED)
+        context.exit(exit_status())
 
 
 def _batch(
@@ -187,7 +187,7 @@ def _batch(
         out.write(folder, [offers.table("designs.csv", lists.order_table, rows)])
     out.show(lists.order_table(rows), {"designs": rows})
     if rows[-1]["status"] == "not proved":
-        return INTERRUPTED
+        return exit_status()
     return int(any(row["status"] == lists.FAILED for row in rows))
 
 

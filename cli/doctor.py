@@ -10,13 +10,14 @@ from pathlib import Path
 import click
 
 import feederscrew
+from feederscrew import caches
 from feederscrew_cli import grouped
 
 DISTRIBUTION = "feederscrew"
 EXTRA = re.compile(r"extra\s*==\s*['\"]([^'\"]+)['\"]")
 PACKAGE_NAME = re.compile(r"[A-Za-z0-9._-]+")
 DEVELOPERS = ("test", "oracle", "docs")  # extras that a user has no need of
-KERNELS = ("*.kernel", "*.nbi")  # a file each compiled function
+KERNELS = "*.kernel"  # a file each compiled function
 SHELLS = ("bash", "zsh", "fish")
 
 
@@ -89,8 +90,11 @@ def _state(extra: str, names: list[str]) -> str:
 
 def kernels() -> list[tuple[str, str]]:
     """Return how many compiled functions are kept, and where; they are compiled on first use."""
-    home = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(feederscrew.__file__).parent)
-    count = sum(1 for pattern in KERNELS for _ in home.rglob(pattern))
+    home = caches.kernel_folder()
+    refused = [("not used", reason) for reason in caches.kernel_refusals()]
+    if home is None:
+        mend = f"name a folder of your own in {caches.KERNELS_VARIABLE}"
+        return [("state", f"compiled in every run: no folder can be written - {mend}"), *refused]
+    count = sum(1 for _ in home.glob(KERNELS))
     state = f"{count} functions kept" if count else "none yet: the first map or drop test compiles them"
-    writable = "" if os.access(home, os.W_OK) else " (not writable: set NUMBA_CACHE_DIR)"
-    return [("state", state), ("place", f"{home}{writable}")]
+    return [("state", state), ("place", str(home)), *refused]

@@ -15,7 +15,7 @@ import click
 from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError, MissingPackage
 from feederscrew.units import printable
-from feederscrew_cli.interrupt import INTERRUPTED, note_every_interrupt, was_heard
+from feederscrew_cli.interrupt import exit_status, note_every_interrupt, was_heard
 from feederscrew_cli.talk import options_by_argument, translate
 
 COMMAND_GROUPS = {  # heading: commands, in the order of a job
@@ -76,10 +76,10 @@ class Fence(click.Group):
                 status = self._status(arguments, extra)
                 finish()
             except KeyboardInterrupt:  # after the last line of the command
-                status = INTERRUPTED
+                status = exit_status()
             status = status if isinstance(status, int) else 0
             if was_heard() and status in (0, 1):  # what is there was given; make must not take it as done
-                status = INTERRUPTED
+                status = exit_status()
         try:
             sys.stderr.flush()
         except (OSError, ValueError):
@@ -92,7 +92,7 @@ class Fence(click.Group):
             return super().main(arguments, **{**extra, "standalone_mode": False, "obj": arguments})
         except (click.Abort, KeyboardInterrupt):
             _tell("Stopped.")
-            return INTERRUPTED
+            return exit_status()
         except click.ClickException as error:
             context = getattr(error, "ctx", None)
             hint = f" (see {context.command_path} --help)" if context else ""
@@ -111,7 +111,7 @@ class Fence(click.Group):
             if not was_heard():
                 raise
             _tell("Stopped.")
-            return INTERRUPTED
+            return exit_status()
         _to_nowhere(sys.stdout)
         return WRONG_DATA
 

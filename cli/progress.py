@@ -3,16 +3,22 @@
 import contextlib
 import importlib
 import itertools
+import json
+import os
 import sys
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import click
+
+from feederscrew.running import STAGE_VARIABLE
 
 if TYPE_CHECKING:
     from feederscrew_cli.talk import Output
 
 LINE_EVERY_S = 15.0  # [s] between two lines where stderr is a file or a pipe
+NOTE_EVERY_S = 0.3  # [s] between two such notes
 
 
 class Progress:
@@ -80,7 +86,8 @@ def end_line() -> None:
 class StageBar:
     """How far a run of several stages is: on stderr a bar of the time, elsewhere now and then a line.
 
-    Without ``is_shown`` nothing is said.
+    Without ``is_shown`` nothing is said. A program that runs this one can name a file for it in
+    FEEDER_STAGE_FILE: stage, done, total, seconds gone and to go, and the line that says so, as JSON.
     """
 
     WIDTH = 24  # letters of the bar
@@ -88,6 +95,7 @@ class StageBar:
     def __init__(self, is_shown: bool = True) -> None:
         self.terminal = is_shown and sys.stderr.isatty()
         self.lines, self.is_drawn, self.last_line = is_shown and not self.terminal, False, time.monotonic()
+        self.notes, self.last_note = os.environ.get(STAGE_VARIABLE), -NOTE_EVERY_S
 
     def reach(self, stage: str, done: int, total: int, gone: float, rest: float) -> None:
         """So many of a stage are done of so many; ``gone`` and ``rest`` are seconds of the whole run."""
@@ -96,6 +104,10 @@ class StageBar:
             text = f"queue: {100.0 * done / max(total, 1):.0f} %"
         elif stage == "trial":
             text = f"trial {done + 1} of {total}"
+        if self.notes and time.monotonic() - self.last_note >= NOTE_EVERY_S:
+            self.last_note = time.monotonic()
+            values = {"stage": stage, "done": done, "total": total, "gone_s": gone, "to_go_s": rest}
+            _note(Path(self.notes), values | {"text": text})
         if self.terminal:
             full = round(self.WIDTH * gone / max(gone + rest, 1e-9))
             bar = "#" * full + "-" * (self.WIDTH - full)
@@ -115,6 +127,14 @@ class StageBar:
 def _write(text: str) -> None:
     with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
         click.echo(text, err=True, nl=False, color=True)
+
+
+def _note(path: Path, values: dict[str, Any]) -> None:
+    """Put values into a file in place of those before."""
+    with contextlib.suppress(OSError):  # a full disk must not cost the answer
+        partial = path.with_suffix(".new")
+        partial.write_text(json.dumps(values), encoding="utf-8")
+        partial.replace(path)
 
 
 def _time(seconds: float) -> str:

@@ -7,14 +7,13 @@ from pathlib import Path
 
 import click
 
-from feederscrew.errors import FeederError, MissingPackage
+from feederscrew.errors import MissingPackage
 from feederscrew_cli import grouped, options
 from feederscrew_cli.interrupt import end_within, hold_interrupts
 
 FEEDER_CALL = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
 INSTALL_SERVE = "pip install 'feederscrew[serve]'"
 END_WITHIN_S = 40.0  # after Ctrl-C or SIGTERM, a running design with it
-IDLE_S = 60.0  # after which a connection that sends nothing is closed
 
 
 @grouped.command(short_help="The main job in a browser, on this machine alone.")
@@ -24,8 +23,10 @@ IDLE_S = 60.0  # after which a connection that sends nothing is closed
 def serve(port: int, browser: bool, quiet: bool) -> None:
     """Example: feeder serve
 
-    Show the main job as a page on 127.0.0.1: drop a part file, see its resting aspects turn, choose material,
-    rate and machine, start a design, stop it, read its page and download its folder.
+    Show the main job as a page on 127.0.0.1. Drop a part file, see its resting aspects turn, and click the
+    one on which parts must leave. Choose rate, material, outcome, what may be used, machine and bowl at hand.
+    Start a design, stop it, read its page and download its folder. What falls short has the next steps as
+    buttons. The designs of the run are listed, each with the name of its part.
 
     It prints the address with a token of this run; without the token nobody else on the machine is answered.
     Nothing leaves the machine. One design runs at a time. What is uploaded and computed lies in a temporary
@@ -33,30 +34,21 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
     """
     with hold_interrupts():
         try:
-            from werkzeug.serving import WSGIRequestHandler, make_server
+            import werkzeug.serving  # noqa: F401
         except ImportError:
             raise MissingPackage("serve", "needs werkzeug, which is not installed", INSTALL_SERVE) from None
-        from feederscrew.serving.site import HOST, Site
-
-    class Handler(WSGIRequestHandler):
-        """Answers without a line in the terminal: the first address has the token in it."""
-
-        timeout = IDLE_S
-
-        def log(self, type: str, message: str, *args: object) -> None:
-            """Say nothing."""
+        from feederscrew.serving.designs import Guard
+        from feederscrew.serving.server import BoundedServer
+        from feederscrew.serving.site import Site
 
     with (
         end_within(END_WITHIN_S),
         tempfile.TemporaryDirectory(prefix="feeder.", ignore_cleanup_errors=True) as folder,
     ):
         site = Site(Path(folder), FEEDER_CALL)
+        server = BoundedServer(site, port)
         try:
-            server = make_server(HOST, port, site, threaded=True, request_handler=Handler)
-        except (OSError, SystemExit):
-            raise FeederError(f"port {port}", "is taken", "give another to --port, or none") from None
-        site.port = server.server_port
-        try:
+            site.guard = Guard(Path(folder))
             click.echo(site.address)
             if not quiet:
                 click.echo("Open this address in a browser on this machine; Ctrl-C ends it.", err=True)

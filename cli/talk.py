@@ -109,9 +109,10 @@ class Output:
         self.warn(*solid.warnings)
         self.check_folder(solid.name, solid.inputs)
         if self.verbose:
+            from feederscrew import caches
             from feederscrew.studies import simulation_cache
 
-            self.say(*filter(None, [simulation_cache.refusal()]))
+            self.say(*filter(None, [simulation_cache.refusal()]), *caches.kernel_refusals())
         return solid
 
     def check_folder(self, name: str, identity: Mapping[str, str] | None = None) -> None:

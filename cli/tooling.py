@@ -74,7 +74,8 @@ def tooling(
 
     A few parts of each orientation are sent through what is proposed, of the table through the best
     three. What that trial says comes first. Where it denies the chain of one orientation, up to four others
-    are tried, without one or more of its devices. --static leaves the trial out.
+    are tried, without one or more of its devices. --static leaves the trial out. Ctrl-C ends it as not
+    proved, with exit status 130: what was found so far is given, without drawings to build from.
 
     With -o: tooling.csv, tooling.json and tooling.png. An aspect adds tooling.yaml, a bowl file with the
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and
@@ -100,7 +101,7 @@ def tooling(
         values = {"aspect_shares": aspect_shares.aspects, "search": ToolingSearch(**searched), **request}
         with progress.bar(out, "orientations") as bar:
             result = study(solid, record, progress=heed_interrupts(bar.reach), **values)
-        if not static:
+        if not (static or result.partial):
             without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
             result = tooling_trials.try_designs(
                 result, without_kinds, before=lambda: progress.tell_compiling(out, "trial")

@@ -4,6 +4,8 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 
+STAGE_VARIABLE = "FEEDER_STAGE_FILE"  # names a file in which a run of several stages notes how far it is
+
 
 @dataclass(frozen=True)
 class OnCores:

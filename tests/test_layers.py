@@ -12,8 +12,8 @@ from feederscrew.tooling.devices.kinds import KINDS
 ROOT = Path(__file__).parent.parent
 ORDER = [
     "version", "heavy", "arrays", "errors", "check", "units", "value_forms", "signatures", "records",
-    "running", "documents", "dxf", "geometry", "part", "resting", "tooling.devices", "bowl", "screw",
-    "mechanics", "conveying", "dropping", "tooling", "rates", "trial", "machine", "solidbowl",
+    "running", "caches", "documents", "dxf", "geometry", "part", "resting", "tooling.devices", "bowl",
+    "screw", "mechanics", "conveying", "dropping", "tooling", "rates", "trial", "machine", "solidbowl",
     "studies", "designing", "output", "thesis", "batch", "serving",
 ]  # fmt: skip
 DOORS = {

@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,13 @@ NEAR_BEST_SHARE = 0.9  # of the best velocity
 FRICTION_FACTORS = (0.5, 0.8, 1.0, 1.2, 1.5)  # of the bowl's coefficients
 
 
+class UnsteadyMotion(StrEnum):
+    """Why a part has no steady velocity."""
+
+    SLIDES_DOWN = "slides down"  # the track is steeper than friction holds
+    KEEPS_SPEED = "keeps its speed"  # on the level nothing acts along the track: there is no friction
+
+
 @dataclass(frozen=True, eq=False)
 class Answer(ReadableRecord):
     """How a part travels at one operating point."""
@@ -68,6 +76,14 @@ class Answer(ReadableRecord):
     margins: dict[str, float]  # static friction above each limit of slip, throw number below the hop [1]
     regime: str
     runs_away: bool  # a part that once slides down the track fast enough does not stop again
+
+    @property
+    def unsteady(self) -> UnsteadyMotion | None:
+        """Why there is no steady velocity; None where there is one."""
+        if self.status != steady.STATUSES[steady.NO_STEADY_STATE]:
+            return None
+        keeps = steady.keeps_speed(operating_point.law(self.setting))
+        return UnsteadyMotion.KEEPS_SPEED if keeps else UnsteadyMotion.SLIDES_DOWN
 
 
 def answer(bowl: Bowl) -> Answer:
@@ -400,6 +416,9 @@ def best_phase(bowl: Bowl) -> BestPhase:
     around = cells(with_phase(bowl, phases))
     velocities = around["velocity"]
     if np.isnan(velocities).all():
+        if answer(bowl).unsteady == UnsteadyMotion.KEEPS_SPEED:
+            what = "has no steady velocity at any value: without friction a part keeps its speed"
+            raise ConfigError("drive.phase", what, "raise friction.static and friction.kinetic")
         what = "has no steady velocity at any value: the part slides down the track without stopping"
         raise ConfigError("drive.phase", what, "lower track.climb, or raise the friction")
     count, peak = len(phases), int(np.nanargmax(velocities))

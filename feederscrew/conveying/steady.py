@@ -311,10 +311,18 @@ def _noted_turn(rules: Law, state: State, tally: Floats, out: Floats) -> State:
 def _escape(rules: Law) -> float:
     """Greatest growth of the speed [A w a radian] of a part that slides all the time, up or down the track.
 
-    Positive where a part that once slides fast enough gets faster without end. Impacts pass on what the
-    weight would have in the time of the flight, so flight does not matter.
+    Positive where a part that once slides fast enough gets faster without end, 0 where it keeps its speed.
+    Impacts pass on what the weight would have in the time of the flight, so flight does not matter.
     """
     return max(rules.slip.level, rules.slip_back.level)
+
+
+def keeps_speed(rules: Law) -> bool:
+    """Return whether no force along the track acts on a part: without friction, on the level.
+
+    It keeps whatever speed it arrives with, so that no velocity is the steady one.
+    """
+    return rules.onset.level == 0.0 and rules.onset_back.level == 0.0
 
 
 def _averages(out: Floats, tally: Floats, periods: float) -> None:
@@ -345,11 +353,15 @@ def survey(setting: OperatingPoint, out: Floats, arrays: Memory) -> None:
     else:
         forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE
         out[REGIME] = forward + (limits.BACKWARD if peak(rules.onset_back) > 0.0 else limits.RIDE)
+    if keeps_speed(rules):
+        _nothing(out)
+        out[RUNAWAY] = 1.0
+        return
     count = steady(rules, at_rest(rules), out, arrays, 0, TRANSIENT)
     if out[STATUS] == NO_STEADY_STATE:
         out[RUNAWAY] = 1.0
         return
-    out[RUNAWAY] = 1.0 if _escape(rules) > 0.0 else 0.0
+    out[RUNAWAY] = 1.0 if _escape(rules) >= 0.0 else 0.0
     if setting.restitution == 0.0:
         return
     # Further starts: what they lead to widens the range of the velocity.

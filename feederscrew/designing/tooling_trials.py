@@ -95,7 +95,7 @@ def try_designs(
     of the orientation that was asked for, others are tried, five in all, and the most efficient of those that
     the trial confirms is taken. ``before`` is called before anything is compiled. The study has its
     ``trials``: of a chain that the trial confirms where one is found, else of the first. Chains that isolate
-    nothing are not tried.
+    nothing are not tried. After an interrupt from the keyboard it is ``partial``, with the trials that ended.
     """
     candidates = [
         design
@@ -104,26 +104,44 @@ def try_designs(
     ]
     best = sorted(candidates, key=lambda design: (-design.isolated, -design.efficiency, design.wanted))
     run = RunSettings(seed, jobs, before=before)
-    trials = tuple(_try_design(study, design, run) for design in best[:BEST])
+    trials: tuple[TriedDesign, ...] = ()
+    try:
+        for proposed in best[:BEST]:
+            trials = (*trials, _try_design(study, proposed, run))
+    except KeyboardInterrupt:
+        return replace(study, trials=trials, partial=True)
     first = replace(study, trials=trials)
     if study.design is None or without_kinds is None or not trials or not trials[0].faults:
         return first
-    studies, pending, searched = [study], _ways_on((), study.design), 0
+    studies, pending, searched, is_stopped = [study], _ways_on((), study.design), 0, False
     while pending and searched < SEARCHES and len(trials) < TRIES:
         kinds, searched = pending.pop(0), searched + 1
-        other = without_kinds(kinds)
+        try:
+            other = without_kinds(kinds)
+        except KeyboardInterrupt:
+            is_stopped = True
+            break
+        if other.partial:
+            is_stopped = True
+            break
         design = other.design
         if design is None or not (design.isolated and design.cuts and design.efficiency > 0.0):
             continue
         if _devices(design) in [trial.devices for trial in trials]:
             continue
-        studies, trials = [*studies, other], (*trials, _try_design(other, design, run))
+        try:
+            tried = _try_design(other, design, run)
+        except KeyboardInterrupt:
+            is_stopped = True
+            break
+        studies, trials = [*studies, other], (*trials, tried)
         if not trials[-1].faults and design.efficiency >= study.design.efficiency:
             break
         pending += _ways_on(kinds, design) if trials[-1].faults else []
     holds = [k for k, trial in enumerate(trials) if not trial.faults]
     taken = max(holds, key=lambda k: trials[k].static_efficiency, default=0)
-    return replace(studies[taken], trials=(trials[taken], *trials[:taken], *trials[taken + 1 :]))
+    sorted_trials = trials[taken], *trials[:taken], *trials[taken + 1 :]
+    return replace(studies[taken], trials=sorted_trials, partial=is_stopped)
 
 
 def _ways_on(excluded_kinds: tuple[str, ...], design: Design) -> list[tuple[str, ...]]:

@@ -20,12 +20,15 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from feederscrew import caches
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 # functions that compiled ones may call, not yet registered, and whether they become a part of their callers
 PENDING: list[tuple[Callable[..., Any], bool]] = []
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
-LIBRARY = Path(__file__).parents[1]
+LIBRARY = caches.LIBRARY
 KERNEL_SUFFIX = ".kernel"
+MAX_KERNEL_BYTES = 100_000_000  # of a file that is read
 MAX_KERNELS = 8  # kept of one function, for other arguments, processors and sources: the oldest go
 # what numba's wrapper of a C function names to report an exception; a kernel raises none
 UNREACHED = (
@@ -130,45 +133,33 @@ class Kernel:
 
     def files(self) -> list[Path]:
         """Return the files that hold it, compiled from these sources."""
-        folder = kernel_folder()
-        return list(folder.glob(f"{self._stem()}-*{KERNEL_SUFFIX}")) if folder else []
+        folder = caches.kernel_folder()
+        found = folder.glob(f"{self._stem()}-*{KERNEL_SUFFIX}") if folder else []
+        return [path for path in found if path.is_file() and not path.is_symlink()]
 
     def _stem(self) -> str:
-        return f"{self.py_func.__name__}-{_fingerprint(self.py_func.__module__)}"
+        return f"{self.py_func.__name__}-{_fingerprint(self.py_func.__module__)[:12]}"
 
     def _run(self, numbers: tuple[int, ...]) -> Callable[[bytes], Any]:
         """The function of a block of words, for arguments of some kinds."""
         with LOADING:
             if numbers not in self._runs:
-                kinds, folder = [KIND_OF[number] for number in numbers], kernel_folder()
-                made_for = hashlib.sha256(f"{_text(kinds)} {_machine()}".encode()).hexdigest()[:16]
+                kinds, folder = [KIND_OF[number] for number in numbers], caches.kernel_folder()
+                function = self.py_func
+                module = function.__module__
+                # all that the code depends on: another kernel under this name is none of these arguments
+                identity = "\n".join(
+                    [f"{module}.{function.__qualname__}", _fingerprint(module), _text(kinds), _machine()]
+                )
+                made_for = hashlib.sha256(identity.encode()).hexdigest()[:16]
                 path = folder / f"{self._stem()}-{made_for}{KERNEL_SUFFIX}" if folder else None
-                code = _read(path) if path else None
+                code = _read(path, identity) if path else None
                 if code is None:
-                    code, complete = _compile(self.py_func, kinds)
+                    code, complete = _compile(function, kinds)
                     if path and complete:
-                        _write(path, code, f"{self.py_func.__name__}-*{KERNEL_SUFFIX}")
-                self._runs[numbers] = _load(code, self.py_func)
+                        _write(path, identity, code, f"{function.__name__}-*{KERNEL_SUFFIX}")
+                self._runs[numbers] = _load(code, function)
             return self._runs[numbers]
-
-
-def kernel_folder() -> Path | None:
-    """Return the folder of compiled kernels: the one numba is told, beside the sources, or the user's own.
-
-    None where none can be written, or where others could have put code into the user's.
-    """
-    if os.environ.get("NUMBA_CACHE_DIR"):
-        return Path(os.environ["NUMBA_CACHE_DIR"])
-    if os.access(LIBRARY, os.W_OK):
-        return LIBRARY / "__pycache__"
-    with contextlib.suppress(RuntimeError, OSError):  # a user without a home, or with one that is closed
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-        folder = base / "feeder-kernels"
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        held = folder.stat()
-        if not hasattr(os, "geteuid") or (held.st_uid == os.geteuid() and not held.st_mode & 0o022):
-            return folder
-    return None
 
 
 def _block(value: Any) -> tuple[int, bytes]:
@@ -288,28 +279,35 @@ def _machine() -> str:
     return " ".join([version, llvmlite.__version__, binding.get_default_triple(), *processor])
 
 
-def _read(path: Path) -> bytes | None:
-    """The code in a file; None where there is none, or one that is damaged."""
-    try:
-        digest, _, code = path.read_bytes().partition(b"\n")
-    except OSError:
-        return None
-    return code if hashlib.sha256(code).hexdigest().encode() == digest else None
+def _read(path: Path, identity: str) -> bytes | None:
+    """The code in a file; None where there is none, one that is damaged, another kernel's, or not our own."""
+    digest, _, code = caches.read_own(path, MAX_KERNEL_BYTES).partition(b"\n")
+    return code if digest == _digest(identity, code) else None
 
 
-def _write(path: Path, code: bytes, pattern: str) -> None:
+def _digest(identity: str, code: bytes) -> bytes:
+    return hashlib.sha256(identity.encode() + b"\n\n" + code).hexdigest().encode()
+
+
+def _write(path: Path, identity: str, code: bytes, pattern: str) -> None:
     """Keep code in a file, and of the older ones of the same function no more than are allowed."""
     partial = path.with_name(f"{secrets.token_hex(8)}{KERNEL_SUFFIX}.new")
     with contextlib.suppress(OSError):  # a full disk: it is compiled again
+        if not path.parent.is_dir():
+            caches.make_folder(path.parent)
+        if caches.why_unsafe(path.parent, caches.KERNELS_VARIABLE):
+            return
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            partial.write_bytes(hashlib.sha256(code).hexdigest().encode() + b"\n" + code)
+            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+            with open(os.open(partial, flags, 0o600), "wb") as file:  # noqa: PTH123 - a descriptor
+                file.write(_digest(identity, code) + b"\n" + code)
             partial.replace(path)
         finally:
             partial.unlink(missing_ok=True)
-        files = sorted(path.parent.glob(pattern), key=lambda file: file.stat().st_mtime, reverse=True)
+        files = sorted(path.parent.glob(pattern), key=lambda file: file.lstat().st_mtime, reverse=True)
         for old in files[MAX_KERNELS:]:
-            old.unlink(missing_ok=True)
+            if not old.is_dir() or old.is_symlink():
+                old.unlink(missing_ok=True)
 
 
 def _register() -> None:
@@ -329,4 +327,4 @@ def _fingerprint(module: str) -> str:
     digest = hashlib.sha256()
     for path in (Path(__file__), Path(__file__).with_name("kernel_compiler.py"), *sources):
         digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
+    return digest.hexdigest()

@@ -24,6 +24,10 @@ matplotlib = heavy("matplotlib")
 mpl_colors = heavy("matplotlib.colors")
 mpl_patches = heavy("matplotlib.patches")
 
+UNSTEADY_WORDS = {
+    answer.UnsteadyMotion.SLIDES_DOWN: "the part slides down the track without stopping",
+    answer.UnsteadyMotion.KEEPS_SPEED: "without friction a part on the level keeps whatever speed it has",
+}
 VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
 
 
@@ -44,6 +48,7 @@ def document(study: ConveyStudy) -> dict[str, Any]:
             conveying,
             "status period velocity_mm_s velocity_low_mm_s=low velocity_high_mm_s=high",
             "velocity_slowest_period_mm_s=slowest velocity_fastest_period_mm_s=fastest regime runs_away",
+            "unsteady",
             "acceleration_ratio=setting.ratio throw_number mu_effective=setting.static",
             "mu_effective_kinetic=setting.kinetic mu_forward mu_backward margins fractions",
             "longest_flight_periods=longest_flight hardest_impact_mm_s flights_per_period=flights",
@@ -76,10 +81,10 @@ def summary(document: Mapping[str, Any]) -> Frame:
         return f"velocity for {name} -/+ {pair['change_percent']:g} % [mm/s]", f"{less} / {more}"
 
     rows = [
-        ("velocity [mm/s]", _number(d["velocity_mm_s"])),
+        ("velocity [mm/s]", "no steady velocity" if d["unsteady"] else _number(d["velocity_mm_s"])),
         ("lowest to highest [mm/s]", _range_text(d["velocity_low_mm_s"], d["velocity_high_mm_s"])),
     ]
-    if d["period"] != 1 and d["status"] != "no steady state":  # single periods are not all alike
+    if d["period"] != 1 and not d["unsteady"]:  # single periods are not all alike
         rows.append(("slowest to fastest period [mm/s]", _slowest_to_fastest(d)))
     periods = f", every {d['period']} periods" if d["period"] > 1 else ""
     rows += [
@@ -105,13 +110,13 @@ def summary(document: Mapping[str, Any]) -> Frame:
 def remarks(document: Mapping[str, Any]) -> list[str]:
     """Return what a reader of the document of one operating point must not overlook, a sentence each."""
     low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
-    if document["status"] == "no steady state":
-        return ["no steady state: the part slides down the track without stopping, and no velocity is steady"]
+    if document["unsteady"]:
+        return [f"no steady state: {UNSTEADY_WORDS[document['unsteady']]}, and no velocity is steady"]
     lines = []
     if document["runs_away"]:
         lines.append(
             "this velocity is reached from rest; a part that once slides down fast enough does not stop "
-            "again: the climb is steeper than kinetic friction"
+            "again: the climb is as steep as kinetic friction or steeper"
         )
     if document["status"] == "averaged":
         lines.append(
@@ -281,7 +286,9 @@ def cycle(trace: steady.CycleTrace, amplitude: float, solution: answer.Answer) -
 def cycle_title(trace: steady.CycleTrace, solution: answer.Answer) -> str:
     """Return what of a motion a trace shows, and how fast it is."""
     periods, velocity = round(trace.time[-1]), f"{solution.velocity * 1e3:.4g} mm/s"
-    if solution.status == "no steady state":
+    if solution.unsteady == answer.UnsteadyMotion.KEEPS_SPEED:
+        return f"No steady state: {periods} periods without friction, from rest"
+    if solution.unsteady:
         return f"No steady state: {periods} periods of a slide that does not stop"
     if solution.status == "averaged":
         return f"{periods} periods of a motion that does not repeat: {velocity} on average"

@@ -249,6 +249,9 @@ def tune_remarks(study: TuneStudy) -> list[str]:
         lines.append(f"{at}, {units.listed(over)} can tip over on the track and count as returned")
     if any(tuned.solution.rate > (1.0 + ACCEPTED_RATE_ERROR) * study.target for tuned in study.settings):
         lines.append("no setting gives that rate: the velocity jumps over it, and these give more")
+    if study.skipped:
+        more = f"{study.skipped} more setting{'s' if study.skipped > 1 else ''} of about that velocity"
+        lines.append(f"{more} may give the rate as well: the parts that arrive there were not simulated")
     return lines
 
 

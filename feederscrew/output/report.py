@@ -16,6 +16,7 @@ from feederscrew import __version__
 from feederscrew import bowl as bowls
 from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
+from feederscrew.conveying.answer import UnsteadyMotion
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import HOP
 from feederscrew.output import aspects as aspects_output
@@ -252,7 +253,7 @@ def convey(case: ReportStudy) -> Chapter:
     study, mapped = case.convey, case.velocity_map
     d = convey_output.document(study)
     blocks: list[Block] = [Table(convey_output.summary(d))]
-    if study.answer.status != "no steady state":
+    if not study.answer.unsteady:
         (cycle,) = _pictures_of(convey_output.offers(study), "convey")
         title = convey_output.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
@@ -320,7 +321,9 @@ def track(case: ReportStudy) -> Chapter:
 def on_track(case: ReportStudy) -> str:
     """Return what a part does on the track."""
     answer, stands = case.convey.answer, case.track.stands
-    if answer.status == "no steady state":
+    if answer.unsteady == UnsteadyMotion.KEEPS_SPEED:
+        return "Without friction on a level track a part keeps whatever speed it has: it does not travel."
+    if answer.unsteady:
         return "On this track the part slides down continuously: it does not travel."
     travels = f"{_short(answer.velocity / MM_S)} mm/s and {WORDS.get(answer.regime, answer.regime)}"
     sentences = [f"On this track the part travels at {travels}: the rate is computed with that."]

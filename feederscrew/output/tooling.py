@@ -41,6 +41,8 @@ TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the 
     ("height_mm", "track_width_mm"), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",),
     ("left_over",),
 )  # fmt: skip
+NOT_PROVED = "not proved"
+STOPPED = f"{NOT_PROVED}: stopped before all was searched and tried"
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 
@@ -50,6 +52,7 @@ def document(study: ToolingStudy) -> dict[str, Any]:
         **columns.part(study.part, (*study.aspects.warnings, *study.of_size)),
         "rule": study.rule,
         "margin_asked_mm": study.margin / MM,
+        "partial": study.partial,
         "orientations": _rows(study),
     }
     if study.design is None:
@@ -138,13 +141,18 @@ def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> dict[s
 
 
 def status(study: ToolingStudy, place: int) -> str:
-    """Return 'confirmed' or 'denied' by its trial, 'static' without one, 'none' where nothing isolates it."""
+    """Return 'confirmed' or 'denied' by its trial, 'static' without one, 'none' where nothing isolates it.
+
+    'not proved' where the run was stopped before its trial.
+    """
     tried = study.trial_of(place)
     if tried is not None and tried.faults:
         return "denied"
     if not study.isolates(place):
         return "none"
-    return "static" if tried is None else "confirmed"
+    if tried is None:
+        return NOT_PROVED if study.partial else "static"
+    return "confirmed"
 
 
 def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
@@ -195,8 +203,9 @@ def summary(study: ToolingStudy, format: str = "csv") -> Frame:
 
 def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     """Return what a reader should know: of one orientation first what becomes of it."""
+    stopped = [STOPPED] if study.partial else []
     if study.design is None:
-        return [isolation_words(study, efficiency)]
+        return [*stopped, isolation_words(study, efficiency)]
     design, wanted_row = _asked_for(study)
     orientation, tried = study.orientations[wanted_row], study.trial_of(wanted_row)
     at_least = "at least " * (design.least < design.efficiency)
@@ -217,7 +226,7 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
             f"tried {tried.figures}; by the static rule {100.0 * design.efficiency:.3g} % of those offered "
             f"leave so, and {tried.verdict}"
         )
-    return [lead, *design.reasons]
+    return [*stopped, lead, *design.reasons]
 
 
 def trials(study: ToolingStudy) -> tuple[list[str], list[str]]:
@@ -274,6 +283,8 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
         f"{100.0 * design.least:.4g} %, purity {'at least ' * bool(design.purity_is_least)}"
         f"{100.0 * design.purity:.4g} %, by {study.answer}.",
     ]
+    if study.partial:
+        lines.append(f"# {STOPPED[0].upper()}{STOPPED[1:]}.")
     if tried is None:
         lines.append("# By the static rule, not tried: see feeder trial.")
     elif tried.faults:  # the first thing to know of a design that its trial denies
@@ -308,8 +319,8 @@ def offers(
     """Offer the files of a ToolingStudy, whose bowl has these ``settings``: table, document and picture.
 
     Of one orientation with devices that isolate it the bowl file and the drawings as well, with ``step`` the
-    section of track as STEP too, which needs OpenCASCADE. ``mark`` stands on every drawing, picture and
-    solid, ``fields`` (SheetFields) are date and revision of the drawing.
+    section of track as STEP too, which needs OpenCASCADE; of a run that was stopped no drawings. ``mark``
+    stands on every drawing, picture and solid, ``fields`` (SheetFields) are date and revision of the drawing.
     """
     what = "Orientations and what isolates them"
     files = [offer.table("tooling.csv", frame, study), offer.document("tooling.json", document, study)]
@@ -319,6 +330,11 @@ def offers(
         return marking.pictures([*files, drawn], mark)
     design, wanted_row = _asked_for(study)
     devices, chain = design.devices, (design.devices, study.orientations, study.shares, wanted_row)
+
+    if study.partial:
+        drawn = offer.picture("tooling.png", what, lambda: tooling_figures.chain(*chain))
+        files += [drawn, offer.text("tooling.yaml", bowl_file, study, settings)]
+        return marking.pictures(files, NOT_PROVED.upper())
 
     def section() -> TrackSection:
         return build_section(study.bowl.track, devices, study.orientations)

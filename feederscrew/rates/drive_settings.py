@@ -26,6 +26,8 @@ DECIDED = 0.03  # of the rate: as near as the parts that decide are asked for, w
 ACCEPTED_RATE_ERROR = 0.04
 LED = 0.1  # of the rate: a setting led no nearer to it by the bowl's own shares waits for all others
 LEADS = 3  # steps that the shares of the bowl's own drive lead
+# settings whose arriving parts are simulated, at 2 to 6 s each: in all, and where none gives the rate so far
+MAX_SIMULATED, MAX_SIMULATED_IN_VAIN = 8, 16
 ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
 SETTING_TOLERANCE = 0.01  # of a value: two settings are one
 SETTING_DIGITS = 5  # of a value as it is printed
@@ -60,6 +62,14 @@ class Solution:
         return REGIMES_BY_GENTLENESS.index(here.regime), several, here.hardest_impact
 
 
+@dataclass(frozen=True, eq=False)
+class FoundSettings:
+    """Settings of the drive that give a rate, and how many more may do so."""
+
+    solutions: tuple[Solution, ...]  # the gentle ones first
+    skipped: int = 0  # settings of about that velocity whose arriving parts were not simulated
+
+
 def solutions(
     bowl: Bowl,
     target: float,
@@ -69,20 +79,41 @@ def solutions(
     sampled: bool = False,
     worst: bool = False,
     progress: Callable[[int, int], object] | None = None,
-) -> list[Solution]:
-    """Find every setting of amplitude, angle or frequency alone that gives a rate, with what it lets arrive.
-
-    ``target`` [1/s], above 0, are well-oriented parts from rest, or with ``worst`` at the slowest of every
-    start and surface, as ``well_oriented.velocity``. ``density`` gives of a bowl the well-oriented parts on a
-    length of its track [1/m], with what arrives at its drive and without what that turns over; of None, at
-    the bowl's own drive as if it turned over none. ``rough`` gives the same with what arrives at the bowl's
-    own drive, sooner: it leads to a setting that ``density`` then decides on. Where the latter is of parts
-    that were ``sampled``, a setting is no better known than to DECIDED.
+) -> FoundSettings:
+    """Find settings of amplitude, angle or frequency alone that give a rate, with what each lets arrive.
 
     Each solution gives the rate to ``ACCEPTED_RATE_ERROR``; where none does, because the velocity jumps over
-    the wanted one, each gives more. One-way and gentle regimes first. Values are round numbers in their unit.
-    ``progress`` is called with how many settings are found, and of how many. Raises FeederError if no setting
-    gives the rate; the line says what the bowl reaches at most. Source: docs/conveying.md, "Commands".
+    the wanted one, each gives more. One-way and gentle regimes come first. Values are round numbers in their
+    unit. Source: docs/conveying.md, "Commands".
+
+    Parameters
+    ----------
+    bowl : Bowl
+    target : float [1/s]
+        Well-oriented parts, above 0: from rest, or with ``worst`` at the slowest of every start and surface,
+        as ``well_oriented.velocity``.
+    density : callable
+        Of a bowl: the well-oriented parts on a length of its track [1/m], with what arrives at its drive and
+        without what that turns over; of None: at the bowl's own drive as if it turned over none.
+    rough : callable, optional
+        The same with what arrives at the bowl's own drive, sooner: it leads to a setting that ``density``
+        then decides on.
+    sampled : bool
+        Whether ``density`` is of parts that are simulated: a setting is no better known than to DECIDED, and
+        at most ``MAX_SIMULATED`` are tried, those of each key in turn; at most ``MAX_SIMULATED_IN_VAIN``
+        where none of them gives the rate.
+    worst : bool
+    progress : callable, optional
+        Called with how many settings are found, and of how many, at first with none.
+
+    Returns
+    -------
+    FoundSettings
+
+    Raises
+    ------
+    FeederError
+        If no setting gives the rate; the line says what the bowl reaches at most.
     """
     curves = [_Curve.of(bowl, BY_NAME[name], worst) for name in KNOBS]
     if not any(np.isfinite(curve.speeds).any() for curve in curves):
@@ -106,24 +137,38 @@ def solutions(
             for other, near in likely + unlikely
         ):
             (likely if abs(rate - target) <= LED * target else unlikely).append((curve, value))
-    close = DECIDED if sampled else RATE_TOLERANCE
+    likely, unlikely = _keys_in_turn(likely), _keys_in_turn(unlikely)
+    close, total = DECIDED if sampled else RATE_TOLERANCE, len(likely + unlikely)
     tried: list[Solution] = []
     near: list[Solution] = []
+    simulated = skipped = 0
+    if progress:
+        progress(0, total)
     for count, (curve, value) in enumerate(likely + unlikely):
         if near and count >= len(likely):
             break
-        tried.append(_settled(curve, value, target, density, close))
+        rounds = ROUNDS
+        if sampled:
+            rounds = min(ROUNDS, (MAX_SIMULATED if near else MAX_SIMULATED_IN_VAIN) - simulated)
+        if rounds <= 0:
+            skipped = (len(likely) if near else total) - count
+            break
+        steps = _steps(curve, value, target, density, close, rounds)
+        simulated += len(steps)
+        tried.append(_nearest_step(steps, target))
         separate = _separate_solutions(tried, target)
         near = [one for one in separate if abs(one.rate - target) <= ACCEPTED_RATE_ERROR * target]
         if progress:
-            progress(count + 1, len(likely + unlikely))
+            progress(count + 1, total)
     accepted = near or [one for one in _separate_solutions(tried, target) if one.rate > target]
     if accepted:
-        return sorted(accepted, key=lambda solution: solution.order)
+        return FoundSettings(tuple(sorted(accepted, key=lambda solution: solution.order)), skipped)
     # no setting brings so many parts: what is the most
     peaks = [(speed, c.key, value) for c in curves for speed, value in zip(c.speeds, c.values)]
     peaks = sorted((peak for peak in peaks if np.isfinite(peak[0])), key=lambda peak: -peak[0])
     what = f"no setting reaches {target / units.PER_MINUTE:.6g}/min: "
+    if skipped:
+        what = f"none of {len(tried)} settings that were tried gives {target / units.PER_MINUTE:.6g}/min: "
     most = "at those drives the part can tip over on the track"
     if peaks[0][0] <= 0.0:
         most = "the part never travels up the track"
@@ -201,15 +246,23 @@ class _Curve:
         return float(_speeds(self.bowl, self.key, np.array([value]), self.worst)[0])
 
 
-def _settled(curve: _Curve, value: float, target: float, density: Density, close: float) -> Solution:
-    """The setting near a start that gives the target with what arrives there, or comes nearest to it.
+def _keys_in_turn(starts: list[tuple[_Curve, float]]) -> list[tuple[_Curve, float]]:
+    """Starts in another order: the first of each key, then the second of each."""
+    earlier = [[other.key for other, _ in starts[:k]].count(curve.key) for k, (curve, _) in enumerate(starts)]
+    return [starts[k] for k in sorted(range(len(starts)), key=earlier.__getitem__)]
+
+
+def _steps(
+    curve: _Curve, value: float, target: float, density: Density, close: float, most: int
+) -> list[Solution]:
+    """Settings on the way from a start to one that gives the target with what arrives there.
 
     Each step takes the parts that arrived at the step before it, since another drive brings others; they are
     sampled, so after some steps the mean of the last ones leads on.
     """
     steps: list[Solution] = []
     last = None
-    for _ in range(ROUNDS):
+    for _ in range(most):
         jumps = value == last
         own = value if jumps else curve.readable(value)
         driven = turned(curve.bowl, curve.key, own)
@@ -222,6 +275,11 @@ def _settled(curve: _Curve, value: float, target: float, density: Density, close
         if there is None:
             break
         last, value = value, there
+    return steps
+
+
+def _nearest_step(steps: list[Solution], target: float) -> Solution:
+    """The setting that gives the target, or comes nearest to it; one that gives more before one below it."""
     away = [(abs(step.rate - target), step) for step in steps]
     enough = [pair for pair in away if pair[0] <= ACCEPTED_RATE_ERROR * target or pair[1].rate > target]
     return min(enough or away, key=lambda pair: pair[0])[1]

@@ -141,7 +141,10 @@ def velocity(bowl: Bowl) -> Range:
     of restitution. Raises FeederError if there is no steady state.
     """
     here = answer.answer(bowl)
-    if here.status == "no steady state":
+    if here.unsteady == answer.UnsteadyMotion.KEEPS_SPEED:
+        what = "is 0 on a level track: the part keeps whatever speed it has, no velocity is steady"
+        raise FeederError("friction.static", what, "raise friction.static and friction.kinetic")
+    if here.unsteady:
         what = "is steeper than friction holds: the part slides down continuously"
         raise FeederError("track.climb", what, "lower the climb or raise the friction")
     surfaces = answer.surfaces(bowl, here.throw_number > 1.0)[1:]

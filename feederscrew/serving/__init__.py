@@ -1,1 +1,1 @@
-"""The main job in a browser on this machine: a part, its aspects, a design, its result page."""
+"""The main job in a browser: uploads, designs, the pages and answers, and the server that bounds them."""

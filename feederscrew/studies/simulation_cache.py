@@ -15,7 +15,6 @@ import itertools
 import json
 import os
 import secrets
-import stat
 import sys
 import time
 from collections import OrderedDict
@@ -25,11 +24,11 @@ from typing import TypeVar
 
 import numpy as np
 
+from feederscrew import caches
 from feederscrew.arrays import Array
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 
-VARIABLE = "FEEDER_CACHE"  # names the folder; empty: nothing is kept
 MAX_ENTRY_BYTES = 4_000_000
 MAX_ENTRIES = 500  # the oldest go
 MAX_FILES = 20_000  # in the folder: of more nothing is tidied up
@@ -38,9 +37,6 @@ PARTIAL_PREFIX = "tmp"  # of an entry that is being written
 PARTIAL_AGE_S = 3600.0  # older ones were left by a run that was killed
 MADE_WITH = ("numpy", "scipy", "numba")
 ARRAY_KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
-OPEN_FLAGS = os.O_RDONLY
-for _flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"):  # those that the system has
-    OPEN_FLAGS |= getattr(os, _flag, 0)
 
 Arrays = Mapping[str, Array]
 
@@ -51,12 +47,12 @@ def read(key: Mapping[str, str]) -> dict[str, Array] | None:
     Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is damaged, too
     large, of another key, no regular file, or in a folder that others may write to.
     """
-    folder = _folder()
+    folder = caches.simulation_folder()
     if folder is None or refusal() is not None:
         return None
     full = {**key, "code": library_digest()}
     try:
-        entry = json.loads(_content(folder / f"{_digest(full)}{ENTRY_SUFFIX}"))
+        entry = json.loads(caches.read_own(folder / f"{_digest(full)}{ENTRY_SUFFIX}", MAX_ENTRY_BYTES))
         if entry["key"] != full or _digest([full, entry["arrays"]]) != entry["sha256"]:
             return None
         arrays = {}
@@ -73,7 +69,7 @@ def read(key: Mapping[str, str]) -> dict[str, Array] | None:
 
 def write(key: Mapping[str, str], arrays: Arrays) -> None:
     """Keep arrays of float, int or bool under a key; a full disk leaves nothing behind."""
-    folder = _folder()
+    folder = caches.simulation_folder()
     if folder is None:
         return
     full = {**key, "code": library_digest()}
@@ -88,8 +84,7 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
         return
     with contextlib.suppress(OSError):
         if not folder.is_dir():
-            folder.parent.mkdir(parents=True, exist_ok=True)
-            folder.mkdir(mode=0o700, exist_ok=True)
+            caches.make_folder(folder)
         if refusal() is not None:
             return
         # under a name of its own, then in its place; what fails is taken away
@@ -107,48 +102,9 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
 
 def refusal() -> str | None:
     """Return why the folder of the cache is not used, and how to mend that; None where it is used."""
-    folder = _folder()
-    if folder is None or not hasattr(os, "geteuid"):
-        return None
-    try:
-        held = folder.stat()
-    except (OSError, ValueError):
-        return None
-    if not stat.S_ISDIR(held.st_mode):
-        why, mend = "it is no folder", f"name another in {VARIABLE}"
-    elif held.st_uid != os.geteuid():
-        why, mend = "it belongs to another user", f"name a folder of your own in {VARIABLE}"
-    elif held.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-        why, mend = "other users may write to it", "run chmod go-w on it"
-    else:
-        return None
-    return f"the cache {folder} is not used: {why} - {mend}"
-
-
-def _folder() -> Path | None:
-    named = os.environ.get(VARIABLE)
-    if named is not None:
-        return Path(named) if named else None
-    base = os.environ.get("XDG_CACHE_HOME")
-    with contextlib.suppress(RuntimeError):  # a user without a home
-        return Path(base or Path.home() / ".cache") / "feeder"
-    return None
-
-
-def _content(path: Path) -> bytes:
-    """Bytes of a regular file of this user, no link, of at most MAX_ENTRY_BYTES; none of anything else."""
-    with contextlib.suppress(OSError, ValueError):
-        before = path.lstat()  # where the system knows no O_NOFOLLOW
-        if not stat.S_ISREG(before.st_mode) or before.st_size > MAX_ENTRY_BYTES:
-            return b""
-        with open(os.open(path, OPEN_FLAGS), "rb") as file:  # noqa: PTH123 - a descriptor
-            held = os.fstat(file.fileno())
-            is_same = (held.st_dev, held.st_ino) == (before.st_dev, before.st_ino)
-            is_own = not hasattr(os, "geteuid") or held.st_uid == os.geteuid()
-            if stat.S_ISREG(held.st_mode) and is_same and is_own:
-                data = file.read(MAX_ENTRY_BYTES + 1)
-                return data if len(data) <= MAX_ENTRY_BYTES else b""
-    return b""
+    folder = caches.simulation_folder()
+    reason = caches.why_unsafe(folder, caches.SIMULATIONS_VARIABLE) if folder else None
+    return f"the cache {folder} is not used: {reason}" if reason else None
 
 
 def _tidy(folder: Path) -> None:

@@ -1,6 +1,7 @@
 """The study of ``feeder tooling``: which orientations of a part can be isolated, and by which devices."""
 
 import functools
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -113,6 +114,7 @@ class ToolingStudy(ReadableRecord):
     play: float = designing.PLAY_M  # [m] of the part from the wall, within the margin
     tolerance: float = designing.TOLERANCE_M  # [m] of its size, within the margin
     trials: tuple[Any, ...] = ()  # of TriedDesign: what was tried, that of `design` first
+    partial: bool = False  # stopped by the user before all was searched and tried
 
     def trial_of(self, place: int) -> Any:
         """Return what the trial of an orientation's design said: its TriedDesign; None without one."""
@@ -241,6 +243,9 @@ def tooling(
     FeederError
         If the part has no mesh or very many facets, is too large for the bowl, or has no such orientation or
         rule.
+
+    An interrupt from the keyboard ends the search: the study is ``partial`` then, with the chains that were
+    found; of the first orientation the first chain there is. A second one is raised.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     looked = check.kind("search", search or ToolingSearch(), ToolingSearch, "give a ToolingSearch")
@@ -290,14 +295,24 @@ def tooling(
     if progress is not None:
         progress(0, len(places))
     tracks: Tracks = {bowl.track.width: (bowl, coming, {})}
+    is_stopped = False
     for done, k in enumerate(places):
-        designs[k] = best = _best(part, aspects, shares, k, tracks, request)
-        check_written(best.devices, "tooling.yaml")
-        if progress is not None:
-            progress(done + 1, len(places))
+        try:
+            designs[k] = best = _best(part, aspects, shares, k, tracks, request)
+            if progress is not None:
+                progress(done + 1, len(places))
+        except KeyboardInterrupt:
+            is_stopped = True
+            if done == 0 and designs[k] is None:  # the first chain there is, without a search for holes
+                request["search"] = replace(holes, until=-math.inf)
+                designs[k] = best = _best(part, aspects, shares, k, tracks, request)
+        if designs[k] is not None:
+            check_written(best.devices, "tooling.yaml")
+        if is_stopped:
+            break
     study = ToolingStudy(
         part, bowl, aspects, rule, clear, coming, shares, tuple(designs), wanted,
-        up=may_use.up, play=play, tolerance=tolerance,
+        up=may_use.up, play=play, tolerance=tolerance, partial=is_stopped,
     )  # fmt: skip
     return study if wanted is None else study.on_its_width(wanted)
 

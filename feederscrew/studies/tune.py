@@ -43,6 +43,7 @@ class TuneStudy(ReadableRecord):
     target: float  # [1/s] well-oriented parts
     worst: bool  # whether it is met at the slowest of every start and friction, else from rest
     settings: tuple[Tuned, ...]
+    skipped: int = 0  # further settings of about that velocity, whose arriving parts were not simulated
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -93,7 +94,7 @@ def tune(
     aspect_shares : Shares or callable, optional
         Of ``shares``, or what returns those that arrive at the drive of a bowl; ``shares`` without it.
     progress : callable, optional
-        Called with how many settings are computed, and of how many.
+        Called with how many settings are computed, and of how many, at first with none.
 
     Returns
     -------
@@ -140,15 +141,15 @@ def tune(
     own: dict[str, Any] = {"rule": rule, "gap": space, "fill": fill}
     well_oriented.parts_per_metre(along(None), wanted, **own)  # raises where none ever leaves so
     well_oriented.holds(along(bowl), wanted)
-    solutions = knobs.solutions(
+    found = knobs.solutions(
         bowl, wanted_rate, lambda driven: well_oriented.leaving_per_metre(along(driven), wanted, **own),
         rough=lambda driven: well_oriented.leaving_per_metre(as_here(driven), wanted, **own),
         sampled=here.fed, worst=worst, progress=progress,
     )  # fmt: skip
     tuned = []
-    for solution in solutions:  # with what it gives if friction is a fifth lower or higher
+    for solution in found.solutions:  # with what it gives if friction is a fifth lower or higher
         there, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)
         over = tuple(o.name for o in along(driven).lying if o.turns_over)
         several = bool(there.high - there.low > answer.COEXISTING_VELOCITY_GAP * there.speed)
         tuned.append(Tuned(solution, well_oriented.velocity(driven), over, several, driven))
-    return TuneStudy(part, bowl, here.aspects, chain, wanted_rate, worst, tuple(tuned))
+    return TuneStudy(part, bowl, here.aspects, chain, wanted_rate, worst, tuple(tuned), found.skipped)

@@ -371,6 +371,20 @@ def test_between_kinetic_and_static_friction():
     assert (held[steady.STATUS], held[steady.RUNAWAY]) == (steady.AVERAGED, 0.0)
 
 
+@pytest.mark.parametrize("ratio", [0.5, 2.1126, 4.0])
+@pytest.mark.parametrize("restitution", [0.0, 0.3])
+def test_without_friction_on_the_level_no_velocity_is_steady(ratio, restitution):
+    """A force along the track is missing: at 2.1126 it gave -0.906 to 0.906, the plate's own speed."""
+    for setting in (plain(ratio, 25 * DEG, 0.0, 0.0, restitution), plain(ratio, 0.0, 0.0, 0.0)):
+        out = travel_of(setting)
+        assert (out[steady.STATUS], out[steady.RUNAWAY]) == (steady.NO_STEADY_STATE, 1.0)
+        assert np.isnan(out[steady.VELOCITY]) and np.isnan(out[steady.LOW])
+    # with some friction there is one, with kinetic friction alone missing it holds from rest only
+    assert travel_of(plain(ratio, 25 * DEG, 0.0, 1e-3))[steady.RUNAWAY] == 0.0
+    held = travel_of(sticky(ratio, 25, 0, 20.0, 0.0))
+    assert (held[steady.STATUS], held[steady.RUNAWAY]) == (steady.PERIODIC, 1.0)
+
+
 @pytest.mark.parametrize("friction", [0.02, 0.002, 0.0002])
 def test_a_start_from_rest_that_settles_slowly_settles(friction):
     """The speed that closes in over thousands of periods is a fixed point, found at once."""

@@ -79,10 +79,11 @@ def _verified(name):
 
 def _cache(name):
     """Read a damaged entry of the cache, under a digest that fits it where it is still JSON."""
+    from feederscrew import caches
     from feederscrew.studies import simulation_cache
 
     damaged, key = Path(name).read_bytes(), {"part": "of the fuzzer"}
-    with unittest.mock.patch.dict(os.environ, {simulation_cache.VARIABLE: "kept"}):
+    with unittest.mock.patch.dict(os.environ, {caches.SIMULATIONS_VARIABLE: "kept"}):
         simulation_cache.write(key, {"shares": np.array([0.25, 0.75])})
         (entry,) = Path("kept").iterdir()
         with contextlib.suppress(ValueError, KeyError, TypeError, RecursionError):

@@ -76,3 +76,13 @@ def test_what_is_hidden_by_make_test_without_is_not_found_and_its_tests_skip():
     body = "tests/solidbowl/test_leans.py::test_a_step_higher_than_the_plate_is_one_exact_body"
     said = without("OCP", "-m", "pytest", "-m", "extra", "-rs", "-p", "no:cacheprovider", body)
     assert "1 skipped" in said and "needs OCP: pip install 'feederscrew[cad]'" in said
+
+
+def test_no_parameter_of_a_test_is_a_solid(request):
+    """A solid that lives to the end of the program is told as leaked, in two screens after the last test."""
+    values = [
+        value
+        for item in request.session.items
+        for value in getattr(getattr(item, "callspec", None), "params", {}).values()
+    ]
+    assert not [value for value in values if type(value).__module__.startswith("manifold3d")]

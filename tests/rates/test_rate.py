@@ -430,7 +430,7 @@ def per_metre(bowl):
 
 
 def test_each_solution_reaches_the_target_and_its_value_can_be_given_again():
-    solutions = drive_settings.solutions(SLOW, 0.05, per_metre)
+    solutions = drive_settings.solutions(SLOW, 0.05, per_metre).solutions
     assert {one.key.name for one in solutions} >= {"drive.amplitude", "drive.frequency"}
     for one in solutions:
         there = answer.answer(drive_settings.turned(SLOW, one.key, one.value))
@@ -438,17 +438,17 @@ def test_each_solution_reaches_the_target_and_its_value_can_be_given_again():
         assert there.regime == one.answer.regime
         assert one.value == units.quantity(f"{one.number} {one.key.unit}", one.key.dimension)
         assert len(f"{one.number}".replace(".", "").lstrip("0")) <= drive_settings.SETTING_DIGITS
-    orders = [one.order for one in drive_settings.solutions(SLOW, 0.4, per_metre)]
+    orders = [one.order for one in drive_settings.solutions(SLOW, 0.4, per_metre).solutions]
     assert orders == sorted(orders)
     gentle = drive_settings.REGIMES_BY_GENTLENESS
     assert gentle.index("forward") < gentle.index("both") < gentle.index("hop")
-    for one in drive_settings.solutions(SLOW, 0.05, per_metre, worst=True):
+    for one in drive_settings.solutions(SLOW, 0.05, per_metre, worst=True).solutions:
         there = drive_settings.turned(SLOW, one.key, one.value)
         assert well_oriented.velocity(there).low == pytest.approx(0.05 / PER_METRE, rel=1e-4)
         assert one.answer.velocity >= one.speed
     gentle = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
     bouncing = bowls.read(None, gentle)  # from rest its velocity jumps onto the regular bounce of a period
-    for one in drive_settings.solutions(bouncing, 0.866, per_metre):
+    for one in drive_settings.solutions(bouncing, 0.866, per_metre).solutions:
         assert one.rate == pytest.approx(0.866, rel=drive_settings.ACCEPTED_RATE_ERROR)
 
 
@@ -474,7 +474,7 @@ def test_a_target_that_is_not_reached_or_that_the_rate_jumps_over(monkeypatch):
         return PER_METRE if bowl is None or bowl.drive.amplitude < 0.1e-3 else 2.0 * PER_METRE
 
     target = 1.5 * PER_METRE * answer.answer(drive_settings.turned(SLOW, stroke, 0.1e-3)).velocity
-    assert all(one.rate > 1.1 * target for one in drive_settings.solutions(SLOW, target, more))
+    assert all(one.rate > 1.1 * target for one in drive_settings.solutions(SLOW, target, more).solutions)
 
 
 def test_what_arrives_at_a_setting_counts_there():
@@ -484,12 +484,44 @@ def test_what_arrives_at_a_setting_counts_there():
         there = (bowl or SLOW).drive
         return PER_METRE * math.exp(-2e3 * there.amplitude) * (50.0 / there.frequency) ** 0.5
 
-    solutions = drive_settings.solutions(SLOW, 0.05, fewer)
+    solutions = drive_settings.solutions(SLOW, 0.05, fewer).solutions
     assert {one.key.name for one in solutions} == set(drive_settings.KNOBS)
     for one in solutions:
         there = drive_settings.turned(SLOW, one.key, one.value)
         for rate in (answer.answer(there).velocity * fewer(there), one.rate):
             assert rate == pytest.approx(0.05, rel=drive_settings.RATE_TOLERANCE)
+
+
+def test_a_search_whose_parts_are_simulated_ends_and_says_what_it_left_out(monkeypatch):
+    """With a second harmonic it went through 17 simulations of 4 s each; each key gets its turn."""
+    rough_drive = bowls.read(None, ["drive.second_harmonic=0.5", "drive.second_harmonic_phase=90 deg"])
+    asked, told = [], []
+
+    def jumping(bowl):
+        if bowl is not None:
+            asked.append(bowl.drive)
+        return PER_METRE * (1.0 + 0.01 * (-1) ** len(asked))  # what is simulated scatters
+
+    def find():
+        asked.clear()
+        found = drive_settings.solutions(
+            rough_drive, 1.0, jumping, rough=per_metre, sampled=True, progress=lambda *now: told.append(now)
+        )
+        return found, len(asked)
+
+    monkeypatch.setattr(drive_settings, "MAX_SIMULATED", 100)
+    everything, simulated = find()
+    assert told[0] == (0, told[-1][1]) and everything.skipped == 0 and simulated > 4
+    monkeypatch.setattr(drive_settings, "MAX_SIMULATED", 4)
+    some, simulated = find()
+    assert simulated <= 4 and some.skipped > 0
+    assert len({one.key.name for one in some.solutions}) > 1
+    for one in some.solutions:
+        assert one.rate == pytest.approx(1.0, rel=drive_settings.ACCEPTED_RATE_ERROR)
+    # where none gives the rate it goes on for a while
+    monkeypatch.setattr(drive_settings, "ACCEPTED_RATE_ERROR", 0.0)
+    monkeypatch.setattr(drive_settings, "MAX_SIMULATED_IN_VAIN", 6)
+    assert find()[1] == 6
 
 
 def test_many_parts_decide_only_on_settings_that_few_lead_to():
@@ -504,10 +536,11 @@ def test_many_parts_decide_only_on_settings_that_few_lead_to():
         led.append(bowl)
         return PER_METRE
 
-    plain = drive_settings.solutions(SLOW, 0.4, many)
+    plain = drive_settings.solutions(SLOW, 0.4, many).solutions
     spent = len(asked)
     asked.clear()
-    found, near = drive_settings.solutions(SLOW, 0.4, many, rough=few), drive_settings.ACCEPTED_RATE_ERROR
+    found = drive_settings.solutions(SLOW, 0.4, many, rough=few).solutions
+    near = drive_settings.ACCEPTED_RATE_ERROR
     assert [one.rate for one in found] == pytest.approx([0.4] * len(found), rel=near)
     assert {one.key.name for one in found} == {one.key.name for one in plain}
     decided = [bowl for bowl in asked if bowl is not None]

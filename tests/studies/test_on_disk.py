@@ -14,6 +14,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew import caches
 from feederscrew.dropping import arrival
 from feederscrew.studies import simulation_cache
 from feederscrew.studies.rate import shares
@@ -27,7 +28,7 @@ NUMBERS = {"p": np.arange(3.0)}
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(caches.SIMULATIONS_VARIABLE, str(tmp_path / "cache"))
     return tmp_path / "cache"
 
 
@@ -61,7 +62,7 @@ def test_the_same_is_simulated_once_and_what_differs_anew(feed, folder, monkeypa
         assert feed(**other)[1] == count
     (tmp_path / "file").write_text("")
     for count, place in enumerate(("", str(tmp_path / "file/below")), start=5):  # nowhere to write
-        monkeypatch.setenv(simulation_cache.VARIABLE, place)
+        monkeypatch.setenv(caches.SIMULATIONS_VARIABLE, place)
         assert feed()[1] == count
 
 

@@ -292,6 +292,7 @@ const conveying = (() => {
 
   // Velocity [A w] of a part that starts at rest: [velocity, status]; NaN where it slides on without end.
   function steady(rules) {
+    if (rules.onset.level === 0 && rules.onsetBack.level === 0) return [NaN, "no steady state"];
     let [now, repeat] = settle(rules, atRest(rules));
     if (repeat === RUNS) return [NaN, "no steady state"];
     const tally = tallied();

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from command_lines import names, rows
+from command_lines import NUT, names, rows
 
 POINT = ("--set", "drive.peak_to_peak=1 mm", "--set", "drive.vibration_angle=25 deg")
 MAP = ("--vary", "drive.vibration_angle=10:60:8", "--vary", "drive.amplitude=0.05mm:0.6mm:7")
@@ -27,6 +27,15 @@ def test_json_of_a_point_and_what_is_said_of_steady_states(run_json, run):
     assert (result.exit_code, document["status"], document["velocity_mm_s"]) == (0, "no steady state", None)
     slides = "no steady state: the part slides down the track without stopping, and no velocity is steady"
     assert result.stderr == f"Warning: {slides}\n"
+    smooth = ("--set", "friction.static=0", "--set", "friction.kinetic=0", "--set", "track.climb=0 deg")
+    result = run("convey", *smooth)
+    assert result.stderr.startswith("Warning: no steady state: without friction a part on the level keeps")
+    assert result.stdout.splitlines()[1].split() == ["velocity", "[mm/s]", "no", "steady", "velocity"]
+    document = run_json("convey", *smooth)
+    assert (document["velocity_mm_s"], document["unsteady"]) == (None, "keeps its speed")
+    for command in (("convey", "--best-phase"), ("rate", NUT, "--aspect", "A", "--rule", "closed")):
+        refused = run(*command, *smooth)
+        assert refused.exit_code == 1 and "raise friction.static and friction.kinetic" in refused.stderr
     values = ("drive.amplitude=0.4975 mm", "drive.frequency=50 Hz", "drive.vibration_angle=20 deg")
     values += ("track.climb=0 deg", "friction.static=0.3", "restitution=0.3")
     result = run("convey", *(word for value in values for word in ("--set", value)))

@@ -1,12 +1,16 @@
 """``feeder tooling`` from the command line, and devices in what ``feeder rate`` prints."""
 
+import json
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import shapes
+from command_lines import names
 
+from feederscrew.designing import short_trials
 from feederscrew.output import tooling as tables
+from feederscrew.tooling.isolating import design as designing
 
 WIDE = ("--set", "track.width=200 mm")
 ROW = {
@@ -40,6 +44,36 @@ def test_the_chain_of_one_orientation(run_json, block):
         assert set(cut) >= (CUT - {"value_mm"} if cut.keys() & {"outline_mm", "angle_deg"} else CUT)
         margins = [cut[name] for name in ("margin_pass_mm", "margin_reject_mm") if cut[name] is not None]
         assert min(margins, default=1.0) >= 0.25
+
+
+@pytest.mark.parametrize("where", ["search", "trial"])
+@pytest.mark.parametrize("wanted", [WANTED, WANTED[:1]], ids=["one", "all"])
+def test_an_interrupt_prints_and_writes_what_is_there(run, block, monkeypatch, tmp_path, where, wanted):
+    """It left nothing; what was not tried is not proved, and no drawing is made of it."""
+    calls = []
+
+    def stop_at(count, of):
+        def work(*arguments, **values):
+            calls.append(of)
+            if len(calls) == count:
+                raise KeyboardInterrupt
+            return of(*arguments, **values)
+
+        return work
+
+    owner, name = (designing, "design_with_track") if where == "search" else (short_trials, "try_parts")
+    count = 2 if (where, wanted) == ("search", WANTED[:1]) else 1  # of all orientations the first is searched
+    monkeypatch.setattr(owner, name, stop_at(count, getattr(owner, name)))
+    result = run("tooling", *wanted, *WIDE, "-o", "out")
+    assert "not proved: stopped before all was searched and tried" in result.stderr
+    folder = tmp_path / "out/block"
+    document = json.loads((folder / "tooling.json").read_text())
+    statuses = {row["status"] for row in document["orientations"]} - {None}
+    assert document["partial"]
+    assert statuses <= {"not proved", "none"} and statuses
+    own = {"tooling.csv", "tooling.json", "tooling.png", "run.json"}
+    assert names(folder) == own | ({"tooling.yaml"} if wanted is WANTED else set())
+    assert (folder / "tooling.csv").read_text().count("\n") == 1 + len(document["orientations"])
 
 
 def test_rate_reads_the_chain(run_json, block, tmp_path):

@@ -86,7 +86,7 @@ def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
     assert child.stdout.readline() == b"ready\n"
     child.send_signal(getattr(signal, name))
     assert child.communicate(timeout=8.0)[1] == b"Stopped.\n"
-    assert child.returncode == 130
+    assert child.returncode == 128 + getattr(signal, name)
 
 
 def test_a_long_run_says_where_it_is_in_a_file_and_by_a_bar_with_the_time_to_go(monkeypatch, capsys):

@@ -28,6 +28,9 @@ def test_it_lists_versions_extras_kernels_and_completion(run, monkeypatch, tmp_p
     # it counts the kernels of the folder that numba is told
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     assert dict(doctor.kernels())["state"].startswith("none yet")
-    (tmp_path / "deep").mkdir()
-    (tmp_path / "deep/sweep.nbi").touch()
+    (tmp_path / "sweep.kernel").touch()
     assert doctor.kernels() == [("state", "1 functions kept"), ("place", str(tmp_path))]
+    # ... unless others may write there
+    tmp_path.chmod(0o777)
+    state = dict(doctor.kernels())
+    assert state["place"] != str(tmp_path) and "other users may write to it" in state["not used"]

@@ -202,6 +202,65 @@ def test_an_interrupt_that_somebody_drops_is_no_success(capsys, held, after):
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
+LOADING = """
+import time
+try:
+    print("loading", flush=True)
+    time.sleep(0.4)
+except BaseException:  # as libraries do that go without what they cannot load
+    print("dropped", flush=True)
+"""
+CALLBACK = """
+class Late:
+    def __del__(self):
+        print("loading", flush=True)
+        time.sleep(0.4)
+Late()
+"""
+
+
+@posix
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize(
+    "line", ["import loading", "exec(open('callback.py').read())"], ids=["import", "callback"]
+)
+def test_a_signal_within_an_import_or_a_callback_ends_the_program_after_it(tmp_path, line, name):
+    """In 0.28 s of the loading it was dropped with a traceback, and the run went on."""
+    (tmp_path / "loading.py").write_text(LOADING)
+    (tmp_path / "callback.py").write_text(CALLBACK)
+    code = f"import os, sys; os.chdir({str(tmp_path)!r}); sys.path.insert(0, '')\n"
+    code += COMMAND.format(body=f"    {line}\n    print('after', flush=True)\n    time.sleep(20)")
+    with python(code) as child:
+        assert child.stdout.readline() == "loading\n"
+        child.send_signal(getattr(signal, name))
+        said, err = child.stdout.read(), child.stderr.read()
+        assert child.wait(timeout=10) == 128 + getattr(signal, name)
+    assert "dropped" not in said and "Traceback" not in err and err.splitlines()[-1] == "Stopped."
+
+
+@posix
+def test_sigterm_is_ctrl_c_once_though_it_comes_twice_and_nohup_is_heeded():
+    """`timeout` sends it to the program and to its group: the second cost what the first had saved."""
+    body = """
+    for turn in range(2):
+        try:
+            print("ready", flush=True)
+            time.sleep(20 if turn == 0 else 0.3)
+        except KeyboardInterrupt:
+            print("stopped", flush=True)
+    """
+    with python(
+        "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n" + COMMAND.format(body=body)
+    ) as child:
+        assert child.stdout.readline() == "ready\n"
+        child.send_signal(signal.SIGHUP)
+        child.send_signal(signal.SIGTERM)
+        assert child.stdout.readline() == "stopped\n"
+        child.send_signal(signal.SIGTERM)
+        assert child.stdout.read() == "ready\n"
+        assert child.wait(timeout=10) == 143
+
+
 @pytest.mark.long
 @pytest.mark.thorough
 def test_the_readme_says_what_the_program_says(monkeypatch, capsys, fewer):
