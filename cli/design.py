@@ -77,7 +77,7 @@ def design(
     part: Values, more_parts: tuple[str, ...], request_options: Values, is_list: bool, rule: str,
     share_options: Values, bowl: Values, out: Output,
 ) -> None:  # fmt: skip
-    """Example: feeder design parts/washer_m6.stl --target 40/min -o results
+    """Example: feeder design washer_m6.stl --target 40/min -o results
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
     what its trial denies is changed. What gets through goes through a queue at low, normal and high fill,

@@ -22,7 +22,7 @@ COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
     "Part": ("aspects", "drop", "inertia", "compare", "calibrate"),
     "Bowl": ("rate", "tune", "convey", "slide", "floor", "track", "headings"),
-    "Files": ("batch", "config", "serve", "doctor", "reproduce"),
+    "Files": ("sample", "batch", "config", "serve", "doctor", "reproduce"),
 }
 MODULES = {  # of commands that share one, else it has their name
     "floor": "motion", "track": "motion", "headings": "motion", "slide": "motion",
@@ -177,7 +177,7 @@ def _near_miss(error: click.ClickException) -> str:
 @click.version_option(__version__, prog_name="feeder")
 @click.pass_context
 def feeder(ctx: click.Context) -> None:
-    """Example: feeder design parts/washer_m6.stl --target 40/min -o results
+    """Example: feeder design washer_m6.stl --target 40/min -o results
 
     Vibratory bowl feeders from the CAD file of a part: how it lies and travels, which cuts let one way up
     leave, how many a minute, and in which bowl, tried part by part.

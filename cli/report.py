@@ -37,7 +37,7 @@ PLACE = (
 @options.bowl
 @options.group("out", *PLACE, pack=Output.of_call)
 def report(part: Values, request_options: Values, share_options: Values, bowl: Values, out: Output) -> None:
-    """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
+    """Example: feeder report lbracket_30x20x15.stl --config bowl.yaml -o results
 
     Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
     turned, how often it lands on each, and how it tips, slides and travels. It has the reactions on the

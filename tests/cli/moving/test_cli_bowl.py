@@ -189,8 +189,8 @@ def test_the_bowl_as_a_solid(run_json, tmp_path):
 
 
 def test_the_climb_makes_room_below_a_stretch_that_leads_down(run, tmp_path):
-    """At 3.5 deg it is 24 mm over the turn below, less than a bolt of 30.5 mm needs."""
-    sorter = "{sorter: {of: A@188, play: 8.35 mm, sees: outline}}"
+    """At 3.5 deg it is 24 mm over the turn below, less than a bolt of 30.3 mm needs."""
+    sorter = "{sorter: {of: A@186, play: 8.15 mm, sees: outline}}"
     text = f"devices: [{{separation: {{climb: -6 deg}}}}, {sorter}, {{separation: {{climb: 3 deg}}}}]\n"
     (tmp_path / "down.yaml").write_text(text)
     line = ("bowl", PARTS / "hexbolt_m8x25.stl", *"--target 60/min --config down.yaml --rule csa".split())
