@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats
+from feederscrew.bowl.devices import shank_remarks
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, Status
 from feederscrew.designing import texts
@@ -403,6 +404,7 @@ class DesignStudy(ReadableRecord):
         allowances = {"margin": DESIGN_MARGIN_M, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         warnings = [*self.part.warnings, *small_part_remarks(self.part, allowances, width)]
+        warnings += shank_remarks(self.devices)
         if (
             self.bowl is not None
             and self.request.drive == DriveKind.LEAF_SPRING

@@ -11,7 +11,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Floats
-from feederscrew.bowl.devices import check_written
+from feederscrew.bowl.devices import check_written, shank_remarks
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
@@ -154,7 +154,9 @@ class ToolingStudy(ReadableRecord):
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         late = any(design is not None and design.late for design in self.designs)
-        lines = (*self.aspects.warnings, *self.of_size, *remark(self.orientations))
+        proposed = (device for design in self.designs if design is not None for device in design.devices)
+        shank = shank_remarks((*self.bowl.devices, *proposed))
+        lines = (*self.aspects.warnings, *self.of_size, *remark(self.orientations), *shank)
         return (*lines, *([LATE] if late else []))
 
     @property

@@ -249,7 +249,7 @@ def test_a_leaf_twists_and_rigid_clamps_bend_it_in_its_own_plane(psi, thick, at_
 
 
 def test_the_twist_of_the_sixty_degree_example():
-    """Leaf of 90 mm at 96 mm, 30 deg: 1.0634 where the whole turn twisted it by 1.0845; 104.6 Hz for 105.6."""
+    """Leaf of 90 mm at 96 mm, 30 deg: 1.0634, where the whole turn gave 1.0845; 104.6 Hz for 105.6."""
     one = replace(MACHINE, spring_angle=np.radians(30.0), leaf_length=90e-3, spring_radius=96e-3)
     assert springs.twist(one) == pytest.approx(1.0634, abs=5e-5)
     assert np.sqrt(springs.twist(one) / 1.0845) * 105.6 == pytest.approx(104.6, abs=0.05)
