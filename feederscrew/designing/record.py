@@ -324,7 +324,7 @@ class LongRide:
         return (
             f"{turned} of {parts} parts of {name} turned or left on {1e3 * self.distance:.3g} mm of bare "
             f"track, so what is wanted changes from {100.0 * entering:.3g} to {100.0 * arrives:.3g} % on the "
-            "way to the tooling; simulations differ in this, so count parts before the tooling of the bowl"
+            "way to the tooling; nobody has measured this, so count parts before the tooling of the bowl"
         )
 
     @property
