@@ -2,6 +2,7 @@
 
 import contextlib
 import re
+import shlex
 import shutil
 import sys
 import textwrap
@@ -29,6 +30,8 @@ MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within 
 PRINT_FORMATS = ("table", "csv", "json")
 PAGE = 100  # letters of a line that people read, at most
 FOLDER = ("-o", "--output")
+SAFE_WORD = re.compile(r"[\w.+:,@%/=-]+")  # of a value that every shell takes as it stands
+QUOTED_SAFE = re.compile(r"[\w.+:,@%/=() -]+")  # within double quotes
 OUTPUT_OPTIONS = ("directory", "depfile")  # options that name what is written, not what is read
 
 
@@ -234,6 +237,17 @@ def options_by_argument(command: click.Command | None) -> dict[str, str]:
     """Return the options of a command by the argument they are; of 'config' those of 'show' and 'init'."""
     parts = (command, *getattr(command, "commands", {}).values())
     return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
+
+
+def typed(names: Sequence[str], value: str) -> str:
+    """Return an option with its value as one types it: '--target 60/min', '--set drive.frequency="50 Hz"'."""
+    name = next((name for name in names if name.startswith("--")), names[0])
+    key, equals, rest = value.partition("=")
+    if SAFE_WORD.fullmatch(value):
+        return f"{name} {value}"
+    if not QUOTED_SAFE.fullmatch(value):
+        return f"{name} {shlex.quote(value)}"
+    return f'{name} {key}="{rest}"' if equals and SAFE_WORD.fullmatch(key) else f'{name} "{value}"'
 
 
 def translate(text: str, options: Mapping[str, str]) -> str:

@@ -112,7 +112,7 @@ WRONG = {
     "drop(p, launch='throw')": "launch: is 'throw' - give one of place, drop, flip, roll, feed",
     "size_bowl(p, '60/min', bowl=3)": "bowl: is 3 - give a Bowl, as read_bowl returns it",
     "read_bowl(3)": "path: is 3 - give the path of a file",
-    "tune(p, b, 'A', '60')": "target: '60' has no unit - write 60 /min",
+    "tune(p, b, 'A', '60')": "target: '60' has no unit - write 60/min",
     "tune(p, b, None, 1)": "aspect: is None - give the name of an aspect, 'A'",
     "load('x.stl', density=7)": "density: is 7 kg/m3 - give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'",
     "load(p)": "source: is a Part - give the path of a file, a mesh, (vertices, faces), or a solid of "

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Array, Floats, Points, Vector
-from feederscrew.documents import hint
+from feederscrew.documents import hint, nearest
 from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables
@@ -89,7 +89,9 @@ def select_columns(frame: Frame, choice: str | None = None) -> Frame:
     for name in names:
         if name not in frame:
             what = f"there is no column {quantity_text(name)}"
-            raise ArgumentError("columns", what, hint(name, list(frame)))
+            near = nearest(name, frame)
+            value = None if near is None else ",".join(near if each == name else each for each in names)
+            raise ArgumentError("columns", what, hint(name, list(frame)), value=value)
     return frame.only(names)
 
 
