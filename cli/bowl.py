@@ -79,6 +79,7 @@ def bowl(
     from feederscrew.studies import solidbowl as solids
 
     _check_call(part, target, solid_request, measured, chain_options)
+    out.tell_unread(bowl["path"])
     settings, path = bowls.settings(**bowl), bowl["path"]
     if measured is not None:  # the machine of the bowl file as it was found
         diagnosis = condition.diagnose(study.machine(settings), condition.read(measured))

@@ -119,6 +119,7 @@ def design(
         from feederscrew.designing.record import DesignRequest
         from feederscrew.output import designs
 
+    out.tell_unread(bowl["path"])
     settings, path = bowls.settings(**bowl), bowl["path"]
     out.warn(*bowls.assumptions(settings))
     record, user_keys = bowls.record(settings), {s.key.name for s in settings if s.is_own}

@@ -22,7 +22,7 @@ COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
     "Part": ("aspects", "drop", "inertia", "compare", "calibrate"),
     "Bowl": ("rate", "tune", "convey", "slide", "floor", "track", "headings"),
-    "Files": ("sample", "batch", "config", "serve", "doctor", "reproduce"),
+    "Files": ("sample", "batch", "config", "cache", "serve", "doctor", "reproduce"),
 }
 MODULES = {  # of commands that share one, else it has their name
     "floor": "motion", "track": "motion", "headings": "motion", "slide": "motion",
@@ -186,13 +186,16 @@ def _near_miss(error: click.ClickException) -> str:
     invoke_without_command=True,
     context_settings={"color": COLOUR, "max_content_width": 100, "help_option_names": ["-h", "--help"]},
 )
-@click.version_option(__version__, prog_name="feeder")
+@click.version_option(__version__, "-V", "--version", prog_name="feeder")
 @click.pass_context
 def feeder(ctx: click.Context) -> None:
     """Example: feeder design washer_m6.stl --target 40/min -o results
 
     Vibratory bowl feeders from the CAD file of a part: how it lies and travels, which cuts let one way up
     leave, how many a minute, and in which bowl, tried part by part.
+
+    feeder sample writes the files of the examples. docs/glossary.md explains the words, with pictures.
+    A variable FEEDER_<OPTION> gives an option that is not typed: FEEDER_FORMAT=json.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())

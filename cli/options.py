@@ -138,6 +138,9 @@ def span(value: str) -> tuple[float, float]:
     return low, high
 
 
+ENVIRONMENT_PREFIX = "FEEDER_"
+
+
 class Option(click.Option):
     """An option with ``former`` names, still taken, and ``names`` behind its help, looked up late.
 
@@ -149,6 +152,9 @@ class Option(click.Option):
         self.names: Callable[[], Sequence[str]] | None = keywords.pop("names", None)
         self.former: Sequence[str] = keywords.pop("former", ())
         super().__init__(*arguments, **keywords)
+        if self.envvar is None:  # FEEDER_FORMAT of --format; click reads it where the option is not typed
+            word = max(self.opts, key=len).lstrip("-").replace("-", "_")
+            self.envvar = f"{ENVIRONMENT_PREFIX}{word.upper()}"
         self.present = list(self.opts)
         self.opts += self.former
 

@@ -53,6 +53,7 @@ def report(part: Values, request_options: Values, share_options: Values, bowl: V
     from feederscrew.output.report import page, write
     from feederscrew.studies.report import report as study
 
+    out.tell_unread(bowl["path"])
     solid = out.part(part)
     progress.tell_compiling(out, "conveying")
     chosen = orientation.share_keywords(share_options) | orientation.progress_keywords(out)

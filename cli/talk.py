@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within a sentence
 PRINT_FORMATS = ("table", "csv", "json")
+UNREAD = "bowl.yaml"  # the name that every page gives a bowl file
 PAGE = 100  # letters of a line that people read, at most
 FOLDER = ("-o", "--output")
 SAFE_WORD = re.compile(r"[\w.+:,@%/=-]+")  # of a value that every shell takes as it stands
@@ -66,7 +67,11 @@ class Output:
             if is_input and value not in (None, "-"):
                 inputs += value if isinstance(value, tuple) else (value,)
         known = options_by_argument(context.command)
-        return cls(name, tuple(context.obj or ()), inputs=tuple(inputs), options=known, **options)
+        out = cls(name, tuple(context.obj or ()), inputs=tuple(inputs), options=known, **options)
+        for option in context.command.params:
+            if context.get_parameter_source(option.name or "") is click.core.ParameterSource.ENVIRONMENT:
+                out.say(f"{option.envvar} in the environment gives {option.opts[0]}")
+        return out
 
     def warn(self, *texts: str) -> None:
         """Tell each warning on stderr and keep it for run.json."""
@@ -130,10 +135,16 @@ class Output:
             if self.depfile:
                 check_place(Path(self.depfile).parent, "give another `depfile`")
 
+    def tell_unread(self, *paths: object) -> None:
+        """Say that a bowl file lies in the folder and is not read, where none is named."""
+        if not any(paths) and Path(UNREAD).is_file():
+            self.say(f"{UNREAD} in this folder is not read: add --config {UNREAD} to use it")
+
     def settings(self, bowl: Mapping[str, Any]) -> tuple["Setting", ...]:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
         from feederscrew import bowl as bowls
 
+        self.tell_unread(bowl["path"])
         settings = bowls.settings(**bowl)
         self.warn(*bowls.remarks(settings))
         return settings

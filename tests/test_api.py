@@ -55,7 +55,15 @@ def test_every_public_name_is_there_and_every_command_that_computes_has_its_func
         assert inspect.isfunction(value) or inspect.isclass(value)
     with pytest.raises(AttributeError, match="lod"):
         fs.lod
-    other = {"batch", "completion", "config", "doctor", "sample", "serve"}  # of files and of this program
+    other = {
+        "batch",
+        "cache",
+        "completion",
+        "config",
+        "doctor",
+        "sample",
+        "serve",
+    }  # of files and of this program
     commands = (set(feeder.list_commands(None)) - other - {"bowl"}) | {"size_bowl", "shake"}
     assert commands <= set(FUNCTIONS)
     # Signatures list each keyword with its type.

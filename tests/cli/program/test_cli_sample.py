@@ -83,6 +83,6 @@ def test_the_words_of_every_example_are_taken():
         words = shlex.split((command.help or "").partition("\n")[0].removeprefix("Example: feeder"))
         depth = len(name.split()) if words[: len(name.split())] == name.split() else 1
         inner, chosen = words[depth:], command
-        if isinstance(command, click.Group):  # its example is that of one of its own
+        if isinstance(command, click.Group) and words[1:]:  # its example is that of one of its own
             chosen, inner = command.commands[words[1]], words[2:]
         chosen.make_context(name, list(inner), parent=click.Context(feeder))

@@ -263,7 +263,7 @@ def test_the_mend_that_a_fault_prints_can_be_typed(run, tmp_path, line):
     assert wrong.exit_code == 2 and wrong.stdout == "" and wrong.stderr.count("Error: ") == 1
     again, option = mended(call, wrong.stderr)
     assert option == expected
-    if call.startswith(("design", "tune")):  # half a minute and more: is the call taken?
+    if call.startswith(("design", "tune", "tooling")):  # ten seconds and more: is the call taken?
         name, *rest = again
         assert feeder.commands[name].make_context(name, rest, parent=click.Context(feeder)).params
         return

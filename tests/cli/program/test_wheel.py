@@ -22,7 +22,9 @@ STEEP = ("--set", "restitution=0", "--set", "track.climb=20 deg")  # few setting
 EXACT = ("--rule", "quasistatic")  # nothing is dropped or fed: minutes without a compiler
 HELP = ("compare", "headings", "bowl", "tooling", "trial", "design", "report", "serve")  # minutes without one
 ON_A = [PART, "--aspect", "A"]
-CALLS = dict.fromkeys(HELP, ("--help",)) | dict.fromkeys(("reproduce", "doctor"), ())  # `aspects` draws
+CALLS = dict.fromkeys(HELP, ("--help",)) | dict.fromkeys(
+    ("reproduce", "doctor", "cache"), ()
+)  # `aspects` draws
 CALLS |= dict.fromkeys(("slide", "convey"), ("--config", "bowl.yaml"))
 CALLS |= dict.fromkeys(("floor", "track"), (*ON_A, "--config", "bowl.yaml"))
 CALLS = {"sample": ["--all"], "config": ["init", "bowl.yaml"]} | CALLS | {
