@@ -61,7 +61,7 @@ test-newest: ## the shorter tests with the newest Python and libraries there are
 WITHOUT := lxml networkx cascadio distributed jsonschema OCP pinocchio chromium prusa-slicer
 
 test-without: $(READY_TO_TEST) ## the shorter tests with each extra missing in turn: WITHOUT="lxml OCP" names fewer
-	for name in $(WITHOUT); do echo "without $$name"; PYTHONPATH=$(CURDIR)/tests/without FEEDER_WITHOUT=$$name \
+	for name in $(WITHOUT); do echo "without $$name"; PYTHONPATH=$(CURDIR)/tests/without TESTS_WITHOUT=$$name \
 	  $(BIN)/python -m pytest $(SHORT) $(TESTS) || exit 1; done
 
 lint: $(READY_TO_TEST) ## format, lint and types, nothing changed

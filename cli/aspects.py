@@ -46,7 +46,7 @@ EACH_FACE_COUNTS = (
 )  # fmt: skip
 @options.drawn_output
 def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chosen: Any) -> None:
-    """Example: feeder aspects parts/lbracket_30x20x15.stl --launch feed -o results
+    """Example: feeder aspects lbracket_30x20x15.stl --launch feed -o results
 
     List the resting aspects of PART, with equal ones joined into classes. Each has its geometry, its
     probability by every rule, and what it takes to tip it.
@@ -100,7 +100,7 @@ def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chose
 @options.part
 @options.output
 def inertia(part: Values, out: Output) -> None:
-    """Example: feeder inertia parts/hexbolt_m8x25.stl --density brass
+    """Example: feeder inertia hexbolt_m8x25.stl --density brass
 
     Volume, mass, centre of mass, inertia about the centre of mass and about the file's origin,
     principal moments and axes, convex hull and bounding box of PART.

@@ -43,7 +43,7 @@ def batch(
     ctx: click.Context, rule: str, launch: str | None, drops: int, jobs: int | None, scheduler: str | None,
     resume: bool, out: Output, **inputs: Any,
 ) -> None:  # fmt: skip
-    """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
+    """Example: feeder batch squarenut_m5.stl washer_m6.stl --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
     orientation that leaves the bowl most often, or of the aspect that a list asks for. How often parts

@@ -53,7 +53,7 @@ def bowl(
     part: Values, target: float | None, solid_request: Values, measured: str | None, bowl: Values,
     fields: Values, out: Output, chain_options: Values,
 ) -> None:  # fmt: skip
-    """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
+    """Example: feeder bowl lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
     that bring the rate through the devices of the bowl file. This is the sheet that a quotation asks for.
@@ -79,6 +79,7 @@ def bowl(
     from feederscrew.studies import solidbowl as solids
 
     _check_call(part, target, solid_request, measured, chain_options)
+    out.tell_unread(bowl["path"])
     settings, path = bowls.settings(**bowl), bowl["path"]
     if measured is not None:  # the machine of the bowl file as it was found
         diagnosis = condition.diagnose(study.machine(settings), condition.read(measured))

@@ -24,7 +24,7 @@ def compare(
     sources: tuple[str, ...], reading: Values, counts: str | None, launch: str | None, as_published: bool,
     bowl: str | None, out: Output,
 ) -> None:  # fmt: skip
-    """Example: feeder compare parts/arc_chute.yaml --with counts.csv -o results
+    """Example: feeder compare lbracket_30x20x15.stl --with counts.csv -o results
 
     How far your counts of PART are from each rule. Three measures: the deviation of the thesis's
     Tables 3-12 and 3-13 (square root of the mean squared difference), the total variation, and for
@@ -108,7 +108,7 @@ def compare(
 @options.path("--with counts", "CSV", "Counted parts by aspect.", required=True)
 @options.output
 def calibrate(part: Values, counts: str, out: Output) -> None:
-    """Example: feeder calibrate parts/lbracket_30x20x15.stl --with counts.csv
+    """Example: feeder calibrate lbracket_30x20x15.stl --with counts.csv
 
     Fit the exponent of p_surface to counts of PART by maximum likelihood. p_surface is the quasi-static
     basin times (R - h)^exponent. Printed are the exponent with its 95 % interval, and whether it explains

@@ -97,6 +97,7 @@ def show(bowl: Values, out: Output) -> None:
     from feederscrew.bowl import identity, name, settings, texts
     from feederscrew.output import slide, tables
 
+    out.tell_unread(bowl["path"])
     bowl_settings, path = settings(**bowl), bowl["path"]
     frame = slide.settings(bowl_settings)
     with out.folder(name(path), identity(path), texts(bowl_settings)) as folder:

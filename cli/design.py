@@ -77,7 +77,7 @@ def design(
     part: Values, more_parts: tuple[str, ...], request_options: Values, is_list: bool, rule: str,
     share_options: Values, bowl: Values, out: Output,
 ) -> None:  # fmt: skip
-    """Example: feeder design parts/washer_m6.stl --target 40/min -o results
+    """Example: feeder design washer_m6.stl --target 40/min -o results
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
     what its trial denies is changed. What gets through goes through a queue at low, normal and high fill,
@@ -119,6 +119,7 @@ def design(
         from feederscrew.designing.record import DesignRequest
         from feederscrew.output import designs
 
+    out.tell_unread(bowl["path"])
     settings, path = bowls.settings(**bowl), bowl["path"]
     out.warn(*bowls.assumptions(settings))
     record, user_keys = bowls.record(settings), {s.key.name for s in settings if s.is_own}

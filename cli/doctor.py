@@ -26,7 +26,8 @@ def doctor() -> None:
     """Example: feeder doctor
 
     Print the versions of Python and of every library, and which extras are there. Of one that is not, the
-    line that installs it is printed. Then where compiled kernels are kept, and how to turn on completion.
+    line that installs it is printed. Then where compiled kernels and simulations are kept, and how to turn on
+    completion.
     """
     needed, extras = requirements()
     shell = Path(os.environ.get("SHELL", "")).name
@@ -47,6 +48,7 @@ def doctor() -> None:
         ],
         "Extras": [(extra, _state(extra, names)) for extra, names in extras.items()],
         "Compiled kernels": kernels(),
+        "Cache": simulations(),
         "Shell": [
             ("completion", completion),
             ("colours", "off: NO_COLOR is set" if os.environ.get("NO_COLOR") else colours),
@@ -98,3 +100,19 @@ def kernels() -> list[tuple[str, str]]:
     count = sum(1 for _ in home.glob(KERNELS))
     state = f"{count} functions kept" if count else "none yet: the first map or drop test compiles them"
     return [("state", state), ("place", str(home)), *refused]
+
+
+def simulations() -> list[tuple[str, str]]:
+    """Return how many simulations of earlier runs are kept, and where."""
+    try:
+        from feederscrew.studies import simulation_cache
+    except ImportError:  # of a library that is missing: the report says so above
+        return [("state", "not known: a library is missing")]
+    folder = caches.simulation_folder()
+    if folder is None:
+        return [("state", "none is kept: FEEDER_CACHE is empty")]
+    count, refused = len(simulation_cache.entries()), simulation_cache.refusal()
+    return [
+        ("state", refused or f"{count} simulations kept; feeder cache clear deletes them"),
+        ("folder", str(folder)),
+    ]

@@ -62,7 +62,7 @@ def drop(
     part: Values, launch: str, test: Values, launches: str | None, plate: Values, conditions: Values,
     out: Output,
 ) -> None:  # fmt: skip
-    """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
+    """Example: feeder drop lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is
     drawn from the ranges of --launch, or from your own. --launch says what was done to the part: place

@@ -16,13 +16,13 @@ from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError, MissingPackage
 from feederscrew.units import printable
 from feederscrew_cli.interrupt import exit_status, note_every_interrupt, was_heard
-from feederscrew_cli.talk import options_by_argument, translate
+from feederscrew_cli.talk import options_by_argument, translate, typed
 
 COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
     "Part": ("aspects", "drop", "inertia", "compare", "calibrate"),
     "Bowl": ("rate", "tune", "convey", "slide", "floor", "track", "headings"),
-    "Files": ("batch", "config", "serve", "doctor", "reproduce"),
+    "Files": ("sample", "batch", "config", "cache", "serve", "doctor", "reproduce"),
 }
 MODULES = {  # of commands that share one, else it has their name
     "floor": "motion", "track": "motion", "headings": "motion", "slide": "motion",
@@ -135,8 +135,13 @@ class Fence(click.Group):
                 is_of_value = isinstance(fault, ArgumentError) and not isinstance(fault, MissingPackage)
                 if isinstance(fault, ArgumentError):  # an argument goes by the name of its option
                     name, *rest = str(fault.where).split(" ", 1)
-                    where = " ".join([options.get(name, "--" + name.replace("_", "-")), *rest])
-                    lines = (f"{where}: {fault.what} - {fault.mend}",)
+                    option = options.get(name, "--" + name.replace("_", "-"))
+                    if name in COMMANDS and name not in options:  # of a command, for what it needs
+                        option = f"feeder {name}"
+                    where = " ".join([option, *rest])
+                    value = fault.value if option in options.values() else None
+                    mend = fault.mend if value is None else f"write {typed([option], value)}"
+                    lines = (f"{where}: {fault.what} - {mend}",)
                     is_of_value = is_of_value and name in values
                 status = status if is_of_value else WRONG_DATA
                 for line in lines:
@@ -159,13 +164,20 @@ def _tell(line: str) -> None:
 
 
 def _near_miss(error: click.ClickException) -> str:
-    """The choice that a mistyped one was meant for, as click says it of commands and options."""
-    typed = NO_CHOICE.match(getattr(error, "message", ""))
-    kind = getattr(getattr(error, "param", None), "type", None)
-    if not typed or not isinstance(kind, click.Choice):
+    """The choice that a mistyped one was meant for, or what a missing option looks like, to be typed."""
+    example = getattr(getattr(error, "param", None), "example", None)
+    if isinstance(error, click.MissingParameter) and example and error.param is not None:
+        return f" - add {typed(error.param.opts, example)}"
+    mistyped, param = NO_CHOICE.match(getattr(error, "message", "")), getattr(error, "param", None)
+    kind = getattr(param, "type", None)
+    if not mistyped or not isinstance(kind, click.Choice):
         return ""
-    near = difflib.get_close_matches(typed[1], [str(choice) for choice in kind.choices], n=1)
-    return f" Did you mean '{near[0]}'?" if near else ""
+    near = difflib.get_close_matches(mistyped[1], [str(choice) for choice in kind.choices], n=1)
+    if not near:
+        return ""
+    return f" Did you mean '{near[0]}'?" + (
+        f" - write {typed(param.opts, near[0])}" if isinstance(param, click.Option) else ""
+    )
 
 
 @click.group(
@@ -174,13 +186,16 @@ def _near_miss(error: click.ClickException) -> str:
     invoke_without_command=True,
     context_settings={"color": COLOUR, "max_content_width": 100, "help_option_names": ["-h", "--help"]},
 )
-@click.version_option(__version__, prog_name="feeder")
+@click.version_option(__version__, "-V", "--version", prog_name="feeder")
 @click.pass_context
 def feeder(ctx: click.Context) -> None:
-    """Example: feeder design parts/washer_m6.stl --target 40/min -o results
+    """Example: feeder design washer_m6.stl --target 40/min -o results
 
     Vibratory bowl feeders from the CAD file of a part: how it lies and travels, which cuts let one way up
     leave, how many a minute, and in which bowl, tried part by part.
+
+    feeder sample writes the files of the examples. docs/glossary.md explains the words, with pictures.
+    A variable FEEDER_<OPTION> gives an option that is not typed: FEEDER_FORMAT=json.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())

@@ -31,7 +31,7 @@ def vibration_angle(value: str) -> float:
 def floor(
     part: Values, aspect: str | None, heading: float, as_published: bool, bowl: Values, out: Output
 ) -> None:
-    """Example: feeder floor parts/lbracket_30x20x15.stl --aspect A --heading 30deg -o results
+    """Example: feeder floor lbracket_30x20x15.stl --aspect A --heading 30deg -o results
 
     Forces on PART resting on an aspect, its acceleration and turning, and where the normal force acts.
     They say whether it sticks, slides, hops or tips, at the upper reversal and over a whole cycle.
@@ -65,7 +65,7 @@ def track(
     part: Values, aspect: str | None, heading: float | None, as_published: bool, spans: tuple[str, ...],
     bowl: Values, out: Output,
 ) -> None:  # fmt: skip
-    """Example: feeder track parts/lbracket_30x20x15.stl --set track.bank="10 deg" -o results
+    """Example: feeder track lbracket_30x20x15.stl --set track.bank="10 deg" -o results
 
     Reactions on PART on the banked, climbing track against the bowl wall, its acceleration and the
     friction it needs. Also which contact opens first, and about which axis it then tips.
@@ -104,7 +104,7 @@ def track(
 @options.bowl
 @options.drawn_output
 def headings(part: Values, aspect: str | None, bowl: Values, out: Output) -> None:
-    """Example: feeder headings parts/lbracket_30x20x15.stl --aspect A --set track.width="12 mm" -o results
+    """Example: feeder headings lbracket_30x20x15.stl --aspect A --set track.width="12 mm" -o results
 
     The headings in which PART, resting on an aspect and pushed outward, is stable against the bowl wall.
     Each has the share of all directions that ends in it, the length it takes along the track and the

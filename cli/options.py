@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from feederscrew_cli.talk import PRINT_FORMATS, Output
+from feederscrew_cli.talk import PRINT_FORMATS, Output, typed
 
 MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # the sign of its own, and the Greek letter
 WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,30}")
@@ -16,6 +16,21 @@ DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 MAX_ANGLE_RAD = 20.0 * math.pi  # further round, rounding begins to tell
 TITLE_LETTERS = 40  # of a field of the title block
 Values = dict[str, Any]  # of a group of options, by the argument that each is
+
+
+class WrongValue(click.BadParameter):
+    """A value of an option that is wrong; ``value`` is the one that is likely meant."""
+
+    def __init__(self, what: str, mend: str, value: str | None = None, **keywords: Any) -> None:
+        super().__init__(f"{what} - {mend}", **keywords)
+        self.what, self.value = what, value
+
+    def format_message(self) -> str:
+        """The line, with the whole option to be typed where its value is known."""
+        if self.value is None or not isinstance(self.param, click.Option):
+            return super().format_message()
+        text = f"{self.what} - write {typed(self.param.opts, self.value)}"
+        return click.BadParameter(text, self.ctx, self.param, self.param_hint).format_message()
 
 
 class Place(click.Path):
@@ -44,8 +59,8 @@ class Number(click.FloatRange):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or a wrong call."""
         if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
-            self.fail(f"{value!r} is not a number", param, ctx)
-        return super().convert(value, param, ctx)
+            self.fail(f"{value!r} is not a number - write digits with a decimal point, as in 0.4", param, ctx)
+        return _within(super().convert, value, self, param, ctx)
 
 
 class Whole(click.IntRange):
@@ -54,8 +69,25 @@ class Whole(click.IntRange):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or a wrong call."""
         if isinstance(value, str) and not WHOLE_NUMBER.fullmatch(value.strip()):
-            self.fail(f"{value!r} is not a valid whole number - write digits, as 10", param, ctx)
-        return super().convert(value, param, ctx)
+            example = str(10 if self.max is None or self.max >= 10 else self.max)
+            what, mend = f"{value!r} is not a valid whole number", f"write digits, as {example}"
+            raise WrongValue(what, mend, example, ctx=ctx, param=param)
+        return _within(super().convert, value, self, param, ctx)
+
+
+def _within(
+    convert: Callable, value: Any, kind: Any, param: click.Parameter | None, ctx: click.Context | None
+) -> Any:
+    """The number of a text; out of range the nearest bound is what mends it."""
+    try:
+        return convert(value, param, ctx)
+    except click.BadParameter as error:
+        number = float(value)
+        bound = kind.min if kind.min is not None and number < kind.min else kind.max
+        if bound is None or kind.min_open or kind.max_open:
+            raise
+        what, mend = error.message.rstrip("."), f"give {bound:g}"
+        raise WrongValue(what, mend, f"{bound:g}", ctx=ctx, param=param) from None
 
 
 def quantity_type(
@@ -71,7 +103,7 @@ def quantity_type(
         try:
             number = units.quantity(value, dimension)
         except units.QuantityError as fault:
-            raise click.BadParameter(str(fault)) from None
+            raise WrongValue(fault.what, fault.mend, fault.value) from None
         if number <= most and (number > 0.0 or (number == 0.0 and not positive)):
             return number
         bounds = "more than 0" if positive else "at least 0"
@@ -88,7 +120,7 @@ def angle(value: str | float) -> float:
     try:
         number = quantity(value, "angle", bare="deg") if isinstance(value, str) else value
     except QuantityError as fault:
-        raise click.BadParameter(str(fault)) from None
+        raise WrongValue(fault.what, fault.mend, fault.value) from None
     if not abs(number) <= MAX_ANGLE_RAD:
         raise click.BadParameter(f"{value!r} is out of range - stay within ten turns")
     return number
@@ -106,13 +138,23 @@ def span(value: str) -> tuple[float, float]:
     return low, high
 
 
+ENVIRONMENT_PREFIX = "FEEDER_"
+
+
 class Option(click.Option):
-    """An option with ``former`` names, still taken, and ``names`` behind its help, looked up late."""
+    """An option with ``former`` names, still taken, and ``names`` behind its help, looked up late.
+
+    ``example`` is a value to type where one is needed and missing.
+    """
 
     def __init__(self, *arguments: Any, **keywords: Any) -> None:
+        self.example: str | None = keywords.pop("example", None)
         self.names: Callable[[], Sequence[str]] | None = keywords.pop("names", None)
         self.former: Sequence[str] = keywords.pop("former", ())
         super().__init__(*arguments, **keywords)
+        if self.envvar is None:  # FEEDER_FORMAT of --format; click reads it where the option is not typed
+            word = max(self.opts, key=len).lstrip("-").replace("-", "_")
+            self.envvar = f"{ENVIRONMENT_PREFIX}{word.upper()}"
         self.present = list(self.opts)
         self.opts += self.former
 
@@ -172,7 +214,9 @@ def quantity(names: str, dimension: str, default: str, text: str, **more: Any) -
 
 
 # options that commands declare alike but for their help
-target = functools.partial(option, "--target", "RATE", type=quantity_type("rate", positive=True))
+target = functools.partial(
+    option, "--target", "RATE", type=quantity_type("rate", positive=True), example="60/min"
+)
 heading = functools.partial(option, "--heading", type=angle)
 seed = functools.partial(whole, "--seed", 0, None, default=1)
 

@@ -34,7 +34,7 @@ def rate(
     part: Values, chain_options: Values, share_options: Values, play: float, tolerance: float, bowl: Values,
     out: Output,
 ) -> None:  # fmt: skip
-    """Example: feeder rate parts/lbracket_30x20x15.stl --aspect A --config bowl.yaml
+    """Example: feeder rate lbracket_30x20x15.stl --aspect A --config bowl.yaml
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
     orientation that stays on the track. It offers velocity times fill over their mean pitch. Delivered
@@ -83,7 +83,7 @@ def tune(
     part: Values, target: float, chain_options: Values, share_options: Values, worst: bool, bowl: Values,
     out: Output,
 ) -> None:  # fmt: skip
-    """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
+    """Example: feeder tune lbracket_30x20x15.stl --aspect A --target 20/min
 
     Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %. One-way
     and gentle motions come first. Each has its regime, its hardest impact, and the margins to slip

@@ -37,7 +37,7 @@ PLACE = (
 @options.bowl
 @options.group("out", *PLACE, pack=Output.of_call)
 def report(part: Values, request_options: Values, share_options: Values, bowl: Values, out: Output) -> None:
-    """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
+    """Example: feeder report lbracket_30x20x15.stl --config bowl.yaml -o results
 
     Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
     turned, how often it lands on each, and how it tips, slides and travels. It has the reactions on the
@@ -53,6 +53,7 @@ def report(part: Values, request_options: Values, share_options: Values, bowl: V
     from feederscrew.output.report import page, write
     from feederscrew.studies.report import report as study
 
+    out.tell_unread(bowl["path"])
     solid = out.part(part)
     progress.tell_compiling(out, "conveying")
     chosen = orientation.share_keywords(share_options) | orientation.progress_keywords(out)

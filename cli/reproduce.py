@@ -11,7 +11,8 @@ def reproduce(out: Output) -> None:
 
     Compute every table (3-1 to 3-13) and figure (3-6 to 3-13, 5-1 to 5-7) of the thesis again and
     set each number beside the printed one. A number is exact to print, explained (by a named finding),
-    or differs. What was measured or read off a lost drawing is given, not checked.
+    or differs. What was measured or read off a lost drawing is given, not checked. The conclusions follow,
+    and the recommendations of chapter 6.2 with where each is met and what is not.
 
     With -o: DIR/thesis/ with a CSV for each item, a PNG for each figure, the findings, and one page
     to read from top to bottom, thesis.md and thesis.html.

@@ -2,6 +2,7 @@
 
 import contextlib
 import re
+import shlex
 import shutil
 import sys
 import textwrap
@@ -27,8 +28,11 @@ if TYPE_CHECKING:
 
 MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within a sentence
 PRINT_FORMATS = ("table", "csv", "json")
+UNREAD = "bowl.yaml"  # the name that every page gives a bowl file
 PAGE = 100  # letters of a line that people read, at most
 FOLDER = ("-o", "--output")
+SAFE_WORD = re.compile(r"[\w.+:,@%/=-]+")  # of a value that every shell takes as it stands
+QUOTED_SAFE = re.compile(r"[\w.+:,@%/=() -]+")  # within double quotes
 OUTPUT_OPTIONS = ("directory", "depfile")  # options that name what is written, not what is read
 
 
@@ -63,7 +67,11 @@ class Output:
             if is_input and value not in (None, "-"):
                 inputs += value if isinstance(value, tuple) else (value,)
         known = options_by_argument(context.command)
-        return cls(name, tuple(context.obj or ()), inputs=tuple(inputs), options=known, **options)
+        out = cls(name, tuple(context.obj or ()), inputs=tuple(inputs), options=known, **options)
+        for option in context.command.params:
+            if context.get_parameter_source(option.name or "") is click.core.ParameterSource.ENVIRONMENT:
+                out.say(f"{option.envvar} in the environment gives {option.opts[0]}")
+        return out
 
     def warn(self, *texts: str) -> None:
         """Tell each warning on stderr and keep it for run.json."""
@@ -127,10 +135,16 @@ class Output:
             if self.depfile:
                 check_place(Path(self.depfile).parent, "give another `depfile`")
 
+    def tell_unread(self, *paths: object) -> None:
+        """Say that a bowl file lies in the folder and is not read, where none is named."""
+        if not any(paths) and Path(UNREAD).is_file():
+            self.say(f"{UNREAD} in this folder is not read: add --config {UNREAD} to use it")
+
     def settings(self, bowl: Mapping[str, Any]) -> tuple["Setting", ...]:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
         from feederscrew import bowl as bowls
 
+        self.tell_unread(bowl["path"])
         settings = bowls.settings(**bowl)
         self.warn(*bowls.remarks(settings))
         return settings
@@ -234,6 +248,17 @@ def options_by_argument(command: click.Command | None) -> dict[str, str]:
     """Return the options of a command by the argument they are; of 'config' those of 'show' and 'init'."""
     parts = (command, *getattr(command, "commands", {}).values())
     return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
+
+
+def typed(names: Sequence[str], value: str) -> str:
+    """Return an option with its value as one types it: '--target 60/min', '--set drive.frequency="50 Hz"'."""
+    name = next((name for name in names if name.startswith("--")), names[0])
+    key, equals, rest = value.partition("=")
+    if SAFE_WORD.fullmatch(value):
+        return f"{name} {value}"
+    if not QUOTED_SAFE.fullmatch(value):
+        return f"{name} {shlex.quote(value)}"
+    return f'{name} {key}="{rest}"' if equals and SAFE_WORD.fullmatch(key) else f'{name} "{value}"'
 
 
 def translate(text: str, options: Mapping[str, str]) -> str:

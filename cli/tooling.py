@@ -64,7 +64,7 @@ def tooling(
     part: Values, cad: bool, static: bool, share_options: Values, bowl: Values, fields: Values, out: Output,
     **request: Any,
 ) -> None:  # fmt: skip
-    """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
+    """Example: feeder tooling lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
     table has every orientation with its share and its limits (least track width, greatest canyon and

@@ -56,7 +56,7 @@ def trial(
     part: Values, share_options: Values, amplitudes: str | None, film: str | None, bowl: Values, out: Output,
     **run_options: Any,
 ) -> None:  # fmt: skip
-    """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
+    """Example: feeder trial lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
     The track vibrates with the drive. Parts go one at a time, their orientations in turn. Each part

@@ -168,9 +168,15 @@ def raise_all(faults: Iterable[FeederError]) -> None:
 
 def hint(word: str, candidates: Iterable[str]) -> str:
     """Return how to mend an unknown word: the nearest known one, or the list of them."""
+    near = nearest(word, candidates)
+    return f"did you mean {near}?" if near is not None else f"known are {', '.join(candidates)}"
+
+
+def nearest(word: str, candidates: Iterable[str]) -> str | None:
+    """Return the known word that an unknown one is likely meant for; None where none is near."""
     folded = {name.lower(): name for name in candidates}
     near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
-    return f"did you mean {folded[near[0]]}?" if near else f"known are {', '.join(candidates)}"
+    return folded[near[0]] if near else None
 
 
 def _events(text: str) -> Iterator[Any]:

@@ -21,12 +21,15 @@ def printable(text: str) -> str:
 class FeederError(Exception):
     """Say where it is, what is wrong and how to mend it; all three are required.
 
-    The line is printable, whatever texts of a file are in it.
+    The line is printable, whatever texts of a file are in it. ``value`` is a text that is right in place of
+    the wrong one, where one is likely: the command line prints it with its option, to be typed.
     """
 
-    def __init__(self, where: object, what: str, mend: str) -> None:
+    value: str | None = None
+
+    def __init__(self, where: object, what: str, mend: str, *, value: str | None = None) -> None:
         super().__init__(printable(f"{where}: {what} - {mend}"))
-        self.where, self.what, self.mend = where, what, mend
+        self.where, self.what, self.mend, self.value = where, what, mend, value
 
     @property
     def lines(self) -> tuple[str, ...]:

@@ -79,11 +79,14 @@ Quantity: TypeAlias = str | float | PhysicalQuantity  # '2 mm', a number in SI u
 
 
 class QuantityError(ValueError):
-    """A text that is not a quantity of the wanted dimension: what is wrong and how to mend it."""
+    """A text that is not a quantity of the wanted dimension: what is wrong and how to mend it.
 
-    def __init__(self, what: str, mend: str) -> None:
+    ``value`` is the text that is likely meant, where there is one: '60/min' for '60'.
+    """
+
+    def __init__(self, what: str, mend: str, value: str | None = None) -> None:
         super().__init__(f"{what} - {mend}")
-        self.what, self.mend = what, mend
+        self.what, self.mend, self.value = what, mend, value
 
 
 def quantity(text: str, dimension: str, *, suggest: str | None = None, bare: str | None = None) -> float:
@@ -148,8 +151,9 @@ def split(text: str) -> tuple[float, str]:
     plain = text.strip().translate(UNIT_CHARACTERS)
     if COMMA.match(plain):
         whole, _, rest = plain.partition(",")
-        mend = "write it without commas" if "," in rest else f"write {whole}.{rest}"
-        raise QuantityError(f"{quantity_text(text)} has a comma", mend)
+        value = None if "," in rest else f"{whole}.{rest}"
+        mend = "write it without commas" if value is None else f"write {value}"
+        raise QuantityError(f"{quantity_text(text)} has a comma", mend, value)
     match = NUMBER_PATTERN.match(plain)
     if match is None:
         raise _no_number(text)
@@ -206,17 +210,30 @@ def _wrong_unit(text: str, unit: str, dimension: str, suggest: str) -> QuantityE
     wrong_unit = next((other for other, units in UNITS_BY_DIMENSION.items() if unit in units), None)
     if dimension in ("number", "count"):
         what = f"{quantity_text(text)} has a unit, and this is a plain number"
-        return QuantityError(what, "write the number alone") if wrong_unit else _no_number(text)
+        alone = _with_unit(text, "")
+        return QuantityError(what, "write the number alone", alone) if wrong_unit else _no_number(text)
+    suggested = _with_unit(text, suggest)
     if unit == "":
-        return QuantityError(f"{quantity_text(text)} has no unit", f"write {text} {suggest}")
+        return QuantityError(f"{quantity_text(text)} has no unit", f"write {suggested}", suggested)
     if wrong_unit:
         what = f"{quantity_text(text)} is {_with_article(wrong_unit)}, not {_with_article(dimension)}"
         longer = [text + item[len(unit) :] for item in wanted if item.startswith(f"{unit} ")]
-        return QuantityError(what, f"write {' or '.join(longer)}" if longer else f"give it in {suggest}")
+        if longer:
+            return QuantityError(what, f"write {' or '.join(longer)}", longer[0])
+        return QuantityError(what, f"give it in {suggest}", suggested)
     folded = {item.lower(): item for item in wanted}
     near = folded.get(unit.lower())
-    mend = f"did you mean {near}?" if near is not None else f"known are {', '.join(wanted)}"
-    return QuantityError(f"{quantity_text(text)}: {quantity_text(unit)} is not a unit of {dimension}", mend)
+    what = f"{quantity_text(text)}: {quantity_text(unit)} is not a unit of {dimension}"
+    if near is None:
+        return QuantityError(what, f"known are {', '.join(wanted)}")
+    return QuantityError(what, f"did you mean {near}?", _with_unit(text, near))
+
+
+def _with_unit(text: str, unit: str) -> str:
+    """The number that a text begins with, as typed, and a unit: '0.5 mm', '60/min'."""
+    match = NUMBER_PATTERN.match(text.strip().translate(UNIT_CHARACTERS))
+    number = match.group() if match else text
+    return f"{number}{unit}" if unit.startswith("/") else f"{number} {unit}".strip()
 
 
 def _with_article(dimension: str) -> str:

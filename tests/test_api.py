@@ -55,7 +55,15 @@ def test_every_public_name_is_there_and_every_command_that_computes_has_its_func
         assert inspect.isfunction(value) or inspect.isclass(value)
     with pytest.raises(AttributeError, match="lod"):
         fs.lod
-    other = {"batch", "completion", "config", "doctor", "serve"}  # of files and of this program
+    other = {
+        "batch",
+        "cache",
+        "completion",
+        "config",
+        "doctor",
+        "sample",
+        "serve",
+    }  # of files and of this program
     commands = (set(feeder.list_commands(None)) - other - {"bowl"}) | {"size_bowl", "shake"}
     assert commands <= set(FUNCTIONS)
     # Signatures list each keyword with its type.
@@ -112,7 +120,7 @@ WRONG = {
     "drop(p, launch='throw')": "launch: is 'throw' - give one of place, drop, flip, roll, feed",
     "size_bowl(p, '60/min', bowl=3)": "bowl: is 3 - give a Bowl, as read_bowl returns it",
     "read_bowl(3)": "path: is 3 - give the path of a file",
-    "tune(p, b, 'A', '60')": "target: '60' has no unit - write 60 /min",
+    "tune(p, b, 'A', '60')": "target: '60' has no unit - write 60/min",
     "tune(p, b, None, 1)": "aspect: is None - give the name of an aspect, 'A'",
     "load('x.stl', density=7)": "density: is 7 kg/m3 - give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'",
     "load(p)": "source: is a Part - give the path of a file, a mesh, (vertices, faces), or a solid of "

@@ -14,7 +14,7 @@ ORDER = [
     "version", "heavy", "arrays", "errors", "check", "units", "value_forms", "signatures", "records",
     "running", "caches", "documents", "dxf", "geometry", "part", "resting", "tooling.devices", "bowl",
     "screw", "mechanics", "conveying", "dropping", "tooling", "rates", "trial", "machine", "solidbowl",
-    "studies", "designing", "output", "thesis", "batch", "serving",
+    "studies", "designing", "output", "thesis", "samples", "batch", "serving",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/documents.py"},

@@ -11,6 +11,9 @@ from feederscrew.tooling.devices.base import WRITTEN_STEP_M, Device
 from feederscrew.tooling.devices.values import written
 
 DEVICES_SECTION = "devices"  # of a bowl file
+THREADED_SHANK = (  # files of bolts often have the minor diameter of the thread as shank
+    "rails fit the shank of the file; a thread is as thick as its major diameter - check the file's shank"
+)
 WRITTEN_SHARE = 1e-6  # [1] of a value, within which it is that of its text
 
 
@@ -69,6 +72,11 @@ def unknown_aspects(chain: Sequence[Device], aspects: Sequence[str]) -> list[str
         for name, _ in device.shares
         if name.casefold() not in aspect_names
     ]
+
+
+def shank_remarks(chain: Iterable[Device]) -> tuple[str, ...]:
+    """Return what to say of a chain in which parts hang by their heads, a line; else nothing."""
+    return (THREADED_SHANK,) if any(device.hangs for device in chain) else ()
 
 
 def value_text(device: Device) -> str:

@@ -57,13 +57,18 @@ def template() -> str:
 
 
 def write_new(path: str | Path, text: str, *, replace: bool = False) -> None:
-    """Write a text to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
+    """Write a text to a file that is not there or has that text.
+
+    Raises FeederError if it has another one, unless ``replace``, or cannot be made.
+    """
     if Path(path).is_dir():
         raise FeederError(path, "is a folder", f"name a file in it, such as {Path(path) / 'bowl.yaml'}")
     try:
         with Path(path).open("w" if replace else "x", encoding="utf-8", newline="\n") as file:
             file.write(text)
     except FileExistsError:
+        if Path(path).is_file() and Path(path).read_bytes() == text.encode():
+            return
         mend = "name another file, or pass `replace` to replace it"
         raise FeederError(path, "exists already", mend) from None
     except OSError as error:

@@ -290,7 +290,7 @@ def checked(
             return Setting(key, word, word, where)
         value = units.quantity(text, key.dimension, suggest=key.unit, bare=key.unit if bare else None)
     except units.QuantityError as fault:
-        raise kind(where, f"{subject}{fault.what}", fault.mend) from None
+        raise kind(where, f"{subject}{fault.what}", fault.mend, value=fault.value) from None
     value = 0.0 if abs(value) < SMALLEST else value
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     if not low <= value <= high:
@@ -365,11 +365,18 @@ def _from_overrides(overrides: Iterable[str], faults: list[FeederError]) -> dict
         where = f"{OVERRIDES} {units.one_line(name)}"
         try:
             if not equals:
-                raise ArgumentError(where, "has no '='", 'write KEY=VALUE, as in "drive.frequency=50 Hz"')
-            key = find_key(name, where)
+                example = default(BY_NAME[name]).text if name in BY_NAME else ""
+                whole = f"{name}={example}" if example else "drive.frequency=50 Hz"
+                raise ArgumentError(where, "has no '='", f'write KEY=VALUE, as in "{whole}"', value=whole)
+            key = find_key(name, where, text)
             if not text:
-                raise ArgumentError(where, "has no value", f"write {default(key).text}")
-            setting = checked(key, text, where, kind=ArgumentError)
+                example = default(key).text
+                raise ArgumentError(where, "has no value", f"write {example}", value=f"{name}={example}")
+            try:
+                setting = checked(key, text, where, kind=ArgumentError)
+            except ArgumentError as fault:
+                mended = None if fault.value is None else f"{name}={fault.value}"
+                raise ArgumentError(where, fault.what, fault.mend, value=mended) from None
         except ConfigError as fault:
             faults.append(fault)
             continue
@@ -379,8 +386,11 @@ def _from_overrides(overrides: Iterable[str], faults: list[FeederError]) -> dict
     return settings_by_key
 
 
-def find_key(name: str, where: str) -> Key:
-    """Return the key that an argument names; ArgumentError if there is none, or a section is named."""
+def find_key(name: str, where: str, text: str = "") -> Key:
+    """Return the key that an argument names, whose value is a ``text``.
+
+    Raises ArgumentError if there is none, or a section is named.
+    """
     if name in BY_NAME:
         return BY_NAME[name]
     if name in BOWL_SECTIONS:
@@ -388,8 +398,9 @@ def find_key(name: str, where: str) -> Key:
         raise ArgumentError(where, f"'{name}' is a section, not a key", f"write one of its keys, as {first}")
     if name == DEVICES_SECTION:
         raise ArgumentError(where, "devices are a list", "write them in a bowl file")
-    what = f"unknown key {units.quantity_text(name)}"
-    raise ArgumentError(where, what, documents.hint(name, list(BY_NAME)))
+    what, near = f"unknown key {units.quantity_text(name)}", documents.nearest(name, BY_NAME)
+    value = f"{near}={text}" if near is not None and text else None
+    raise ArgumentError(where, what, documents.hint(name, list(BY_NAME)), value=value)
 
 
 def _both(key: Key, where: str, kind: type[ConfigError] = ConfigError) -> ConfigError:
@@ -414,10 +425,15 @@ def at_strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
     if len(entries) > MAX_STROKES:
         raise ArgumentError(AMPLITUDES_KEY, f"{len(entries)} amplitudes", f"give at most {MAX_STROKES}")
     amplitudes = []
-    for entry in entries:
+    for place, entry in enumerate(entries):
         if not entry.strip().endswith("%"):
             key = BY_NAME["drive.amplitude"]
-            amplitudes.append(checked(key, entry, AMPLITUDES_KEY, kind=ArgumentError).value)
+            try:
+                amplitudes.append(checked(key, entry, AMPLITUDES_KEY, kind=ArgumentError).value)
+            except ArgumentError as fault:
+                mended = [*entries[:place], fault.value, *entries[place + 1 :]] if fault.value else None
+                value = ",".join(filter(None, mended)) if mended else None
+                raise ArgumentError(AMPLITUDES_KEY, fault.what, fault.mend, value=value) from None
             continue
         try:
             share = units.quantity(entry, "number")
@@ -471,7 +487,7 @@ def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
         name, _, span = (part.strip() for part in text.partition("="))
         where = f"vary {units.one_line(name)}"
         try:
-            key = find_key(name, where)
+            key = find_key(name, where, span)
             if key.choices:
                 raise ArgumentError(where, "is a word, not a number", f"set it to {key.bounds}")
             ends = [end.strip() for end in span.split(":")]

@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats
+from feederscrew.bowl.devices import shank_remarks
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, Status
 from feederscrew.designing import texts
@@ -323,7 +324,7 @@ class LongRide:
         return (
             f"{turned} of {parts} parts of {name} turned or left on {1e3 * self.distance:.3g} mm of bare "
             f"track, so what is wanted changes from {100.0 * entering:.3g} to {100.0 * arrives:.3g} % on the "
-            "way to the tooling; simulations differ in this, so count parts before the tooling of the bowl"
+            "way to the tooling; nobody has measured this, so count parts before the tooling of the bowl"
         )
 
     @property
@@ -403,6 +404,7 @@ class DesignStudy(ReadableRecord):
         allowances = {"margin": DESIGN_MARGIN_M, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         warnings = [*self.part.warnings, *small_part_remarks(self.part, allowances, width)]
+        warnings += shank_remarks(self.devices)
         if (
             self.bowl is not None
             and self.request.drive == DriveKind.LEAF_SPRING

@@ -57,7 +57,8 @@ def read(text: str) -> dict[str, float]:
         try:
             values[word] = units.quantity(value, MEASURED_DIMENSIONS[word])
         except units.QuantityError as fault:
-            raise ArgumentError(f"measured {word}", fault.what, fault.mend) from fault
+            mended = None if fault.value is None else text.replace(piece, f"{word}={fault.value}")
+            raise ArgumentError(f"measured {word}", fault.what, fault.mend, value=mended) from fault
         most = 1.0 if word == "fill" else math.inf
         if not (0.0 < values[word] <= most or (word == "fill" and values[word] == 0.0)):
             mend = "give 0 % to 100 %" if word == "fill" else "give a value above 0"

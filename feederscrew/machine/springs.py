@@ -227,13 +227,19 @@ def mean_pull(pull: float, frequency: float) -> float:
 
 
 def twist(machine: Machine) -> float:
-    """Return by how much the twist of its leaves stiffens a bank, 1 + (G / 3 E) (L / r_s)^2 cos^2 psi [1].
+    """Return by how much the twist of its leaves stiffens a bank [1].
 
-    Source: Saint-Venant's torsion of a thin strip, G b t^3 / 3. What that leaves out: docs/method/bowl.md,
-    and ``in_plane``.
+    1 + (G / 3 E) (L / r_s)^2 cos^4 psi. A bowl that moves by d along the springs turns by d cos psi / r_s.
+    The leaf leans by psi from the bowl's axis: the component of the turn along it, which twists it, is less
+    by another cos psi. It enters the energy with its square. The component across the leaf bends it in its
+    own plane: ``in_plane``.
+
+    Source: Saint-Venant's torsion of a thin strip, G b t^3 / 3. A space frame of beam elements with six
+    degrees of freedom a node gives the same (``tests/machine/test_springs.py``). What the strip leaves out:
+    docs/method/bowl.md.
     """
-    lever = machine.leaf_length / machine.spring_radius * np.cos(machine.spring_angle)
-    return 1.0 + lever**2 / (6.0 * (1.0 + POISSON))
+    lever = machine.leaf_length / machine.spring_radius * np.cos(machine.spring_angle) ** 2
+    return float(1.0 + lever**2 / (6.0 * (1.0 + POISSON)))
 
 
 def in_plane(machine: Machine, offset: float = 0.0) -> float:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Array, Floats, Points, Vector
-from feederscrew.documents import hint
+from feederscrew.documents import hint, nearest
 from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables
@@ -17,6 +17,7 @@ from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, names_text, postures
 from feederscrew.resting.exact_tumbling import Transition
+from feederscrew.resting.inertia_products import find_products
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import GRAVITY, MM, quantity_text
@@ -46,6 +47,9 @@ def aspects(study: AspectsStudy) -> Frame:
     sizes = "contact_area_mm2=contact_areas solid_angle_sr=solid_angles polar_inertia_g_mm2=polar_inertias"
     table = row_of(resting, names, sizes)
     table |= {f"p_{rule}": chance for rule, chance in resting.probabilities.items()}
+    if hull is not None and study.part.inertia is not None:
+        off = find_products(resting, study.part.inertia)
+        table |= row_of(off, "product_of_inertia_g_mm2=products p_pmi_principal=probabilities")
     if resting.barriers is not None:
         names = "barrier_mm=barriers barrier_uJ=barrier_energies tip_angle_deg=tip_angles"
         table |= row_of(resting, names)
@@ -85,7 +89,9 @@ def select_columns(frame: Frame, choice: str | None = None) -> Frame:
     for name in names:
         if name not in frame:
             what = f"there is no column {quantity_text(name)}"
-            raise ArgumentError("columns", what, hint(name, list(frame)))
+            near = nearest(name, frame)
+            value = None if near is None else ",".join(near if each == name else each for each in names)
+            raise ArgumentError("columns", what, hint(name, list(frame)), value=value)
     return frame.only(names)
 
 

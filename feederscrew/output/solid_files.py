@@ -37,16 +37,16 @@ MODEL = (
 
 def bowl_stl(solid: BowlSolid | Segment, mark: str = "") -> bytes:
     """Return a BowlSolid, or a segment of one, as binary STL in mm, a mark in the file's head."""
-    return _binary_stl(solid.vertices[solid.faces], "feeder bowl: the bowl as a solid, in mm", mark)
+    return binary_stl(solid.vertices[solid.faces], "feeder bowl: the bowl as a solid, in mm", mark)
 
 
 def section_stl(strip: TrackSection, mark: str = "") -> bytes:
     """Return a bent TrackSection as binary STL in mm: wall tangent to X at the origin, track in Z = 0."""
-    return _binary_stl(triangles(strip), "feeder tooling: track section in mm", mark)
+    return binary_stl(triangles(strip), "feeder tooling: track section in mm", mark)
 
 
-def _binary_stl(facets: Floats, header: str, mark: str) -> bytes:
-    """Facets (F, 3, 3) [m] as a binary STL."""
+def binary_stl(facets: Floats, header: str, mark: str = "") -> bytes:
+    """Return facets (F, 3, 3) [m] as a binary STL in mm, a header of ASCII and a mark in the file's head."""
     corners = (facets / MM).astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
     size = np.sqrt((normal**2).sum(axis=1, keepdims=True))

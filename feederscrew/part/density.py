@@ -85,23 +85,24 @@ def find_density(text: str | None = None) -> tuple[float, str]:
     if material:
         return material.density, material.name
     if not plain or not (plain[0].isdigit() or plain[0] in "+-.\N{MINUS SIGN}"):
-        mend = documents.hint(plain, list(MATERIAL_BY_NAME))
-        if not mend.startswith("did you mean"):
-            names = ", ".join(material.name for material in MATERIALS)
-            mend = f'give a value, as in "7.85 g/cm3", or one of {names}'
-        raise ArgumentError(DENSITY_ARGUMENT, f"no material is called {units.quantity_text(text)}", mend)
+        near, names = documents.nearest(plain, MATERIAL_BY_NAME), [material.name for material in MATERIALS]
+        mend = f'give a value, as in "7.85 g/cm3", or one of {", ".join(names)}'
+        mend = mend if near is None else f"did you mean {near}?"
+        what = f"no material is called {units.quantity_text(text)}"
+        raise ArgumentError(DENSITY_ARGUMENT, what, mend, value=near)
     try:
         number, unit = units.split(text)
         if number <= 0.0:
             raise ArgumentError(DENSITY_ARGUMENT, "must be above 0", "e.g. 7.85 g/cm3")
         value = units.quantity(text, "density", suggest=_plausible_unit(number) or "g/cm3")
     except units.QuantityError as error:
-        raise ArgumentError(DENSITY_ARGUMENT, error.what, error.mend) from None
+        raise ArgumentError(DENSITY_ARGUMENT, error.what, error.mend, value=error.value) from None
     if not LIGHTEST_SOLID_KG_M3 <= value <= HEAVIEST_SOLID_KG_M3:
         what = f"{units.quantity_text(text)} is the density of no solid"
         likely_unit = _plausible_unit(number, but=unit)
-        mend = f"did you mean {number:g} {likely_unit}?" if likely_unit else "steel has 7.85 g/cm3"
-        raise ArgumentError(DENSITY_ARGUMENT, what, mend)
+        likely = f"{number:g} {likely_unit}" if likely_unit else None
+        mend = f"did you mean {likely}?" if likely else "steel has 7.85 g/cm3"
+        raise ArgumentError(DENSITY_ARGUMENT, what, mend, value=likely)
     return value, " ".join(text.split())
 
 

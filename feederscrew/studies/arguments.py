@@ -163,7 +163,7 @@ def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -
         number: Any = si.from_quantity(value, dimension)
         number = si.quantity(number, dimension) if isinstance(number, str) else number
     except si.QuantityError as fault:
-        raise ArgumentError(name, fault.what, fault.mend) from None
+        raise ArgumentError(name, fault.what, fault.mend, value=fault.value) from None
     return check.argument(name, number, low)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Floats
-from feederscrew.bowl.devices import unknown_aspects
+from feederscrew.bowl.devices import shank_remarks, unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
@@ -211,6 +211,7 @@ class RateStudy(ReadableRecord):
         other = () if self.measured is None else self.measured.warnings(self.part)
         return (
             *unknown_aspects(self.devices, self.aspects.names),
+            *shank_remarks(self.devices),
             *self.aspects.warnings,
             *self.of_size,
             *other,

@@ -107,6 +107,30 @@ def refusal() -> str | None:
     return f"the cache {folder} is not used: {reason}" if reason else None
 
 
+def entries() -> list[Path]:
+    """Return the files that the cache has written, in a folder that it uses; none of anything else."""
+    folder = caches.simulation_folder()
+    if folder is None or refusal() is not None:
+        return []
+    with contextlib.suppress(OSError), os.scandir(folder) as files:
+        return sorted(
+            Path(file.path)
+            for file in itertools.islice(files, MAX_FILES)
+            if file.name.endswith(ENTRY_SUFFIX) and file.is_file(follow_symlinks=False)
+        )
+    return []
+
+
+def clear() -> int:
+    """Delete the files of ``entries``; how many went."""
+    count = 0
+    for path in entries():
+        with contextlib.suppress(OSError):
+            path.unlink()
+            count += 1
+    return count
+
+
 def _tidy(folder: Path) -> None:
     """Delete the oldest entries beyond MAX_ENTRIES, and what a killed run has left half-written."""
     entries = []  # when each was changed [s], its name and its path

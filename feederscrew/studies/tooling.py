@@ -11,9 +11,9 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Floats
-from feederscrew.bowl.devices import check_written
+from feederscrew.bowl.devices import check_written, shank_remarks
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.documents import hint
+from feederscrew.documents import hint, nearest
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.rates.tipping import marked, remark, steady
@@ -55,7 +55,10 @@ def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
     kinds = listed(without)
     for kind in kinds:
         if kind not in KINDS:
-            raise ArgumentError("without", f"unknown device {quantity_text(kind)}", hint(kind, list(KINDS)))
+            near = nearest(kind, KINDS)
+            value = None if near is None else ",".join(near if each == kind else each for each in kinds)
+            what = f"unknown device {quantity_text(kind)}"
+            raise ArgumentError("without", what, hint(kind, list(KINDS)), value=value)
     return kinds
 
 
@@ -154,7 +157,9 @@ class ToolingStudy(ReadableRecord):
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         late = any(design is not None and design.late for design in self.designs)
-        lines = (*self.aspects.warnings, *self.of_size, *remark(self.orientations))
+        proposed = (device for design in self.designs if design is not None for device in design.devices)
+        shank = shank_remarks((*self.bowl.devices, *proposed))
+        lines = (*self.aspects.warnings, *self.of_size, *remark(self.orientations), *shank)
         return (*lines, *([LATE] if late else []))
 
     @property

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.bowl.devices import unknown_aspects
+from feederscrew.bowl.devices import shank_remarks, unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.dropping.plate_test import throw_number
@@ -81,7 +81,9 @@ class TrialStudy(ReadableRecord):
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
-        listed = [*unknown_aspects(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
+        devices = first.bowl.devices
+        listed = [*unknown_aspects(devices, self.aspects.names), *shank_remarks(devices)]
+        listed += self.aspects.warnings
         play = {"play at the wall": MAX_START_PLAY_M}
         listed += small_part_remarks(self.part, play, first.bowl.track.width)
         listed += () if self.measured is None else self.measured.warnings(self.part)

@@ -6,7 +6,7 @@ from functools import cache
 from typing import Any
 
 from feederscrew import check
-from feederscrew.bowl.devices import unknown_aspects
+from feederscrew.bowl.devices import shank_remarks, unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.part.record import Part
@@ -48,7 +48,8 @@ class TuneStudy(ReadableRecord):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each: of the devices, then of the aspects."""
-        return (*unknown_aspects(self.devices, self.aspects.names), *self.aspects.warnings)
+        unknown = unknown_aspects(self.devices, self.aspects.names)
+        return (*unknown, *shank_remarks(self.devices), *self.aspects.warnings)
 
 
 def _take_arriving(given: dict[str, Any], arriving: Callable[[Bowl], Shares] | None) -> None:

@@ -57,20 +57,24 @@ class TShape:
 @functools.cache
 def t_aspects(ratio: float) -> TShape:
     """Return aspects of the T shape of a thickness over width [1], of the density that gives Table 3-8."""
-    vertices, faces = t_solid(ratio)
-    solid = mass.integrate_solid(vertices[faces])
-    part = Part(
-        name=f"t_shape_{ratio}", source="Table 3-8", sha256="", units="mm", material="as printed",
-        density=T_DENSITY, volume=solid.volume, mass=T_DENSITY * solid.volume,
-        centre_of_mass=check.frozen(solid.centre), inertia=check.frozen(T_DENSITY * solid.inertia),
-        vertices=check.frozen(vertices), faces=check.frozen(faces),
-    )  # fmt: skip
-    aspects = find(part, as_published=True)
+    aspects = find(t_part(ratio), as_published=True)
     x, y, z = aspects.normals.T
     rows = vectors.product(T_NORMALS, np.stack([np.abs(x), y, np.abs(z)])).argmax(axis=1)
     pmi, csa = (aspects.probabilities[rule] for rule in ("pmi", "csa"))
     columns = (aspects.heights, aspects.polar_inertias, aspects.faces, pmi, csa)
     return TShape(*(check.frozen(column[rows]) for column in columns))
+
+
+def t_part(ratio: float) -> Part:
+    """Return the T shape of a thickness over width [1] as a part, of the density that gives Table 3-8."""
+    vertices, faces = t_solid(ratio)
+    solid = mass.integrate_solid(vertices[faces])
+    return Part(
+        name=f"t_shape_{ratio}", source="Table 3-8", sha256="", units="mm", material="as printed",
+        density=T_DENSITY, volume=solid.volume, mass=T_DENSITY * solid.volume,
+        centre_of_mass=check.frozen(solid.centre), inertia=check.frozen(T_DENSITY * solid.inertia),
+        vertices=check.frozen(vertices), faces=check.frozen(faces),
+    )  # fmt: skip
 
 
 def t_solid(ratio: float) -> tuple[Floats, Ints]:

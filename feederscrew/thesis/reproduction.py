@@ -18,6 +18,7 @@ from feederscrew.thesis import figures
 from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
 from feederscrew.thesis.findings import FINDING_OF, FINDINGS
 from feederscrew.thesis.parts import cells
+from feederscrew.thesis.recommendations import recommendations
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED, TABLES, Cell, table
 from feederscrew.units import listed
 
@@ -162,15 +163,18 @@ def unexplained_items(items: Sequence[Item]) -> list[Item]:
 
 
 def overview(items: Sequence[Item]) -> Frame:
-    """Return one row an item: its cells by verdict; then the lost drawings and the conclusions."""
+    """Return one row an item: its cells by verdict; then lost drawings, conclusions and recommendations."""
     without_cells: dict[str, tuple[str, ...]] = {
         f"figure {number}": ("drawings-lost",) for number in LOST_DRAWINGS
     }
     without_cells |= {f"conclusion {number}": ids for number, ids in CONCLUSIONS.items()}
-    columns: dict[str, list] = {"item": [item.name for item in items] + list(without_cells)}
-    columns |= {name: [item.counts[name] for item in items] + [0] * len(without_cells) for name in COUNTS}
+    advice = {f"recommendation {each.number}": each.title for each in recommendations()}
+    others = [*without_cells, *advice]
+    columns: dict[str, list] = {"item": [item.name for item in items] + others}
+    columns |= {name: [item.counts[name] for item in items] + [0] * len(others) for name in COUNTS}
     ids = [item.findings for item in items] + list(without_cells.values())
-    return frame(columns | {"findings": ["; ".join(FINDING_OF[id].title for id in each) for each in ids]})
+    titles = ["; ".join(FINDING_OF[id].title for id in each) for each in ids]
+    return frame(columns | {"findings": titles + list(advice.values())})
 
 
 def entries(item: Item) -> Frame:
@@ -193,6 +197,7 @@ def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[
         ],
         "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST_DRAWINGS.items()],
         "conclusions": [{"id": f"conclusion {n}", "findings": ids} for n, ids in CONCLUSIONS.items()],
+        "recommendations": table_of(recommendations(), "number title what met lacks"),
         "findings": _findings(),
     }  # fmt: skip
 
@@ -252,6 +257,9 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
         (MarkedCell(number), MarkedCell("; ".join(FINDING_OF[id].what for id in ids)))
         for number, ids in CONCLUSIONS.items()
     )
+    advice = tuple(
+        (MarkedCell(each.what), MarkedCell(each.met), MarkedCell(each.lacks)) for each in recommendations()
+    )
     errata: list[Heading | Text] = []  # each finding, with its evidence and the items it bears on
     for finding in FINDINGS:
         names = [item.name for item in items if finding.id in item.findings]
@@ -267,8 +275,10 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
          (Text("Chapters 2 and 4 have no tables, but their equations and data feed chapter 5. What checking "
                "them showed:"), Links(fourth))),
         ("chapter-5", "Chapter 5: simulation results", fifth),
-        ("chapter-6", "Chapter 6: conclusions",
+        ("chapter-6", "Chapter 6.1: conclusions",
          (Matrix(("conclusion", "what checking it showed"), conclusions),)),
+        ("chapter-6-2", "Chapter 6.2: recommendations",
+         (Matrix(("recommendation", "where it is met", "what is not"), advice),)),
         ("findings", "Findings and errata", tuple(errata)),
     )  # fmt: skip
     return Page(

@@ -127,7 +127,7 @@ def test_faults_of_a_file_and_of_set_together(file):
         ("frequency=50 Hz", "frequency: unknown key 'frequency' - did you mean drive.frequency?"),
         ("drive=1", "drive: 'drive' is a section, not a key - write one of its keys, as drive.amplitude"),
         ("devices=gap", "devices: devices are a list - write them in a bowl file"),
-        ("gravity", "gravity: has no '=' - write KEY=VALUE, as in \"drive.frequency=50 Hz\""),
+        ("gravity", "gravity: has no '=' - write KEY=VALUE, as in \"gravity=9.81 m/s2\""),
         ("gravity=", "gravity: has no value - write 9.81 m/s2"),
         ("friction.kinetic=0.9",
          f"friction.kinetic: friction.kinetic 0.9 is above friction.static 0.6 (default) - {LOWER}"),

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import space_frame
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
@@ -41,7 +42,7 @@ def test_the_leaves_angles_gain_and_strokes_of_the_page():
     plain = found.natural_frequency_without_twist
     assert found.natural_frequency_rigid / plain == pytest.approx(1.68, abs=0.01)
     assert found.natural_frequency_rigid_end / plain == pytest.approx(2.40, abs=0.01)
-    assert found.natural_frequency / plain == pytest.approx(1.044, abs=0.001)
+    assert found.natural_frequency / plain == pytest.approx(1.039, abs=0.001)
     # Angle over radius; gain of a natural frequency, and what 3 % of mass do; makers' strokes in g
     found = np.degrees(direction(MACHINE, np.array([0.05, 0.09, 0.15, 0.2])))
     assert found == pytest.approx([33.2, 20.0, 12.3, 9.3], abs=0.05)
@@ -113,7 +114,7 @@ def test_a_machine_scaled_in_size_keeps_its_angles(factor):
 
 
 def test_the_sets_that_tune():
-    found = springs.tuned_leaf_sets(MACHINE, 100.0, 1e-4, BOWL.sizing)
+    found = springs.tuned_leaf_sets(MACHINE, 99.0, 1e-4, BOWL.sizing)
     assert all(0.03 <= one.detuning <= 0.08 for one in found)
     assert (2.5e-3, 9) in {(one.thickness, one.leaves) for one in found}
     assert {one.leaves % 3 for one in found} == {0}
@@ -214,33 +215,44 @@ def test_the_stroke_of_the_bowl_from_full_to_empty_against_two_bodies_in_time(fr
     assert abs(told.angles[0] - told.angles[-1]) > 1e-4
 
 
-def stiffness(machine, offset):
-    """Of one leaf as Timoshenko's beam whose lower clamp is held while the upper one moves on [N/m]."""
+def framed(machine, offset, clamps=1.0, turn=1.0):
+    """Stiffness of one leaf as a space frame whose lower end is held and whose upper one moves on [N/m].
+
+    ``offset`` [m] of its middle from the point that is nearest to the axis; ``clamps`` is the share of the
+    leaf's stiffness in its own plane that they leave it, ``turn`` the share of the bowl's turn.
+    """
     psi, radius, long = machine.spring_angle, machine.spring_radius, machine.leaf_length
     b, t, e = machine.leaf_width, machine.leaf_thickness, machine.leaf_modulus
-    shear, turn = e / (2.0 * (1.0 + POISSON)), np.array([0.0, 0.0, np.cos(psi) / radius])
-    along, outward = np.array([0.0, -np.sin(psi), np.cos(psi)]), np.array([1.0, 0.0, 0.0])
-    axes = np.array([along, outward, np.cross(along, outward)])
-    top = radius * outward + (offset + 0.5 * long) * along
-    way, lean = axes @ (np.cross(turn, top) + np.array([0.0, 0.0, np.sin(psi)])), axes @ turn
-
-    def bending(moment, way, lean):
-        phi = 12.0 * e * moment / (SHEAR * shear * b * t * long**2)
-        terms = 12.0 * way**2 - 12.0 * long * way * lean + (4.0 + phi) * (long * lean) ** 2
-        return e * moment / (long**3 * (1.0 + phi)) * terms
-
-    stretched = e * b * t / long * way[0] ** 2 + shear * b * t**3 / (3.0 * long) * lean[0] ** 2
-    return stretched + bending(t * b**3 / 12.0, way[1], lean[2]) + bending(b * t**3 / 12.0, way[2], -lean[1])
+    g = e / (2.0 * (1.0 + POISSON))
+    outward, leaf = np.array([1.0, 0.0, 0.0]), np.array([0.0, -np.sin(psi), np.cos(psi)])
+    nodes = radius * outward + (offset + long * np.linspace(-0.5, 0.5, 9))[:, None] * leaf
+    about = np.array([0.0, 0.0, turn * np.cos(psi) / radius])  # of the axis, at 1 m/s along the springs
+    moved = np.cross(about, nodes[-1]) + np.array([0.0, (1.0 - turn) * np.cos(psi), np.sin(psi)])
+    own_plane = clamps * e * t * b**3 / 12.0
+    section = e * b * t, SHEAR * g * b * t, g * b * t**3 / 3.0, own_plane, e * b * t**3 / 12.0
+    return space_frame.energy(nodes, outward, section, [*moved, *about])
 
 
 @pytest.mark.parametrize("psi, thick", [(10.0, 2.5), (20.0, 2.5), (30.0, 2.5), (20.0, 1.0), (45.0, 1.5)])
 @pytest.mark.parametrize("at_an_end", [0.0, 1.0, -1.0])
-def test_rigid_clamps_bend_a_leaf_in_its_own_plane(psi, thick, at_an_end):
-    """The frame twists by the turn's component along the leaf alone: up to a few per mille less."""
+def test_a_leaf_twists_and_rigid_clamps_bend_it_in_its_own_plane(psi, thick, at_an_end):
+    """As a space frame has it. The twist was 1 + (G / 3 E) (L / r)^2 cos^2 psi: of the whole turn."""
     one = replace(MACHINE, spring_angle=np.radians(psi), leaf_thickness=1e-3 * thick)
     offset = 0.5 * at_an_end * one.leaf_length
-    closed = leaf_stiffness(one) * (springs.twist(one) + springs.in_plane(one, offset))
-    assert np.sqrt(closed / stiffness(one, offset)) == pytest.approx(1.0, abs=4e-3)
+    plain, twisted = leaf_stiffness(one), springs.twist(one)
+    sheared = 1.0 / (1.0 + 2.0 * (1.0 + POISSON) / SHEAR * (thick / 80.0) ** 2)  # E b t^3 / L^3: 1
+    soft = 1e-9  # the clamps that the program takes do not hold a leaf in its own plane
+    assert framed(one, offset, soft, turn=0.0) == pytest.approx(plain * sheared, rel=1e-6)
+    assert framed(one, offset, soft) == pytest.approx(plain * (sheared + twisted - 1.0), rel=1e-6)
+    rigid = plain * (sheared + twisted - 1.0 + springs.in_plane(one, offset))
+    assert framed(one, offset) == pytest.approx(rigid, rel=1e-6)
+
+
+def test_the_twist_of_the_sixty_degree_example():
+    """Leaf of 90 mm at 96 mm, 30 deg: 1.0634, where the whole turn gave 1.0845; 104.6 Hz for 105.6."""
+    one = replace(MACHINE, spring_angle=np.radians(30.0), leaf_length=90e-3, spring_radius=96e-3)
+    assert springs.twist(one) == pytest.approx(1.0634, abs=5e-5)
+    assert np.sqrt(springs.twist(one) / 1.0845) * 105.6 == pytest.approx(104.6, abs=0.05)
 
 
 def cloud(rng, turns=1.0):

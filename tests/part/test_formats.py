@@ -95,16 +95,16 @@ def test_every_format_gives_the_same_box_and_content_goes_before_the_name(tmp_pa
 
 @NEEDS_STEP
 def test_step_is_read_in_the_unit_it_was_drawn_in(tmp_path):
-    """1677.1986 mm3 is the exact B-rep's."""
+    """2019.2529 mm3 is the exact B-rep's."""
     path = tmp_path / "bolt.stpz"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.write(BOLT, "bolt.stp")
     ignored = "STEP files state their unit, here mm: the units asked for, in, are not used"
     for part, warned in ((load(path), ()), (load(BOLT, units="in"), (ignored,))):
         assert (part.units, part.warnings) == ("mm", warned)
-        assert mm3(part) == pytest.approx(1677.1986, rel=5e-4)
+        assert mm3(part) == pytest.approx(2019.2529, rel=5e-4)
     larger = loaded(BOLT.read_bytes().replace(b"SI_UNIT(.MILLI.,.METRE.)", b"SI_UNIT(.CENTI.,.METRE.)"))
-    assert (larger.units, larger.volume) == ("cm", pytest.approx(1677.1986e-6, rel=5e-4))
+    assert (larger.units, larger.volume) == ("cm", pytest.approx(2019.2529e-6, rel=5e-4))
 
 
 @NEEDS_3MF

@@ -60,7 +60,7 @@ def test_every_function_of_the_program_is_counted_but_those_that_numba_reads():
 
 def without(names, *call):
     """What a Python process says that does not find some packages and programs."""
-    own = {**os.environ, "PYTHONPATH": str(ROOT / "tests/without"), "FEEDER_WITHOUT": names}
+    own = {**os.environ, "PYTHONPATH": str(ROOT / "tests/without"), "TESTS_WITHOUT": names}
     done = subprocess.run([sys.executable, *call], cwd=ROOT, capture_output=True, text=True, env=own)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

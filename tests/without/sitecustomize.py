@@ -1,4 +1,4 @@
-"""Hide packages and programs, as if they were not installed: those that FEEDER_WITHOUT names.
+"""Hide packages and programs, as if they were not installed: those that TESTS_WITHOUT names.
 
 Python runs this file at its start where the folder is on PYTHONPATH: ``make test-without`` puts it there, so
 that commands which the tests start are without them as well.
@@ -8,7 +8,7 @@ import os
 import shutil
 from importlib.machinery import PathFinder
 
-HIDDEN = frozenset(os.environ.get("FEEDER_WITHOUT", "").split(","))
+HIDDEN = frozenset(os.environ.get("TESTS_WITHOUT", "").split(","))
 _find_spec, _which = PathFinder.find_spec, shutil.which
 
 

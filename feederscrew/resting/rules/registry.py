@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from feederscrew.arrays import Floats, Ints
-from feederscrew.documents import hint
+from feederscrew.documents import hint, nearest
 from feederscrew.errors import ArgumentError
 from feederscrew.resting import barriers
 from feederscrew.resting.barriers import Tipping
@@ -120,7 +120,8 @@ CHOICES = (*RULE_NAMES, CLOSED, RECOMMENDED_ANSWER)  # what a user may ask for
 def require_rule(rule: str) -> None:
     """Raise an ArgumentError where a user asks for a rule that there is not; it names the nearest one."""
     if rule not in CHOICES:
-        raise ArgumentError("rule", f"unknown rule {quantity_text(str(rule))}", hint(str(rule), CHOICES))
+        what, near = f"unknown rule {quantity_text(str(rule))}", nearest(str(rule), CHOICES)
+        raise ArgumentError("rule", what, hint(str(rule), CHOICES), value=near)
 
 
 def weights(quantities: ClassQuantities | FaceQuantities) -> dict[str, Floats]:

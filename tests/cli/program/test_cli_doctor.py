@@ -19,6 +19,7 @@ def test_it_lists_versions_extras_kernels_and_completion(run, monkeypatch, tmp_p
     assert table["numpy"] == metadata.version("numpy")
     assert table["python"].startswith(platform.python_version())
     assert table["dist"] == "missing nowhere: pip install 'feederscrew[dist]'"
+    assert table["state"] == "none is kept: FEEDER_CACHE is empty"
     assert table["step"] == f"click {metadata.version('click')}" and "test" not in table
     monkeypatch.undo()  # every extra of the project is told but those of developers
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]

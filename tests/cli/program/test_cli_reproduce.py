@@ -11,7 +11,13 @@ CELLS = ["row", "column", "published", "recomputed", "deviation", "verdict", "ex
 
 def test_one_call_writes_every_table_and_figure(tmp_path):
     """One whole run: its contract, its files, Table 3-9 to print, a page that needs no other file."""
-    items = json.loads(called("reproduce", "-o", tmp_path, "--format", "json").stdout)["items"]
+    document = json.loads(called("reproduce", "-o", tmp_path, "--format", "json").stdout)
+    items = document["items"]
+    # Chapter 6.2, with the effect of products of inertia on the T: by hand, D alone leans.
+    advice = document["recommendations"]
+    assert [each["number"] for each in advice] == [1, 2, 3, 4] and all(each["lacks"] for each in advice)
+    assert "0.31 percentage points" in advice[2]["met"] and "p_pmi_principal" in advice[2]["met"]
+    assert "Chapter 6.2" in (tmp_path / "thesis/thesis.md").read_text()
     assert all(list(item) == KEYS and item["differs"] == 0 for item in items)
     assert all(item["findings"] for item in items if item["explained"])
     keys = {(item["kind"], item["id"]) for item in items}
@@ -31,6 +37,6 @@ def test_one_call_writes_every_table_and_figure(tmp_path):
     head, *lines = result.stdout.splitlines()
     assert head.split() == ["item", "cells", "exact", "explained", "differs", "given", "findings"]
     items = {line.split("  ")[0].strip() for line in lines}
-    assert len(lines) == 28 + 5 + 8  # tables and figures, lost drawings, conclusions
-    assert {"figure 3-1", "figure 3-5", "conclusion 1", "conclusion 8"} <= items
+    assert len(lines) == 28 + 5 + 8 + 4  # tables and figures, lost drawings, conclusions, recommendations
+    assert {"figure 3-1", "figure 3-5", "conclusion 1", "conclusion 8", "recommendation 4"} <= items
     assert result.stderr == ""

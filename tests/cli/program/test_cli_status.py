@@ -3,6 +3,7 @@
 Each is one line that says what to do, before anything is printed or written.
 """
 
+import re
 import shlex
 
 import click
@@ -18,14 +19,14 @@ WRONG_CALLS = """
 aspect | No such command 'aspect'. Did you mean 'aspects'? (see feeder --help)
 --versoin | No such option '--versoin'. Did you mean '--version'? (see feeder --help)
 aspects | Missing argument 'PART'. (see feeder aspects --help)
-aspects a.stl --format jsn | '--format': 'jsn' is not one of 'table', 'csv', 'json'. Did you mean 'json'? (see
+aspects a.stl --format jsn | not one of 'table', 'csv', 'json'. Did you mean 'json'? - write --format json
 report NUT --format pdf -o out | Invalid value for '--format': 'pdf' is not one of 'html', 'md'.
 aspects '' | Invalid value for 'PART': is empty - give a path (see feeder aspects --help)
 batch '' | Invalid value for 'PARTS...': is empty - give a path
 aspects a.stl -o '' | Invalid value for '-o' / '--output': is empty - give a path
 slide --config '' | Invalid value for '--config': is empty - give a path
 aspects NUT --density stel | --density
-aspects NUT --columns aspect,barier_mm | --columns: there is no column 'barier_mm' - did you mean barrier_mm?
+aspects NUT --columns aspect,barier_mm | there is no column 'barier_mm' - write --columns aspect,barrier_mm
 inertia NUT --centre-of-mass 1,2 | --centre-of-mass
 inertia NUT --centre-of-mass 90,0,0 | --centre-of-mass
 inertia NUT --body 7 | --body
@@ -82,6 +83,42 @@ batch NUT -o out --scheduler nonsense | --scheduler
 bowl BRACKET --target 60/min --print pla | --print is given without --solid - add --solid
 bowl BRACKET --target 60/min --chord '1 mm' | --chord is given without --solid - add --solid
 """
+MENDS = """
+design NUT --target 60 | --target 60/min
+design NUT --target 60mm | --target 60/min
+design NUT | --target 60/min
+tune NUT --aspect A --target 20 | --target 20/min
+aspects NUT --rule closed --density 7850 | --density "7850 kg/m3"
+aspects NUT --rule closed --density 7.85 | --density "7.85 g/cm3"
+aspects NUT --rule closed --density '7850 g/cm3' | --density "7850 kg/m3"
+aspects NUT --rule closed --density brss | --density brass
+aspects NUT --rule closed --launch fed | --launch feed
+aspects NUT --rule clsed | --rule closed
+aspects NUT --rule closed --columns aspect,hieght | --columns aspect,height_mm
+aspects NUT --rule closed --drops -1 | --drops 0
+aspects NUT --rule closed --surface-exponent 20 | --surface-exponent 10
+aspects NUT --rule closed --units inch | --units in
+inertia NUT --density alumnium | --density aluminium
+rate NUT --aspect A --rule cas | --rule csa
+rate NUT --rule csa --set track.radius=150 | --set track.radius="150 mm"
+convey --set drive.frequency=50 | --set drive.frequency="50 Hz"
+convey --set drive.frequency=50mm | --set drive.frequency="50 Hz"
+convey --set drive.freqency=50Hz | --set drive.frequency=50Hz
+convey --set drive.frequency | --set drive.frequency="50 Hz"
+convey --set drive.frequency= | --set drive.frequency="50 Hz"
+convey --set 'friction.static=0,5' | --set friction.static=0.5
+convey --set 'drive.frequency=50 hz' | --set drive.frequency="50 Hz"
+slide --set drive.amplitude=0.2 | --set drive.amplitude="0.2 mm"
+convey --vary drive.freqency=40:60:3 | --vary drive.frequency=40:60:3
+floor NUT --aspect A --heading 30mm | --heading "30 deg"
+trial NUT --rule csa --parts 2 --amplitude 0.2 | --amplitude "0.2 mm"
+trial NUT --rule csa --parts 2 --amplitude '50%,0.2' | --amplitude "50%,0.2 mm"
+trial NUT --rule csa --parts x | --parts 10
+bowl --measured stroke=0.4 | --measured stroke="0.4 mm"
+tooling NUT --rule csa --static --without wipr | --without wiper
+tooling NUT --rule csa --static --margin 0.5 | --margin "0.5 mm"
+sample cap 16x9 --wall 2 | --wall "2 mm"
+"""
 RULED = {  # commands that take a rule, and what else they need; one of them ended in a KeyError
     "rate": "", "tooling": "", "trial": "", "report": "--aspect A", "batch": "-o out",
     "design": "--target 30/min", "bowl": "--target 30/min", "tune": "--aspect A --target 30/min",
@@ -95,7 +132,7 @@ OF_A_PART = (  # `feeder bowl --body 7` gave the machine of the defaults as if n
     "--heading 90deg", "--rule csa", "--gap '1 mm'", "--fill 0.5",
 )  # fmt: skip
 CALLS = [line.split(" | ") for line in WRONG_CALLS.strip().splitlines()]
-CLOSD = "--rule: unknown rule 'closd' - did you mean closed?"
+CLOSD = "--rule: unknown rule 'closd' - write --rule closed"
 CALLS += [(f"{name} gone.stl --rule closd {more}", CLOSD) for name, more in RULED.items()]
 CALLS += [(f"{call} NUT --aspect Z", "--aspect") for call in OF_AN_ASPECT]
 ALONE = "is given without PART - name the part's file"
@@ -206,3 +243,29 @@ def test_a_number_is_of_plain_digits(name):
         for text in ("1_0", "\u0661\u0662", "nan"):
             done = CliRunner().invoke(feeder, [name, "gone.stl", option, text])
             assert done.exit_code == 2 and option in done.stderr and "Traceback" not in done.stderr, option
+
+
+def mended(call, stderr):
+    """The words of a call with the option that its fault prints in place of the wrong one; that option."""
+    line = stderr.splitlines()[-1]
+    option = re.sub(r" \(see feeder .*\)$", "", line.rpartition(" - ")[2]).partition(" ")[2]
+    name, *value = shlex.split(option)
+    typed = [str(word) for word in words(call)]
+    place = typed.index(name) if name in typed else len(typed)
+    return [*typed[:place], name, *value, *typed[place + 2 :]], option
+
+
+@pytest.mark.parametrize("line", MENDS.strip().splitlines())
+def test_the_mend_that_a_fault_prints_can_be_typed(run, tmp_path, line):
+    """They named a value without its option, or with a blank that the next fault refused: '60 /min'."""
+    call, expected = line.split(" | ")
+    wrong = run(*words(call))
+    assert wrong.exit_code == 2 and wrong.stdout == "" and wrong.stderr.count("Error: ") == 1
+    again, option = mended(call, wrong.stderr)
+    assert option == expected
+    if call.startswith(("design", "tune", "tooling")):  # ten seconds and more: is the call taken?
+        name, *rest = again
+        assert feeder.commands[name].make_context(name, rest, parent=click.Context(feeder)).params
+        return
+    right = run(*again)
+    assert right.exit_code == 0, right.output

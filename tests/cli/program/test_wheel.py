@@ -15,17 +15,19 @@ from command_lines import BRACKET, ROOT, names
 from feederscrew_cli.main import COMMANDS
 
 pytestmark = pytest.mark.long  # both, so that one process has them and makes the wheel once
-SOURCES = "pyproject.toml setup.py README.md LICENSE MANIFEST.in build_backend feederscrew cli"
+SOURCES = "pyproject.toml setup.py README.md LICENSE MANIFEST.in build_backend feederscrew cli parts"
 CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc", "*.kernel")
 PART = BRACKET.name
 STEEP = ("--set", "restitution=0", "--set", "track.climb=20 deg")  # few settings convey: soon over
 EXACT = ("--rule", "quasistatic")  # nothing is dropped or fed: minutes without a compiler
 HELP = ("compare", "headings", "bowl", "tooling", "trial", "design", "report", "serve")  # minutes without one
 ON_A = [PART, "--aspect", "A"]
-CALLS = dict.fromkeys(HELP, ("--help",)) | dict.fromkeys(("reproduce", "doctor"), ())  # `aspects` draws
+CALLS = dict.fromkeys(HELP, ("--help",)) | dict.fromkeys(
+    ("reproduce", "doctor", "cache"), ()
+)  # `aspects` draws
 CALLS |= dict.fromkeys(("slide", "convey"), ("--config", "bowl.yaml"))
 CALLS |= dict.fromkeys(("floor", "track"), (*ON_A, "--config", "bowl.yaml"))
-CALLS = {"config": ["init", "bowl.yaml"]} | CALLS | {
+CALLS = {"sample": ["--all"], "config": ["init", "bowl.yaml"]} | CALLS | {
     "aspects": [PART, "--rule", "closed", "-o", "results"], "inertia": [PART, "-o", "results"],
     "drop": [PART, "--drops", "1", "--jobs", "1"], "calibrate": [PART, "--with", "counts.csv"],
     "rate": [*ON_A, *EXACT], "tune": [*ON_A, "--target", "20/min", *STEEP, *EXACT],
@@ -71,6 +73,8 @@ def test_all_files_of_the_packages_land_in_site_packages_under_our_own_names(pla
     [packages] = (place / "venv").glob("**/site-packages")
     landed = names(packages) - {"libraries.pth", "__pycache__"}
     assert {name for name in landed if not name.endswith(".dist-info")} == {"feederscrew", "feederscrew_cli"}
+    parts = [path.name for path in (ROOT / "parts").iterdir() if path.suffix in (".stl", ".step", ".yaml")]
+    assert names(packages / "feederscrew/samples/parts") == set(parts)
     for folder, name in (("feederscrew", "feederscrew"), ("cli", "feederscrew_cli")):
         ours, there = (
             {path.relative_to(root) for path in root.rglob("*") if path.is_file()}
@@ -80,8 +84,6 @@ def test_all_files_of_the_packages_land_in_site_packages_under_our_own_names(pla
 
 
 def test_every_command_runs_there(place):
-    shutil.copy(BRACKET, place)
-    (place / "counts.csv").write_text("aspect,counted\nA,40\nB,30\nC,20\nD,10\nE,10\n")
     kept = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "NUMBA_CACHE_DIR")}
     own = {"cwd": place, "env": kept | {"NUMBA_DISABLE_JIT": "1"}}  # nothing to compile: is all there?
     [program] = (place / "venv").glob("*/feeder*")
