@@ -4,7 +4,6 @@ import functools
 import heapq
 import itertools
 import math
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -15,6 +14,7 @@ from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.designing import calm_drive, proposals, short_trials, texts
 from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, MoveKind
+from feederscrew.designing.policy import SearchPolicy
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import Attempt
 from feederscrew.designing.search import BankedTrack, Candidate, ChainKey, Place, Search
@@ -26,12 +26,11 @@ from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
+from feederscrew.tooling.devices.base import ComparedValue
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.tooling.orientations import Hanging, Orientation, neck
 
-NUMBER = re.compile(r"(?<![A-Za-z_])-?[0-9]+(?:\.[0-9]+)?")
-LITTLE, LITTLE_SHARE = 0.1, 0.03  # [mm or deg], [1] of a value: chains that differ by less are alike
 LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
 
 
@@ -191,26 +190,35 @@ def chain_key(track: Track, proposal: Proposal, orientations: Sequence[Orientati
     The order of what a sensor lets pass makes no difference.
     """
     wanted = "hanging" if proposal.hangs else orientations[proposal.row].name
-    return track, wanted, tuple((device.kind, device.canonical_text) for device in proposal.devices)
+    return track, wanted, tuple((device.kind, device.compared_values) for device in proposal.devices)
 
 
 def _was_tried(search: Search, track: BankedTrack, proposal: Proposal) -> bool:
     """Whether a chain was tried on that track, or one whose values differ by less than makes a difference."""
     state = search.state
     key = chain_key(track.plain_bowl.bowl.track, proposal, track.orientations.lying)
-    return key in state.chains or any(_is_alike(key, other) for other in state.chains)
+    return key in state.chains or any(_is_alike(key, other, search.policy) for other in state.chains)
 
 
-def _is_alike(key: ChainKey, other: ChainKey) -> bool:
+def _is_alike(key: ChainKey, other: ChainKey, policy: SearchPolicy) -> bool:
     """Whether two chains for the same track and orientation differ by little in each of their numbers."""
-    if key[:2] != other[:2] or len(key[2]) != len(other[2]):
+    if key[:2] != other[:2] or [kind for kind, _ in key[2]] != [kind for kind, _ in other[2]]:
         return False
-    texts, other_texts = (" ".join(" ".join(device) for device in chain[2]) for chain in (key, other))
-    if NUMBER.sub("#", texts) != NUMBER.sub("#", other_texts):
-        return False
-    pairs = zip(NUMBER.findall(texts), NUMBER.findall(other_texts), strict=True)
-    values = ((float(a), float(b)) for a, b in pairs)
-    return all(abs(a - b) <= max(LITTLE, LITTLE_SHARE * abs(a)) for a, b in values)
+    devices = zip(key[2], other[2], strict=True)
+    return all(
+        len(values) == len(others)
+        and all(_is_alike_value(a, b, policy) for a, b in zip(values, others, strict=True))
+        for (_, values), (_, others) in devices
+    )
+
+
+def _is_alike_value(first: ComparedValue, second: ComparedValue, policy: SearchPolicy) -> bool:
+    """Whether two values of devices are the same word, or numbers that differ by little."""
+    a, b = first.value, second.value
+    if a == b or not isinstance(a, float) or not isinstance(b, float):
+        return a == b
+    little = policy.alike_angle if first.is_angle else policy.alike_length
+    return abs(a - b) <= max(little, policy.alike_share * abs(a))
 
 
 def _promise(search: Search, track: BankedTrack, row: int, recipe: proposals.Recipe) -> float:

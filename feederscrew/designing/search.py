@@ -20,9 +20,10 @@ from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
+from feederscrew.tooling.devices.base import ComparedValue
 
 Place = tuple[float, int]  # bank [rad] of a track, and row of an orientation on it
-ChainKey = tuple[Track, str, tuple[tuple[str, str], ...]]
+ChainKey = tuple[Track, str, tuple[tuple[str, tuple[ComparedValue, ...]], ...]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -416,15 +416,29 @@ def test_the_oftener_orientation_is_first_and_a_class_has_its_share_of_the_trial
 
 def test_the_same_chain_is_not_tried_twice_nor_one_that_differs_by_a_hair():
     def key(*devices):
-        proposal = proposals.Proposal(0, (), devices, "test")
+        proposal = proposals.Proposal(0, (), devices, PROPOSED)
         return exploring.chain_key(BOWL.track, proposal, [SimpleNamespace(name="A@0")])
+
+    def alike(one, other):
+        return exploring._is_alike(key(*one), key(*other), USUAL_POLICY)
 
     first = make_device("sorter", "test", like=("A", 0.0, 1e-3), also=(("B", 1.0),)).rewritten()
     other = make_device("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),)).rewritten()
     assert first.text != other.text and key(first) == key(other)
     near, far = (make_device("gap", "test", limit=limit).rewritten() for limit in (9.05e-3, 9.5e-3))
-    assert exploring._is_alike(key(GAP), key(near)) and not exploring._is_alike(key(GAP), key(far))
-    assert not exploring._is_alike(key(GAP), key(GAP, GAP))
+    assert alike([GAP], [near]) and not alike([GAP], [far]) and not alike([GAP], [GAP, GAP])
+    assert not alike([GAP], [make_device("wiper", "test", limit=9e-3)])
+    # a gap that a user wrote otherwise, at another place, is the same gap
+    assert key(GAP) == key(make_device("gap", "bowl.yaml:7:5", limit=9e-3, text="0.9 cm"))
+    # a tenth of a degree of an angle makes no difference, two degrees do
+    blade, turned, other_blade = (
+        make_device("wiper", "test", limit=9e-3, sweep=np.radians(angle)) for angle in (1.0, 1.09, 3.0)
+    )
+    assert alike([blade], [turned]) and not alike([blade], [other_blade])
+    # what a camera lets pass and how closely it looks
+    coarse = make_device("sorter", "test", like=("B", 1.0, 2e-3), also=(("A", 0.0),))
+    side = make_device("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),), sees="side")
+    assert not alike([first], [coarse]) and not alike([first], [side])
 
 
 @pytest.mark.parametrize("every, asked", [(False, [1]), (True, [1, 2, 3])])
