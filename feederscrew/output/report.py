@@ -19,6 +19,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import UnsteadyMotion
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import HOP
+from feederscrew.mechanics.limits import Regime
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output import convey as convey_output
 from feederscrew.output import floor as floor_output
@@ -83,7 +84,7 @@ HEADINGS = {  # columns of the table, and their names here
     "aspect_share": "p_of all drops", "length_mm": "length_mm", "width_mm": "width_mm",
     "overhang_mm": "overhang_mm", "falls_off": "falls off",
 }  # fmt: skip
-WORDS = tables.REGIME_WORDS | {"stick": "sticks, does not travel"}  # of a regime
+WORDS = tables.REGIME_WORDS | {Regime.STICK: "sticks, does not travel"}  # of a regime
 METHOD_LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
     "p_recommended knows how the part is launched, and none considers other parts. They disagree, "
