@@ -82,7 +82,7 @@ class Answer(ReadableRecord):
     @property
     def unsteady(self) -> UnsteadyMotion | None:
         """Why there is no steady velocity; None where there is one."""
-        if self.status != steady.STATUSES[steady.NO_STEADY_STATE]:
+        if self.status is not MotionStatus.NO_STEADY_STATE:
             return None
         keeps = steady.keeps_speed(operating_point.law(self.setting))
         return UnsteadyMotion.KEEPS_SPEED if keeps else UnsteadyMotion.SLIDES_DOWN

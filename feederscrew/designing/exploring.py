@@ -475,6 +475,7 @@ def try_proposal(
         peak_to_peak=2.0 * bowl.drive.amplitude,
         throw_number=float(throw_number(bowl)),
         cost_class=proposal.cost_class,
+        chain_brief=tuple(device.brief for device in proposal.devices),
     )
     search.state.attempts.append(attempt)
     search.progress.clock.end()

@@ -71,7 +71,7 @@ from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.track_sections import Passage
-from feederscrew.trial.course import FATES
+from feederscrew.trial.course import Fate
 from feederscrew.units import DEG, MM, MM_S
 
 PART_FACTS = (  # rows of the inertia that the chapter on the part shows
@@ -485,7 +485,8 @@ def trial(case: ReportStudy) -> Chapter | None:
 
 def columns(counts: Ints) -> list[str]:
     """Return the columns of a trial's table that a page has room for: a fate has one where a part met it."""
-    fates = [name for name, count in zip(FATES, counts.sum(axis=0)) if count or name == "passed"]
+    met = counts.sum(axis=0)
+    fates = [fate.word for fate in Fate if met[fate] or fate is Fate.PASSED]
     went = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")
     return ["aspect", "heading_deg", "share", "tried", *fates, *went]
 

@@ -5,6 +5,7 @@ track. A device hands over one `Standing`: holes, blades, slopes, jets and a sen
 `trial.staging` makes of it what the kernel takes.
 """
 
+import enum
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -35,13 +36,23 @@ GRIP = 0.6  # [1] friction of a dry steel track
 LIMIT_TOLERANCE_M = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
-RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
 ENDLESS_HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
 YAML_MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
 ROOM_PER_DEVICE = 1.3  # a device has so many lengths of the longest part to itself
 WRITTEN_FIELDS = ("where", "text", "assumption")  # of a device, that say how it was written
 COMPARED_DIGITS = 7  # decimals of a value in SI units: a tenth of a micrometre
 DRAWN_LINE_M = 2e-4  # [m] the width with which a line along or across the track is drawn
+
+
+class DeviceFate(enum.StrEnum):
+    """What becomes at a device of a part that does not pass it as it came; tables print the word."""
+
+    RETURNED = "returned"
+    STOPPED = "stopped"
+    CARRIED = "carried"
+
+
+RETURNED, STOPPED, CARRIED = DeviceFate
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,6 +234,16 @@ class Device:
         return tuple(
             value for name in own for value in compared(getattr(self, name), is_angle=name in self.angles)
         )
+
+    @property
+    def is_one_value(self) -> bool:
+        """Whether a bowl file has one value of it, and neither a mapping nor a list."""
+        return not self.text.startswith(("{", "["))
+
+    @property
+    def brief(self) -> str:
+        """'narrowed track 13.35 mm'; of a device of several values its name alone: the drawings have them."""
+        return f"{self.name} {self.text}" if self.is_one_value else self.name
 
     @property
     def label(self) -> str:
