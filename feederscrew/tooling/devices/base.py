@@ -243,7 +243,7 @@ class Device:
     @property
     def brief(self) -> str:
         """'narrowed track 13.35 mm'; of a device of several values its name alone: the drawings have them."""
-        return f"{self.name} {self.text}" if self.is_one_value else self.name
+        return f"{self.name} {self.text}".rstrip() if self.is_one_value else self.name
 
     @property
     def label(self) -> str:
