@@ -21,13 +21,15 @@ from feederscrew.arrays import Array, Floats, Values
 from feederscrew.bowl.record import Bowl, Friction
 from feederscrew.conveying import operating_point, point_motion, steady, waves
 from feederscrew.conveying.operating_point import PHASES, OperatingPoint
+from feederscrew.conveying.steady import MotionStatus
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.compiled import compiled, entry, on_disk, outlined
 from feederscrew.mechanics import limits
+from feederscrew.mechanics.limits import Regime
 from feederscrew.records import ReadableRecord
 
 LEAST_ACCELERATION_RATIO = 1e-9  # [1] least acceleration ratio computed with: a bowl at rest carries nothing
-SWEEP_REGIMES = (*limits.POINT_REGIMES, "no steady state")  # a regime code of a map is a place in this list
+SWEEP_REGIMES = tuple(Regime)  # a regime code of a map is a place in this list
 COEXISTING_VELOCITY_GAP = 0.01  # [A w] velocities this far apart are several
 COMPILED_FROM = 8  # settings one by one in a process, as a design asks for them: then the kernel is loaded
 SETTINGS_A_LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
@@ -59,7 +61,7 @@ class Answer(ReadableRecord):
 
     setting: OperatingPoint
     speed: float  # [m/s] A w, of the first harmonic
-    status: str  # of ``steady.STATUSES``
+    status: MotionStatus
     period: int  # of the motion, in periods of the drive; 0 where there is none
     velocity: float  # [m/s] up the track, from rest; NaN where there is no steady state
     low: float  # [m/s] least over the starts
@@ -74,13 +76,13 @@ class Answer(ReadableRecord):
     mu_forward: float  # least static friction of the floor without slip up the track; NaN past the hop
     mu_backward: float
     margins: dict[str, float]  # static friction above each limit of slip, throw number below the hop [1]
-    regime: str
+    regime: Regime
     runs_away: bool  # a part that once slides down the track fast enough does not stop again
 
     @property
     def unsteady(self) -> UnsteadyMotion | None:
         """Why there is no steady velocity; None where there is one."""
-        if self.status != steady.STATUSES[steady.NO_STEADY_STATE]:
+        if self.status is not MotionStatus.NO_STEADY_STATE:
             return None
         keeps = steady.keeps_speed(operating_point.law(self.setting))
         return UnsteadyMotion.KEEPS_SPEED if keeps else UnsteadyMotion.SLIDES_DOWN

@@ -4,6 +4,7 @@ A motion repeats after some periods, or slides on and never does; one setting ma
 Source: own; docs/conveying.md, "How it is computed".
 """
 
+import enum
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -27,6 +28,15 @@ from feederscrew.conveying.point_motion import State, at_rest, step, turn
 from feederscrew.conveying.waves import PERIOD_RAD, Harmonic, Wave, harmonic, onward, peak, travel, value
 from feederscrew.mechanics import limits
 
+
+class MotionStatus(enum.StrEnum):
+    """How well a motion is known; files print the word."""
+
+    PERIODIC = "periodic"
+    AVERAGED = "averaged"  # it does not repeat: an average
+    NO_STEADY_STATE = "no steady state"
+
+
 LONGEST_PERIOD = 32
 TRANSIENT = 400  # periods followed before a motion is hastened, or counts as not periodic
 EQUAL_STATES_GAP = 1e-12  # difference of two states at which the motion counts as repeating
@@ -40,8 +50,8 @@ RUNS = -1  # in place of a period: the part slides on without stopping and does 
 LEAPS = 200  # of a motion that closes in slowly
 SPEED_BRACKET = 1e-13  # [A w] width of the bracket of its speed at which it is found
 MAX_RUNAWAY_SPEED = 1e6  # [A w] no bracket is sought beyond
-PERIODIC, AVERAGED, NO_STEADY_STATE = range(3)
-STATUSES = ("periodic", "averaged", "no steady state")
+PERIODIC, AVERAGED, NO_STEADY_STATE = range(len(MotionStatus))  # a status code is a place in STATUSES
+STATUSES = tuple(MotionStatus)
 STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
 FLIGHT_TIME, IMPACT, HOPS, SLOWEST, FASTEST = range(FRACTIONS + 4, FRACTIONS + 9)
 THROW, REGIME, RUNAWAY, COLUMNS = range(FASTEST + 1, FASTEST + 5)

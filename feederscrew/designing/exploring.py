@@ -4,10 +4,8 @@ import functools
 import heapq
 import itertools
 import math
-import re
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,283 +14,31 @@ from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.designing import calm_drive, proposals, short_trials, texts
 from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, MoveKind
+from feederscrew.designing.policy import SearchPolicy
 from feederscrew.designing.proposals import Proposal
-from feederscrew.designing.record import RATE_KEPT, Attempt, DesignRequest, RobustRun
-from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING, find_denials, robust_run
+from feederscrew.designing.record import Attempt
+from feederscrew.designing.search import BankedTrack, Candidate, ChainKey, Place, Search
+from feederscrew.designing.short_trials import find_denials, robust_run
 from feederscrew.dropping.plate_test import throw_number
-from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
-from feederscrew.running import RunSettings
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
+from feederscrew.tooling.devices.base import ComparedValue
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.tooling.orientations import Hanging, Orientation, neck
-from feederscrew.trial import runs
 
-SHORT_TRIAL_PARTS = 2  # parts of each orientation in a short trial
-MENDED = 3  # times that one proposal is mended
-LOST_TRIALS = 2  # trials of it in which nothing leaves as wanted, and it is given up
-LIVELIER_TRIALS = 2  # livelier drives that one chain is tried at, where parts stay at a blade
-CALMER_TRIALS = 2  # calmer drives that one chain is tried at, where the drive loses what is wanted
-LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is not tried
-TRIALS_OF_RARE = 5  # short trials where no orientation comes often enough for the target at any calm drive
-SCREENED = 6  # draws before a clean chain is proved
-ROLLS = 0.3  # of the parts that lie on a round side: then the bank is steep
-HOPELESS = 0.3  # [1] purity by the static rule, below which a chain is not tried
-# how promising an idea is beside another one: of its bank, of a turning device, of a hole of several corners,
-# with one device left out, for each device, and with one at which the same orientation was lost
-BANK_RANK, TURNED, HOLED, AGAIN, EACH_DEVICE, LOST_BEFORE = 0.93, 0.6, 0.5, 0.8, 0.98, 0.7
-LEAST_OF_MARGIN = 0.7  # of no margin at all
-OFTENER = 0.25  # power of the share: what comes oftener is tried first, all else alike
-BUDGETS = (0.5, 0.7, 1.0)  # of the trials that are allowed, after which each cost class has had its turn
-NUMBER = re.compile(r"(?<![A-Za-z_])-?[0-9]+(?:\.[0-9]+)?")
-LITTLE, LITTLE_SHARE = 0.1, 0.03  # [mm or deg], [1] of a value: chains that differ by less are alike
-AVOIDED = 2  # times that a device is left out at which what is wanted was lost
-HANGS_BELOW = np.radians(5.0)  # bank above which a part askew comes to rails beside its slot
-ASKED_STEP = 1.2  # between the velocities at which chains are looked for
-SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
 LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
-Progress = Callable[[str, int, int, float, float], None]
-Place = tuple[float, int]  # bank [rad] of a track, and row of an orientation on it
-ChainKey = tuple[Track, str, tuple[tuple[str, str], ...]]
-USUAL_S = {"trial": 4.0, "draws": 1.0, "queue": 60.0}  # [s] a trial, a draw, all queues, before any was timed
-USUAL_SLOWNESS_S = 10.0  # [s] of stages that count as having taken as long as usual
-USUAL_TRIALS = 5  # of a design: the mean of those of docs/design.md is 5.4
-TELL_EVERY_S = 0.5  # [s] between two calls of progress in a queue
-RESERVE = 1.6  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter
-
-
-@dataclass(eq=False)
-class Search:
-    """What the loop knows while it runs."""
-
-    part: Part
-    request: DesignRequest
-    plain: Bowl  # as given
-    kept_keys: frozenset[str]
-    tell: Callable[[str], None]  # of a sentence
-    shares: Shares | None = None
-    attempts: list[Attempt] = field(default_factory=list)
-    clean: list["Candidate"] = field(default_factory=list)  # of clean attempts
-    failures: list["Candidate"] = field(default_factory=list)  # of others that deliver
-    before: Callable[[], None] | None = None
-    reserve: float = RESERVE
-    min_speed: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
-    # kinds of devices at which a row was lost, by bank and row
-    avoided_kinds: dict[Place, tuple[str, ...]] = field(default_factory=dict)
-    tracks: list["_BankedTrack"] = field(default_factory=list)  # of each bank what comes along it
-    # by bank, row and way
-    cache: dict[tuple[float, int, proposals.Recipe], Proposal | None] = field(default_factory=dict)
-    chains: set[ChainKey] = field(default_factory=set)  # tried on their tracks, whatever the drive
-    # bank and row, and the first devices that lost all of it
-    lost_behind: list[tuple[Place, tuple[str, ...]]] = field(default_factory=list)
-    reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
-    most_trials: float = np.inf  # short trials that are worth it
-    start: int = 0  # trials that were made before this search began
-    shares_given: bool = False  # the user says what arrives
-    progress: Progress | None = None  # told what is done, how many of how many, seconds gone and to go
-    nearest_limit: int | None = None  # trials at most, where the nearest that holds is looked for
-    clock: "Clock" = field(default_factory=lambda: Clock())
-
-    def keeps(self, key: str) -> bool:
-        """Return whether the user gave a key of the bowl file, by its name."""
-        return key in self.kept_keys
-
-    @property
-    def limit(self) -> int:
-        """Short trials at most."""
-        return int(self.nearest_limit or min(self.request.budget, self.most_trials))
-
-    @property
-    def is_spent(self) -> bool:
-        """Whether the budget of trials is used up."""
-        return len(self.attempts) >= min(self.request.budget, self.most_trials, self.reach)
-
-    @property
-    def best_rate(self) -> float:
-        """The most that a clean attempt would deliver [1/s]."""
-        return max((candidate.attempt.rate for candidate in self.clean), default=0.0)
-
-    @property
-    def arrivals(self) -> Shares:
-        """What arrives."""
-        if self.shares is None:
-            raise ValueError("what arrives is not known before the tracks are")
-        return self.shares
-
-    def through(self, bowl: Bowl) -> Orientations:
-        """Return what becomes of each orientation on the track and through the devices of a bowl."""
-        return proposals.follow_orientations(self.part, self.arrivals.aspects, bowl)
-
-    def orientations_along(self, bowl: Bowl) -> Orientations:
-        """Return the same with what was counted of what arrives, where it was."""
-        return stream.oriented(self.through(bowl), None if self.shares is None else self.shares.measured)
-
-    def begin_trial(self, text: str) -> None:
-        """Tell which trial begins, of how many, what came of the last one, the time gone and to go."""
-        if self.before and not self.attempts:  # what has to be compiled is told before the first trial
-            self.before()
-        number = len(self.attempts) + 1
-        self.clock.begin("trial", counts=runs.is_compiled())
-        most = max(self.limit, number)
-        self.tell(f"trial {number} of at most {most}: {text}{self._so_far()}")
-        self._tell_progress("trial", number - 1, most)
-
-    def begin_proof(self, text: str) -> None:
-        """Tell that draws begin, what came of the last trial, the time gone and to go."""
-        self.clock.begin("draws")
-        self.tell(f"{text}{self._so_far()}")
-
-    def run(self, stage: str) -> RunSettings:
-        """Return how 'draws' or a 'queue' run: as was asked, and progress is told."""
-
-        def tell_progress(done: int, total: int) -> None:
-            if self.clock.reach(stage, done, total):
-                self._tell_progress(stage, done, total)
-
-        return replace(self.request.run, progress=tell_progress)
-
-    def _rest(self) -> float:
-        return self.clock.rest(len(self.attempts), self.limit, self.request.draws)
-
-    def _tell_progress(self, stage: str, done: int, total: int) -> None:
-        if self.progress:
-            self.progress(stage, done, total, self.clock.seconds, self._rest())
-
-    def _so_far(self) -> str:
-        text = ""
-        if self.attempts:
-            last = self.attempts[-1]
-            clean = f"clean, {60.0 * last.rate:.3g}/min" if last.clean else "nothing leaves"
-            text = f"; trial {len(self.attempts)}: {', '.join(texts.fault_texts(last.faults, 2)) or clean}"
-        if not self.clock.durations:
-            return text
-        rest = self._rest()  # on steps of 10 s above 20 s
-        rest = max(round(rest / 10.0) * 10.0, 10.0) if rest > 20.0 else max(rest, 1.0)
-        return f"{text}; {self.clock.seconds:.0f} s gone, about {rest:.0f} s to go"
-
-    def share_needed(self, attempt: Attempt) -> float:
-        """Return the share [1] of what is wanted that has to leave in a draw, for the target to be kept."""
-        need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
-        return float(np.clip(need, LEAST_SHARE_LEAVING, 1.0))
-
-
-@dataclass(frozen=True, eq=False)
-class Candidate:
-    """A chain on its bowl, as it was tried."""
-
-    proposal: Proposal
-    bowl: Bowl
-    orientations: Orientations
-    weights: Floats  # (M,)
-    trial: short_trials.ShortTrial
-    attempt: Attempt
-    robust: RobustRun | None = None  # some draws that it did not all hold
-
-    def plain_bowl(self, search: Search) -> calm_drive.PlainBowl:
-        """Return its bowl without devices, with the keys that the user gave."""
-        bare = replace(self.bowl, devices=())
-        return calm_drive.PlainBowl(bare, search.kept_keys, search.request.drive)
-
-    @property
-    def worst(self) -> Fault | None:
-        """The fault that some draws show most often; None where it was not drawn, or all of them held."""
-        return None if self.robust is None else self.robust.worst
-
-    @property
-    def is_nearly_robust(self) -> bool:
-        """Whether all draws of its screening but one held."""
-        robust = self.robust
-        return robust is not None and robust.held == robust.draws - 1 >= SCREENED - 1
-
-
-class Clock:
-    """How long the stages of a design take, and a guess of what is still to come."""
-
-    def __init__(self) -> None:
-        self.begun = self.last = self.since = time.monotonic()
-        self.stage, self.done, self.total, self.counts = "", 0, 0, True
-        self.durations: dict[str, tuple[float, float]] = {}  # of each stage seconds, and how many they were
-
-    @property
-    def seconds(self) -> float:
-        """Seconds since it began."""
-        return time.monotonic() - self.begun
-
-    @property
-    def _count_done(self) -> float:
-        """Draws that are done, or how much of the queues at all fills."""
-        return float(self.done) if self.stage == "draws" else self.done / max(self.total, 1)
-
-    def begin(self, stage: str, *, counts: bool = True) -> None:
-        """Begin a stage, 'trial', 'draws' or 'queue'; one that waits for the compiler does not count."""
-        self.end()
-        self.stage, self.done, self.total, self.counts = stage, 0, 1, counts
-        self.since = time.monotonic()
-
-    def end(self) -> None:
-        """End the stage that runs, and note how long it took."""
-        count = 1.0 if self.stage == "trial" else self._count_done
-        if self.stage and self.counts and count > 0.0:
-            seconds, number = self.durations.get(self.stage, (0.0, 0.0))
-            self.durations[self.stage] = seconds + time.monotonic() - self.since, number + count
-        self.stage = ""
-
-    def reach(self, stage: str, done: int, total: int) -> bool:
-        """So many of a stage are done; returns whether it is time to tell so."""
-        if stage != self.stage or done < self.done:
-            self.begin(stage)
-        self.done, self.total = done, total
-        if done < total and time.monotonic() - self.last < TELL_EVERY_S:
-            return False
-        self.last = time.monotonic()
-        return True
-
-    def each(self, stage: str) -> float:
-        """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine."""
-        if stage in self.durations:
-            seconds, number = self.durations[stage]
-            return seconds / number
-        # one quick trial is no fast machine
-        seconds = USUAL_SLOWNESS_S + sum(duration for duration, _ in self.durations.values())
-        usual = USUAL_SLOWNESS_S + sum(number * USUAL_S[name] for name, (_, number) in self.durations.items())
-        return USUAL_S[stage] * seconds / usual
-
-    def rest(self, trials: int, limit: int, draws: int) -> float:
-        """Return a guess of the seconds to go: as if a usual number of trials led to one proof."""
-        if self.stage == "draws":
-            return max(draws - self._count_done, 0.0) * self.each("draws") + self.each("queue")
-        if self.stage == "queue":
-            return max(1.0 - self._count_done, 0.1) * self.each("queue")
-        left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
-        return left * self.each("trial") + draws * self.each("draws") + self.each("queue")
-
-
-@dataclass(frozen=True, eq=False)
-class _BankedTrack:
-    """A bank of the track: the bowl without devices, and what comes along it."""
-
-    plain_bowl: calm_drive.PlainBowl
-    orientations: stream.Orientations
-    weights: Floats  # (M,)
-    rows: list[int]  # those worth a try
-    rank: float  # [1] how likely the bank is to do
-
-    @functools.cached_property
-    def fastest(self) -> float:
-        """Velocity [m/s] at the fastest drive."""
-        return calm_drive.speed(calm_drive.drive_at(self.plain_bowl, np.inf, hops=True))
 
 
 @dataclass(frozen=True, eq=False)
 class _Idea:
     """An orientation on a track, and a way of proposing a chain for it."""
 
-    track: _BankedTrack
+    track: BankedTrack
     row: int
     recipe: proposals.Recipe
     proposal: Proposal | None = None  # once it was looked for
@@ -308,15 +54,16 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
     """Try proposals, and yield each Candidate that is clean and brings the target, within the budget.
 
     They are of one cost class, or else of all, the cheapest first: in each no device at all, then the most
-    promising chain of all banks, and so on. The ``passed`` and ``failed`` of the search are filled.
+    promising chain of all banks, and so on. The ``clean`` and ``failures`` of the search's state are filled.
     """
+    state = search.state
     own_devices = search.plain.devices
     own_class = cost_class_of(own_devices)
     for number in proposals.COST_CLASSES if cost_class is None else (cost_class,):
         if own_class > number:  # the user's own devices are dearer
             continue
-        share = BUDGETS[proposals.COST_CLASSES.index(number)]
-        search.reach = search.start + math.ceil(share * (search.request.budget - search.start))
+        share = search.policy.budget_shares[proposals.COST_CLASSES.index(number)]
+        state.reach = state.start + math.ceil(share * (search.request.budget - state.start))
         tracks = _tracks(search)
         for track in tracks if number == max(1, own_class) else ():
             bare = proposals.propose_no_device(track.orientations, track.weights, search.request, own_devices)
@@ -325,11 +72,12 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
         yield from _chains(search, tracks, number)
 
 
-def _chains(search: Search, tracks: list[_BankedTrack], cost_class: int) -> Iterator[Candidate]:
+def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Iterator[Candidate]:
     """Candidates with chains of a cost class, the most promising first.
 
     A chain is looked for where its bound is the highest.
     """
+    state, policy = search.state, search.policy
     # what is not rare needs nothing that turns others into it
     ideas = [
         _Idea(track, row, recipe)
@@ -344,27 +92,27 @@ def _chains(search: Search, tracks: list[_BankedTrack], cost_class: int) -> Iter
     while heap and not search.is_spent:
         _, _, idea = heapq.heappop(heap)
         # what it has to promise [1/s], to be tried beside what is clean already
-        best, target = search.best_rate, search.request.target
-        least = target if 0.0 < best < target else LEAST_USE * best
+        best, target = state.best_rate, search.request.target
+        least = target if 0.0 < best < target else policy.rate_share * best
         if _promise(search, idea.track, idea.row, idea.recipe) < least:
             continue
         proposal = idea.proposal or _proposal(search, idea)
         if proposal is None or _was_tried(search, idea.track, proposal):
             continue
-        avoided = search.avoided_kinds.get(idea.place, ())
+        avoided = state.avoided_kinds.get(idea.place, ())
         if idea.proposal is None:  # rate, purity, margin and number of devices, and what was lost before
-            loss = LOST_BEFORE if {cut.device.kind for cut in proposal.cuts} & set(avoided) else 1.0
-            score = _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * loss
+            loss = policy.lost_rank if {cut.device.kind for cut in proposal.cuts} & set(avoided) else 1.0
+            score = _bound(search, idea) * proposal.purity * policy.device_rank ** len(proposal.cuts) * loss
             heapq.heappush(heap, (-score, next(order), replace(idea, proposal=proposal)))
             continue
         # what is wanted was lost whole at a device of one that begins so
-        heads = [head for own, head in search.lost_behind if own == idea.place]
-        if proposal.purity < HOPELESS or any(proposal.chain[: len(head)] == head for head in heads):
+        heads = [head for own, head in state.lost_behind if own == idea.place]
+        if proposal.purity < policy.purity or any(proposal.chain[: len(head)] == head for head in heads):
             continue
         yield from _try_and_mend(search, idea.track.plain_bowl, proposal, idea.track.weights)
         excluded = idea.recipe.excluded_kinds
-        more = tuple(kind for kind in search.avoided_kinds.get(idea.place, ()) if kind not in excluded)
-        if more and idea.left_out < AVOIDED:
+        more = tuple(kind for kind in state.avoided_kinds.get(idea.place, ()) if kind not in excluded)
+        if more and idea.left_out < policy.left_out:
             recipe = replace(idea.recipe, excluded_kinds=(*excluded, *more))
             other = _Idea(idea.track, idea.row, recipe, left_out=idea.left_out + 1)
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
@@ -376,27 +124,29 @@ def _proposal(search: Search, idea: _Idea) -> Proposal | None:
     A smaller margin asks for less, and so do chains without turning devices: where even those isolate
     nothing, the longer search is left out.
     """
+    state = search.state
     recipe = idea.recipe
     plain, least = replace(recipe, turns=False), min(proposals.MARGINS)
     easier = dict.fromkeys((replace(plain, margin=least), plain, replace(recipe, margin=least), recipe))
     for other in easier:
         key = (*idea.place, other)
-        if key not in search.cache:
-            search.cache[key] = _propose(search, idea.track, idea.row, other)
-        if search.cache[key] is None:
+        if key not in state.proposed:
+            state.proposed[key] = _propose(search, idea.track, idea.row, other)
+        if state.proposed[key] is None:
             return None
-    return search.cache[(*idea.place, recipe)]
+    return state.proposed[(*idea.place, recipe)]
 
 
-def _tracks(search: Search) -> list[_BankedTrack]:
+def _tracks(search: Search) -> list[BankedTrack]:
     """The tracks that are tried, of each bank: once for all cost classes."""
-    if search.tracks:
-        return search.tracks
-    aspects = find_aspects(search.part) if search.shares is None else search.shares.aspects
+    state, policy = search.state, search.policy
+    if state.tracks:
+        return state.tracks
+    aspects = find_aspects(search.part) if state.shares is None else state.shares.aspects
     # the steeper bank first where the part rolls
     chances = np.nan_to_num(aspects.chances[search.request.rule])
     rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
-    banks = calm_drive.STEEP_BANKS if rolling > ROLLS * chances.sum() else calm_drive.BANKS
+    banks = calm_drive.STEEP_BANKS if rolling > policy.rolling_share * chances.sum() else calm_drive.BANKS
     if search.keeps("track.bank"):
         banks = (search.plain.track.bank,)
     for number, bank in enumerate(banks):
@@ -405,30 +155,33 @@ def _tracks(search: Search) -> list[_BankedTrack]:
             bank=bank, drive=search.request.drive,
         )  # fmt: skip
         start = replace(calm_drive.drive_at(plain_bowl, 0.0), devices=search.plain.devices)
-        if search.shares is None:
-            search.shares = entry_shares(search, start)
+        if state.shares is None:
+            state.shares = entry_shares(search, start)
         orientations, weights = weigh_orientations(search, start)
         rows = proposals.promising_rows(orientations, weights, search.request)[: proposals.PROPOSED_ROWS]
-        search.tracks.append(_BankedTrack(plain_bowl, orientations, weights, rows, BANK_RANK**number))
+        state.tracks.append(BankedTrack(plain_bowl, orientations, weights, rows, policy.bank_rank**number))
     # also of what may hang: infinite
-    placed = [(track, row) for track in search.tracks for row in track.rows]
+    placed = [(track, row) for track in state.tracks for row in track.rows]
     enough = any(_promise(search, track, row, LYING) >= search.request.target for track, row in placed)
     turns = any(_share(search, track, row) < proposals.RARE_ORIENTATION for track, row in placed)
     if not enough and not turns:
-        search.most_trials = search.start + TRIALS_OF_RARE
-    return search.tracks
+        state.most_trials = state.start + policy.rare_trials
+    return state.tracks
 
 
 def _bound(search: Search, idea: _Idea) -> float:
     """How promising [1] the chain of an idea can be at best."""
+    policy = search.policy
     recipe, track = idea.recipe, idea.track
-    rate = min(_promise(search, track, idea.row, recipe) / (search.reserve * search.request.target), 1.0)
-    flat = track.plain_bowl.bowl.track.bank <= HANGS_BELOW
-    rank = track.rank if recipe.outcome == OutcomeKind.LYING else 1.0 if flat else BANK_RANK**2
-    simplicity = (TURNED if recipe.turns else 1.0) * (HOLED if recipe.holes else 1.0)
-    share = _share(search, track, idea.row) ** OFTENER
-    margin = LEAST_OF_MARGIN + (1.0 - LEAST_OF_MARGIN) * min(recipe.margin / proposals.MARGINS[0], 1.0)
-    return rate * rank * simplicity * share * margin * AGAIN**idea.left_out
+    asked = search.state.reserve * search.request.target
+    rate = min(_promise(search, track, idea.row, recipe) / asked, 1.0)
+    flat = track.plain_bowl.bowl.track.bank <= policy.hanging_bank
+    rank = track.rank if recipe.outcome == OutcomeKind.LYING else 1.0 if flat else policy.bank_rank**2
+    simplicity = (policy.turning_rank if recipe.turns else 1.0) * (policy.hole_rank if recipe.holes else 1.0)
+    share = _share(search, track, idea.row) ** policy.share_power
+    least, part_of_margin = policy.no_margin_rank, min(recipe.margin / proposals.MARGINS[0], 1.0)
+    margin = least + (1.0 - least) * part_of_margin
+    return rate * rank * simplicity * share * margin * policy.left_out_rank**idea.left_out
 
 
 def chain_key(track: Track, proposal: Proposal, orientations: Sequence[Orientation]) -> ChainKey:
@@ -437,28 +190,38 @@ def chain_key(track: Track, proposal: Proposal, orientations: Sequence[Orientati
     The order of what a sensor lets pass makes no difference.
     """
     wanted = "hanging" if proposal.hangs else orientations[proposal.row].name
-    return track, wanted, tuple((device.kind, device.canonical_text) for device in proposal.devices)
+    return track, wanted, tuple((device.kind, device.compared_values) for device in proposal.devices)
 
 
-def _was_tried(search: Search, track: _BankedTrack, proposal: Proposal) -> bool:
+def _was_tried(search: Search, track: BankedTrack, proposal: Proposal) -> bool:
     """Whether a chain was tried on that track, or one whose values differ by less than makes a difference."""
+    state = search.state
     key = chain_key(track.plain_bowl.bowl.track, proposal, track.orientations.lying)
-    return key in search.chains or any(_is_alike(key, other) for other in search.chains)
+    return key in state.chains or any(_is_alike(key, other, search.policy) for other in state.chains)
 
 
-def _is_alike(key: ChainKey, other: ChainKey) -> bool:
+def _is_alike(key: ChainKey, other: ChainKey, policy: SearchPolicy) -> bool:
     """Whether two chains for the same track and orientation differ by little in each of their numbers."""
-    if key[:2] != other[:2] or len(key[2]) != len(other[2]):
+    if key[:2] != other[:2] or [kind for kind, _ in key[2]] != [kind for kind, _ in other[2]]:
         return False
-    texts, other_texts = (" ".join(" ".join(device) for device in chain[2]) for chain in (key, other))
-    if NUMBER.sub("#", texts) != NUMBER.sub("#", other_texts):
-        return False
-    pairs = zip(NUMBER.findall(texts), NUMBER.findall(other_texts), strict=True)
-    values = ((float(a), float(b)) for a, b in pairs)
-    return all(abs(a - b) <= max(LITTLE, LITTLE_SHARE * abs(a)) for a, b in values)
+    devices = zip(key[2], other[2], strict=True)
+    return all(
+        len(values) == len(others)
+        and all(_is_alike_value(a, b, policy) for a, b in zip(values, others, strict=True))
+        for (_, values), (_, others) in devices
+    )
 
 
-def _promise(search: Search, track: _BankedTrack, row: int, recipe: proposals.Recipe) -> float:
+def _is_alike_value(first: ComparedValue, second: ComparedValue, policy: SearchPolicy) -> bool:
+    """Whether two values of devices are the same word, or numbers that differ by little."""
+    a, b = first.value, second.value
+    if a == b or not isinstance(a, float) or not isinstance(b, float):
+        return a == b
+    little = policy.alike_angle if first.is_angle else policy.alike_length
+    return abs(a - b) <= max(little, policy.alike_share * abs(a))
+
+
+def _promise(search: Search, track: BankedTrack, row: int, recipe: proposals.Recipe) -> float:
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
     if recipe.outcome != OutcomeKind.LYING and neck(track.orientations.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
@@ -467,19 +230,21 @@ def _promise(search: Search, track: _BankedTrack, row: int, recipe: proposals.Re
     return share * track.fastest / pitch
 
 
-def _share(search: Search, track: _BankedTrack, row: int) -> float:
+def _share(search: Search, track: BankedTrack, row: int) -> float:
     """Share [1] in which an orientation comes, with those that count as it."""
     equivalent = proposals.equivalent_rows(track.orientations.lying, row, search.request.up)
     return float(track.weights[[row, *equivalent]].sum())
 
 
-def _propose(search: Search, track: _BankedTrack, row: int, recipe: proposals.Recipe) -> Proposal | None:
+def _propose(search: Search, track: BankedTrack, row: int, recipe: proposals.Recipe) -> Proposal | None:
     """A chain for one orientation at the drive that its share asks for; None where there is none."""
+    policy = search.policy
 
     def at_drive_for(gain: float) -> Proposal | None:
         velocity = required_velocity(search, track.orientations, track.weights, gain)
-        step = math.ceil(math.log(velocity, ASKED_STEP) - 1e-9)  # the same drive for shares that are alike
-        bowl = calm_drive.drive_at(track.plain_bowl, ASKED_STEP**step)
+        # the same drive for shares that are alike
+        step = math.ceil(math.log(velocity, policy.velocity_step) - 1e-9)
+        bowl = calm_drive.drive_at(track.plain_bowl, policy.velocity_step**step)
         return proposals.propose_chain(
             search.part, replace(bowl, devices=search.plain.devices), search.arrivals.aspects, row,
             track.orientations, search.request, recipe,
@@ -492,7 +257,7 @@ def _propose(search: Search, track: _BankedTrack, row: int, recipe: proposals.Re
     # the share that leaves as wanted, as the static rule says
     through = search.through(replace(track.plain_bowl.bowl, devices=proposal.devices))
     gain = short_trials.gain(through, track.weights, proposal.states(through))
-    return (at_drive_for(gain) if gain > SLOWER * share else None) or proposal
+    return (at_drive_for(gain) if gain > policy.slower * share else None) or proposal
 
 
 def required_velocity(
@@ -503,7 +268,7 @@ def required_velocity(
     Parts come in a row, ``spacing`` [m] farther than they do by themselves where devices need that.
     """
     pitch = short_trials.GAP * float((weights * orientations.lengths).sum()) + spacing
-    return search.reserve * search.request.target * pitch / max(gain, 1e-3)
+    return search.state.reserve * search.request.target * pitch / max(gain, 1e-3)
 
 
 def entry_shares(search: Search, bowl: Bowl) -> Shares:
@@ -527,28 +292,30 @@ def _try_and_mend(
 
     One that one draw alone denies is taken where nothing mends it: the draws of its proof are more.
     """
+    state, policy = search.state, search.policy
     lost, before, nearly = 0, None, None
-    for _ in range(MENDED + 1):
+    for _ in range(policy.mends + 1):
         candidate = _screen(search, try_proposal(search, plain_bowl, proposal, weights))
         calmed = _find_calmer(search, candidate)
         if calmed.attempt.clean:
-            search.clean.append(calmed)
+            state.clean.append(calmed)
             if calmed.attempt.rate >= search.request.target:
                 yield calmed
                 return
         if candidate.attempt.clean:
             return
-        search.failures.append(candidate)
-        nearly = nearly or (candidate if candidate.is_nearly_robust else None)
+        state.failures.append(candidate)
+        nearly = nearly or (candidate if candidate.is_nearly_robust(policy) else None)
         if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:
             lost += 1
         attempt, lying = candidate.attempt, candidate.orientations.lying
         after = attempt.faults, attempt.efficiency, attempt.stopped
-        if after == before or lost == LOST_TRIALS or search.is_spent:  # what was changed made no difference
+        # what was changed made no difference, or nothing leaves
+        if after == before or lost == policy.lost_trials or search.is_spent:
             break
         before = after
         changed = proposals.mend_proposal(proposal, candidate.trial, lying, candidate.worst)
-        if changed is None or chain_key(plain_bowl.bowl.track, changed, lying) in search.chains:
+        if changed is None or chain_key(plain_bowl.bowl.track, changed, lying) in state.chains:
             break
         proposal = changed
     chosen = _find_livelier(search, candidate) or nearly
@@ -559,13 +326,13 @@ def _try_and_mend(
     place, trial = (plain_bowl.bowl.track.bank, proposal.row), candidate.trial
     lost_at = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
     kinds = sorted(kind for kind in lost_at if proposals.lost_at(trial, kind))
-    search.avoided_kinds[place] = tuple(dict.fromkeys((*search.avoided_kinds.get(place, ()), *kinds)))
+    state.avoided_kinds[place] = tuple(dict.fromkeys((*state.avoided_kinds.get(place, ()), *kinds)))
     # where all of it ended at one of them: another chain that begins so does no better
     ends = {end for n, k in enumerate(trial.rows) if k == proposal.row for end in trial.ends[n]}
     if not trial.efficiency > 0.0 and len(ends) == 1:
         count = devices_to(ends.pop(), proposal)
         if count:
-            search.lost_behind.append((place, proposal.chain[:count]))
+            state.lost_behind.append((place, proposal.chain[:count]))
 
 
 def devices_to(end: End, proposal: Proposal) -> int:
@@ -579,7 +346,7 @@ def _find_livelier(search: Search, candidate: Candidate) -> Candidate | None:
 
     Where one draw alone denies that, it is taken as well.
     """
-    for _ in range(LIVELIER_TRIALS):
+    for _ in range(search.policy.livelier_trials):
         if search.is_spent or not stays_at_steel(candidate.proposal, candidate.attempt.faults):
             return None
         other = try_livelier(search, candidate)
@@ -587,9 +354,9 @@ def _find_livelier(search: Search, candidate: Candidate) -> Candidate | None:
             return None
         candidate = other
         if candidate.attempt.clean:
-            search.clean.append(candidate)
+            search.state.clean.append(candidate)
             return candidate if candidate.attempt.rate >= search.request.target else None
-        if candidate.is_nearly_robust:
+        if candidate.is_nearly_robust(search.policy):
             return candidate
     return None
 
@@ -618,7 +385,7 @@ def stays_at_steel(proposal: Proposal, faults: Iterable[Fault]) -> bool:
 def _find_calmer(search: Search, first: Candidate) -> Candidate:
     """The candidate at a calmer drive that is clean, where the one it had turns or loses what is wanted."""
     candidate = first
-    for _ in range(CALMER_TRIALS):
+    for _ in range(search.policy.calmer_trials):
         worst = candidate.worst  # in a trial on the track, or in draws by turning it
         turned = worst is not None and worst.kind is FaultKind.LOST and worst.is_on_bare_track
         moved_out = turned or bool(short_trials.lost_by_motion(candidate.trial))
@@ -627,7 +394,7 @@ def _find_calmer(search: Search, first: Candidate) -> Candidate:
         other = try_calmer(search, candidate)
         if other is None:
             break
-        search.most_trials += 1  # no other chain is left out for it
+        search.state.most_trials += 1  # no other chain is left out for it
         candidate = _screen(search, other)
     return candidate if candidate.attempt.clean else first
 
@@ -645,7 +412,7 @@ def _screen(search: Search, candidate: Candidate) -> Candidate:
     request = search.request
     robust = robust_run(
         search.part, candidate.bowl, candidate.orientations, candidate.weights, candidate.proposal.rows,
-        draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
+        draws=min(search.policy.screening_draws, request.draws), tolerance=request.tolerance, run=request.run,
         any_heading=candidate.proposal.any_heading, enough=search.share_needed(candidate.attempt),
         returnable=short_trials.find_returnable_rows(candidate.trial), max_failures=1,
     )  # fmt: skip
@@ -654,7 +421,7 @@ def _screen(search: Search, candidate: Candidate) -> Candidate:
     if robust.held == robust.draws:
         return candidate
     attempt = replace(candidate.attempt, faults=() if robust.worst is None else (robust.worst,))
-    search.attempts[-1] = attempt
+    search.state.attempts[-1] = attempt
     return replace(candidate, attempt=attempt, robust=robust)
 
 
@@ -680,7 +447,7 @@ def try_proposal(
     own = drive_for_target(search, plain_bowl, proposal, weights) if driven is None else driven
     bowl = replace(own, track=plain_bowl.bowl.track, devices=proposal.devices)
     orientations = search.orientations_along(bowl)
-    search.chains.add(chain_key(bowl.track, proposal, orientations.lying))
+    search.state.chains.add(chain_key(bowl.track, proposal, orientations.lying))
     search.begin_trial(f"{orientations.lying[proposal.row].name}, {texts.move_text(proposal.move)}")
     trial = _short(search, bowl, orientations, weights, proposal)
     faults = tuple(find_denials(trial))
@@ -708,9 +475,10 @@ def try_proposal(
         peak_to_peak=2.0 * bowl.drive.amplitude,
         throw_number=float(throw_number(bowl)),
         cost_class=proposal.cost_class,
+        chain_brief=tuple(device.brief for device in proposal.devices),
     )
-    search.attempts.append(attempt)
-    search.clock.end()
+    search.state.attempts.append(attempt)
+    search.progress.clock.end()
     return Candidate(proposal, bowl, orientations, weights, trial, attempt)
 
 
@@ -729,7 +497,8 @@ def drive_for_target(
     orientations = search.through(replace(plain_bowl.bowl, devices=proposal.devices))
     gain, spacing = short_trials.gain(orientations, weights, proposal.states(orientations)), 0.0
     for _ in range(2):
-        velocity = max(required_velocity(search, orientations, weights, gain, spacing), search.min_speed)
+        required = required_velocity(search, orientations, weights, gain, spacing)
+        velocity = max(required, search.state.min_speed)
         bowl = calm_drive.drive_at(plain_bowl, velocity, hops=not proposal.devices)
         spacing = stream.needed_spacing(proposal.devices, orientations.lying, bowl)
         if not spacing > 0.0:
@@ -741,6 +510,7 @@ def _short(
     search: Search, bowl: Bowl, orientations: Orientations, weights: Floats, proposal: Proposal
 ) -> short_trials.ShortTrial:
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
+    policy = search.policy
     single = functools.partial(
         short_trials.try_parts, search.part, bowl, orientations, weights, proposal.rows,
         run=search.request.run, aspects=search.arrivals.aspects, any_heading=proposal.any_heading,
@@ -749,8 +519,8 @@ def _short(
     right = set(short_trials.wanted_rows(orientations, proposal.states(orientations)))
     first = [k for k in rows if k in right] or [proposal.row]
     others = [k for k in rows if k not in first]
-    trial = single(rows=first, count=SHORT_TRIAL_PARTS)
+    trial = single(rows=first, count=policy.trial_parts)
     if not trial.efficiency > 0.0 or not others:
         return trial
-    each = SHORT_TRIAL_PARTS if len(others) <= short_trials.FEW_OTHERS else 1
+    each = policy.trial_parts if len(others) <= short_trials.FEW_OTHERS else 1
     return trial.join(single(rows=others, count=each))

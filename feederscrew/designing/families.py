@@ -7,10 +7,11 @@ from typing import Any
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import Status
 from feederscrew.designing import calm_drive, exploring, loop, proposals
-from feederscrew.designing.exploring import Search
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.loop import merit
+from feederscrew.designing.progress import Progress, SearchProgress
 from feederscrew.designing.record import DesignRequest, DesignStudy
+from feederscrew.designing.search import Search
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
@@ -73,7 +74,7 @@ def family(
     *,
     tell: Callable[[str], None] | None = None,
     before: Callable[[], None] | None = None,
-    progress: exploring.Progress | None = None,
+    progress: Progress | None = None,
 ) -> FamilyStudy:
     """Design one bowl for several parts, each tried in it.
 
@@ -205,8 +206,9 @@ def prove_with_cuts(
     if study.bowl is None or study.turn is None:
         raise ValueError("a design without a bowl has no devices")
     plain_bowl = replace(study.bowl, devices=())
-    search = Search(study.part, request, plain_bowl, frozenset(kept_keys), tell, None, before=before)
-    search.shares = exploring.entry_shares(search, plain_bowl)
+    said = SearchProgress(tell, before)
+    search = Search.begin(study.part, request, plain_bowl, kept_keys, progress=said)
+    search.state.shares = exploring.entry_shares(search, plain_bowl)
     orientations, weights = exploring.weigh_orientations(search, plain_bowl)
     own = proposals.find_equivalents(orientations.lying, study.turn, request)
     proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, Move(MoveKind.VALUES_OF_ALL), *own)

@@ -20,8 +20,8 @@ from feederscrew.designing import (
     short_trials,
     texts,
 )
-from feederscrew.designing.exploring import Candidate, Progress, Search
 from feederscrew.designing.findings import FaultKind
+from feederscrew.designing.progress import Progress, SearchProgress, SearchStage
 from feederscrew.designing.record import (
     DRAWS_HELD,
     RATE_KEPT,
@@ -34,6 +34,7 @@ from feederscrew.designing.record import (
     RobustRun,
     long_ride,
 )
+from feederscrew.designing.search import Candidate, Search
 from feederscrew.designing.short_trials import robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
@@ -47,10 +48,6 @@ from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.trial.result import TrialRun
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
-PROVED, DRAWN = 2, 4  # designs of a cost class that go through queues, and through draws
-CHANGES = 2  # of one design, each by what its proof denied
-LIVELY_HOP_M = 1.2e-4  # hop from which jams ask for a device, not for a livelier drive
-FASTER = 1.3  # times as fast, where draws lose what is wanted: what creeps over a slot falls in late
 Proofs = list[tuple[DesignStudy, Candidate]]
 
 
@@ -77,11 +74,11 @@ def design(
     facets, fits no bowl, or has no such aspect.
     """
     check_request(part, plain, request, shares)
-    search = Search(
-        part, request, plain, frozenset(kept_keys), tell or (lambda text: None), shares, before=before,
-        progress=progress,
-    )  # fmt: skip
-    search.shares_given = shares is not None
+    said = SearchProgress(before=before, report=progress)
+    if tell is not None:
+        said.tell = tell
+    search = Search.begin(part, request, plain, kept_keys, shares=shares, progress=said)
+    policy = search.policy
     proofs: Proofs = []
     classes: list[int] = []
     try:
@@ -92,7 +89,8 @@ def design(
                 _prove(search, candidate, proofs)
                 own, last = proofs[first:], proofs[-1][0]
                 queued = sum(bool(study.queues) for study, _ in own)
-                if last.status == Status.HOLDS or last.partial or queued >= PROVED or len(own) >= DRAWN:
+                enough = queued >= policy.queued_designs or len(own) >= policy.drawn_designs
+                if last.status == Status.HOLDS or last.partial or enough:
                     break
             if any(study.partial for study, _ in proofs):
                 break
@@ -117,9 +115,10 @@ def design(
 
 def _list_alternatives(search: Search, proofs: Proofs, classes: list[int], best: DesignStudy) -> DesignStudy:
     """The design with every short trial, and beside the best of each cost class."""
+    state = search.state
     studies = [study for study, _ in proofs] + ([best] if best.queues else [])
-    rows = alternatives(studies, search.attempts, classes)
-    return replace(best, attempts=tuple(search.attempts), alternatives=rows)
+    rows = alternatives(studies, state.attempts, classes)
+    return replace(best, attempts=tuple(state.attempts), alternatives=rows)
 
 
 def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, DesignStudy | None]:
@@ -152,6 +151,7 @@ def _prove_whole(search: Search, proofs: Proofs, candidate: Candidate, robust: R
 
 def _best(search: Search, proofs: Proofs) -> DesignStudy:
     """The cheapest design that holds, or the best so far as far as it was proved; else the best attempt."""
+    state = search.state
 
     def cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
         return -cost_class_of(study.devices) if study.status == Status.HOLDS else -math.inf, merit(study)
@@ -159,24 +159,23 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
     if proofs:
         return max((study for study, _ in proofs), key=cheapest)
     candidate = _likeliest(search)
-    if candidate is not None and search.shares is not None:
-        return _study_of(search, candidate, search.shares)
-    source = "" if search.shares is None else search.shares.aspects.source(search.request.rule)
+    if candidate is not None and state.shares is not None:
+        return _study_of(search, candidate, state.shares)
+    source = "" if state.shares is None else state.shares.aspects.source(search.request.rule)
     return DesignStudy(
-        search.part, search.request, None, None, None, attempts=tuple(search.attempts), source=source
+        search.part, search.request, None, None, None, attempts=tuple(state.attempts), source=source
     )
 
 
 def _likeliest(search: Search) -> Candidate | None:
     """The best of the attempts that deliver anything: clean, then of fewer faults, then faster."""
+    state = search.state
 
     def likelihood(candidate: Candidate) -> tuple[bool, int, float]:
         attempt = candidate.attempt
         return attempt.clean, -len(attempt.faults), attempt.rate
 
-    delivering = (
-        candidate for candidate in (*search.clean, *search.failures) if candidate.attempt.rate > 0.0
-    )
+    delivering = (candidate for candidate in (*state.clean, *state.failures) if candidate.attempt.rate > 0.0)
     return max(delivering, key=likelihood, default=None)
 
 
@@ -195,8 +194,8 @@ def check_request(part: Part, plain: Bowl, request: DesignRequest, shares: Share
 
 
 def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
-    """Prove a design as far as it holds; then, ``CHANGES`` times, one with what denied it changed."""
-    for _ in range(CHANGES + 1):
+    """Prove a design as far as it holds; then, a few times, one with what denied it changed."""
+    for _ in range(search.policy.proof_changes + 1):
         study = prove_design(search, candidate, whole=False)
         proofs.append((study, candidate))
         if study.status == Status.HOLDS or study.partial or search.is_spent:
@@ -212,23 +211,24 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
 
     None where there is nothing to change.
     """
+    state, policy = search.state, search.policy
     proposal, lying = candidate.proposal, candidate.orientations.lying
     if study.jams:
-        calm = hop(candidate.bowl).height < LIVELY_HOP_M  # a livelier drive may clear what jams
+        calm = hop(candidate.bowl).height < policy.lively_hop  # a livelier drive may clear what jams
         lively = exploring.try_livelier(search, candidate) if calm else None
         if lively is not None and lively.attempt.clean:
             return lively
         changed = proposals.add_pressure_break(candidate)
     elif nearest.only_slow(study):
-        search.reserve *= 1.1 * RATE_KEPT * search.request.target / study.delivered[1]
+        state.reserve *= policy.slow_reserve * RATE_KEPT * search.request.target / study.delivered[1]
         return _faster(search, candidate)
     elif study.robust.share < DRAWS_HELD:
         worst = study.robust.worst
         if worst is not None and worst.kind is FaultKind.LOST and worst.is_stopped:
             # what is wanted gets stuck: a drive may be too slow
-            search.min_speed = FASTER * calm_drive.speed(candidate.bowl)
+            state.min_speed = policy.faster * calm_drive.speed(candidate.bowl)
             other = _faster(search, candidate)
-            search.min_speed = 0.0
+            state.min_speed = 0.0
             if other is not None:
                 return other
         if exploring.stays_at_steel(proposal, () if worst is None else (worst,)):
@@ -255,9 +255,9 @@ def prove_design(
     ``robust`` are all draws of that candidate, where they were made: they would come out the same.
     """
     request, name, shares = search.request, candidate.attempt.wanted, search.arrivals
-    if not search.shares_given:  # the search took what arrives from one drive: here from the bowl's own
+    if search.given_shares is None:  # the search took what arrives from one drive: here from the bowl's own
         own = exploring.entry_shares(search, candidate.bowl)
-        oriented = replace(search, shares=own).orientations_along(candidate.bowl)
+        oriented = search.orientations_along(candidate.bowl, own)
         names = [[lying.name for lying in each.lying] for each in (oriented, candidate.orientations)]
         if names[0] == names[1]:  # else its rows are others
             weights = np.nan_to_num(oriented.rules[request.rule])
@@ -275,7 +275,7 @@ def prove_design(
         search.begin_proof(f"draws: {name}, {request.draws} of part, friction, drive and cuts")
         robust = robust_run(
             search.part, candidate.bowl, oriented, 0.5 * (ride.entering + ride.arriving), proposal.rows,
-            draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
+            draws=request.draws, tolerance=request.tolerance, run=search.run(SearchStage.DRAWS),
             any_heading=proposal.any_heading, returnable=short_trials.find_returnable_rows(candidate.trial),
             enough=search.share_needed(candidate.attempt),
             max_failures=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
@@ -287,7 +287,7 @@ def prove_design(
     line = queues.FollowedRow(
         search.part, candidate.bowl, shares.aspects, oriented, candidate.weights,
         candidate.trial.states, request.seed, search.tell, RATE_KEPT * request.target,
-        proposal.any_heading, search.run("queue").progress, ride.entering, request.jobs,
+        proposal.any_heading, search.run(SearchStage.QUEUE).progress, ride.entering, request.jobs,
     )  # fmt: skip
     try:
         search.tell(f"queue: {name}, {proposal.sentence}")
@@ -335,7 +335,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         turn=proposal.row,
         cuts=proposal.cuts,
         before=proposal.before,
-        attempts=tuple(search.attempts),
+        attempts=tuple(search.state.attempts),
         source=shares.aspects.source(request.rule),
         static_rate=calm_drive.speed(bowl) * gain / float((weights * oriented.lengths).sum()),
         slowed=calm_drive.velocity_kept(bowl),

@@ -11,26 +11,19 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import Status
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import calm_drive, exploring, proposals, queues, short_trials, texts
-from feederscrew.designing.exploring import Candidate, Search
 from feederscrew.designing.findings import FaultKind, MoveKind
 from feederscrew.designing.record import (
     DRAWS_HELD,
     PURE,
     RATE_KEPT,
-    DesignRequest,
     DesignStudy,
     NearestDesign,
 )
+from feederscrew.designing.search import Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.tooling.isolating.chain import OutcomeKind
 
 MINUTE = 60.0
-PROOFS = 3  # designs beside those of the search that go through draws and queues
-TRIALS = 4  # short trials beside those of the search, of calmer drives and of one device more
-FREE_TRIALS = 6  # of other ways up, where only some were asked for
-FREE_CALMED = 2  # of them at a calmer drive
-LOWER_RATE = 0.5  # of the rate that short trials promise: a rate for which bowls are sought anew
-LOWER_TRIALS, LOWER_PROOFS = 12, 2  # short trials for it at most, and designs through draws and queues
 SLIGHT = 1e-9  # of rounding
 RATE_DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
@@ -88,15 +81,16 @@ def nearest(
 
     The cheapest change comes first: a lower rate for a design that was proved, a calmer drive for its chain,
     a design that was clean but slow in the search, another heading, one device more, another way up. Each is
-    proved as any design is, until one holds: ``PROOFS`` of them, with ``TRIALS`` short trials, at most. Then
-    bowls are sought for a lower rate: the chains that its drive makes possible are others.
+    proved as any design is, until one holds: ``near_proofs`` of the policy at most, with ``near_trials``
+    short trials. Then bowls are sought for a lower rate: the chains that its drive makes possible are others.
 
     ``best`` does not hold, nor does what was proved; the search is as it ended. ``prove`` returns the design
     of a candidate with draws and queues, followed as long as they are pure, however slow. The design has the
     request it was proved for; it is None where nothing holds, or it leaves another orientation than one that
     was asked for.
     """
-    search.nearest_limit = len(search.attempts) + TRIALS
+    state, policy = search.state, search.policy
+    state.nearest_limit = len(state.attempts) + policy.near_trials
     denials: list[str] = []
     own = [(rate_that_holds(study), n) for n, (study, _) in enumerate(proofs) if whole(study)]
     if own and max(own)[0] > 0.0:
@@ -106,8 +100,8 @@ def nearest(
         variant = Variant(change, candidate, search)
         return _describe_nearest(search, rate, variant, study, denials, len(proofs)), study
     done, pending = 0, [variants(search, proofs)]
-    lower = itertools.islice(_at_a_lower_rate(search), LOWER_PROOFS)
-    for variant in itertools.chain(itertools.islice(_in_turn(pending), PROOFS), lower):
+    lower = itertools.islice(_at_a_lower_rate(search), policy.lower_rate_proofs)
+    for variant in itertools.chain(itertools.islice(_in_turn(pending), policy.near_proofs), lower):
         search.tell(f"nearest that holds: {variant.candidate.attempt.wanted}, {variant.change}")
         study, done = prove(variant.search, variant.candidate), done + 1
         if study.partial:
@@ -121,10 +115,10 @@ def nearest(
         slow = replace(study, request=replace(study.request, target=1e-9))  # what it lacks beside its rate
         lacks = next(iter(slow.shortfalls), "nothing is delivered")
         denials.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {lacks}")
-        if done < PROOFS:
+        if done < policy.near_proofs:
             pending.append(_calmer_variants(variant, study))
     none = NearestDesign(
-        None, "", trials=len(search.attempts), proofs=len(proofs) + done, denied=tuple(denials),
+        None, "", trials=len(state.attempts), proofs=len(proofs) + done, denied=tuple(denials),
         helps=tuple(_helps(search, best, None)),
     )  # fmt: skip
     return none, None
@@ -160,7 +154,7 @@ def _describe_nearest(
     search: Search, rate: float, variant: Variant, study: DesignStudy, denials: list[str], proofs: int
 ) -> NearestDesign:
     """The nearest that holds, with what else was tried and what else helps."""
-    near = nearest_from_study(study, rate, variant.change, trials=len(search.attempts), proofs=proofs)
+    near = nearest_from_study(study, rate, variant.change, trials=len(search.state.attempts), proofs=proofs)
     helps = [*_helps(search, study, variant.candidate)]
     bowls = math.ceil(search.request.target / rate - SLIGHT)
     if bowls > 1:
@@ -174,14 +168,15 @@ def _drive(bowl: Bowl) -> str:
 
 def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
     """Yield designs near those that do not hold, the cheapest change first, each clean in its short trial."""
-    budget, proved = TRIALS, {id(candidate) for _, candidate in proofs}
+    budget, proved = search.policy.near_trials, {id(candidate) for _, candidate in proofs}
     for study, candidate in proofs:
         if _by_motion(study) and budget:
             other = _calmer(search, candidate)
             budget -= other is not None
             if other is not None and other.attempt.clean:
                 yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
-    for candidate in _fastest_first(candidate for candidate in search.clean if id(candidate) not in proved):
+    unproved = (candidate for candidate in search.state.clean if id(candidate) not in proved)
+    for candidate in _fastest_first(unproved):
         calm = candidate.proposal.move.kind is MoveKind.CALMER_DRIVE
         change = "a calmer drive, " if calm else "a lower rate, the same bowl at "
         change += _drive(candidate.bowl)
@@ -244,7 +239,7 @@ def _calmer(search: Search, candidate: Candidate) -> Candidate | None:
     if bowl is None or any(
         attempt.chain == candidate.attempt.chain and attempt.peak_to_peak == 2.0 * bowl.drive.amplitude
         and abs(attempt.throw_number - throw_number(bowl)) < 1e-6
-        for attempt in search.attempts
+        for attempt in search.state.attempts
     ):  # fmt: skip
         return None
     return exploring.try_calmer(search, candidate)
@@ -264,48 +259,42 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
         proposal = replace(candidate.proposal, equivalents=equivalents, any_heading=free_headings)
         states = short_trials.wanted_states(candidate.orientations, proposal.rows)
         trial = replace(candidate.trial, states=states)
-        other, free = replace(candidate, proposal=proposal, trial=trial), _other_search(search, request)
+        other, free = replace(candidate, proposal=proposal, trial=trial), search.beside(request)
         yield Variant(f"any heading of {aspect} counted, --up {','.join(request.up)}", other, free, False)
 
 
-def _other_search(search: Search, request: DesignRequest) -> Search:
-    """A search for another request that tells and counts as the first one does."""
-    return replace(
-        search, request=request, clean=[], failures=[], avoided_kinds={}, most_trials=np.inf, tracks=[],
-        nearest_limit=None, start=len(search.attempts), cache={}, chains=set(), lost_behind=[], reach=np.inf,
-    )  # fmt: skip
-
-
 def _at_a_lower_rate(search: Search) -> Iterator[Variant]:
-    """Designs of a search for ``LOWER_RATE`` of what short trials promise: calmer drives, other chains."""
+    """Designs of a search for a share of the rate that short trials promise: calmer drives, other chains."""
+    state, policy = search.state, search.policy
     target = search.request.target
-    promised = min(search.best_rate or target, target)
-    lower = _rounded_down(MINUTE * LOWER_RATE * promised) / MINUTE
-    request = replace(search.request, target=lower, budget=len(search.attempts) + LOWER_TRIALS)
-    free = _other_search(search, request)
+    promised = min(state.best_rate or target, target)
+    lower = _rounded_down(MINUTE * policy.lower_rate_share * promised) / MINUTE
+    request = replace(search.request, target=lower, budget=len(state.attempts) + policy.lower_rate_trials)
+    free = search.beside(request)
     for candidate in exploring.candidates(free):
         yield Variant(f"a lower rate, a bowl at {_drive(candidate.bowl)}", candidate, free)
 
 
 def _other_ways_up(search: Search) -> Iterator[Variant]:
     """Ways up that are clean in a trial, of all where only some were asked for: fast ones first."""
+    policy = search.policy
     first_request = search.request
     if first_request.aspect is None and not first_request.up and first_request.outcome == OutcomeKind.ANY:
         return
     request = replace(first_request, aspect=None, heading=None, up=(), outcome=OutcomeKind.ANY)
-    free = _other_search(search, replace(request, budget=len(search.attempts) + FREE_TRIALS))
+    free = search.beside(replace(request, budget=len(search.state.attempts) + policy.other_way_trials))
     yielded = set()
     for candidate in exploring.candidates(free):
         yielded.add(id(candidate))
         yield Variant(_other_way(candidate), candidate, free, False)
-    others = _fastest_first(candidate for candidate in free.clean if id(candidate) not in yielded)
-    for candidate in itertools.chain(others, _try_calmer_drives(free, FREE_CALMED)):
+    others = _fastest_first(candidate for candidate in free.state.clean if id(candidate) not in yielded)
+    for candidate in itertools.chain(others, _try_calmer_drives(free, policy.other_way_calmer_trials)):
         yield Variant(_other_way(candidate), candidate, free, False)
 
 
 def _try_calmer_drives(search: Search, budget: int) -> Iterator[Candidate]:
     """Chains that failed, clean at a calmer drive: those of which most left first; so many trials at most."""
-    failed = sorted(search.failures, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults)))
+    failed = sorted(search.state.failures, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults)))
     for candidate in failed:
         attempt = candidate.attempt
         if not budget:
@@ -325,7 +314,7 @@ def _other_way(candidate: Candidate) -> str:
 def _helps(search: Search, study: DesignStudy, chosen: Candidate | None) -> Iterator[str]:
     """What else was clean in a short trial, or would count more parts."""
     named = {study.wanted}
-    for candidate in _fastest_first(search.clean):
+    for candidate in _fastest_first(search.state.clean):
         if candidate is not chosen and candidate.attempt.wanted not in named:
             named.add(candidate.attempt.wanted)
             rate = MINUTE * candidate.attempt.rate

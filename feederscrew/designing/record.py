@@ -93,6 +93,7 @@ class Attempt:
     peak_to_peak: float = 0.0  # [m] stroke of its drive
     throw_number: float = 0.0  # [1] of its drive
     cost_class: int = 1  # of its chain: 1 steel alone, 2 steady air, 3 a sensor with a valve
+    chain_brief: tuple[str, ...] = ()  # 'gap 9.5 mm'; of a device of several values its name alone
 
     @property
     def step(self) -> str:

@@ -73,12 +73,17 @@ class TriedDesign:
         return f"{texts.percent(self.efficiency, self.efficiency_ends)} do, {purity}"
 
     @property
-    def sentence(self) -> str:
-        """Both verdicts."""
+    def verdicts(self) -> str:
+        """What the static rule says, and what the trial."""
         return (
-            f"{self.name}: the static rule lets {100.0 * self.static_efficiency:.3g} % leave, of {self.parts}"
-            f" parts tried {self.figures}; {self.verdict}"
+            f"the static rule lets {100.0 * self.static_efficiency:.3g} % leave, of {self.parts} parts tried "
+            f"{self.figures}; {self.verdict}"
         )
+
+    @property
+    def sentence(self) -> str:
+        """Both verdicts on the orientation."""
+        return f"{self.name}: {self.verdicts}"
 
 
 def try_designs(

@@ -21,6 +21,7 @@ Source: the balance of forces in a wedge with Coulomb's friction, docs/conveying
 for [4.27] and [4.28], a level floor at s = +1. The track's limits follow from the two forces above.
 """
 
+import enum
 from dataclasses import replace
 from typing import Any
 
@@ -30,7 +31,20 @@ from feederscrew.arrays import Floats, Ints, Reals
 from feederscrew.bowl.record import Bowl, Friction
 from feederscrew.errors import ConfigError
 
-POINT_REGIMES = ("stick", "forward", "backward", "both", "hop")  # a regime code is a place in this list
+
+class Regime(enum.StrEnum):
+    """What a part does within one cycle of the drive; files print the word."""
+
+    STICK = "stick"
+    FORWARD = "forward"
+    BACKWARD = "backward"
+    BOTH = "both"
+    HOP = "hop"
+    NO_STEADY_STATE = "no steady state"  # it slides on without stopping
+
+
+# a regime code is a place in this list
+POINT_REGIMES = (Regime.STICK, Regime.FORWARD, Regime.BACKWARD, Regime.BOTH, Regime.HOP)
 RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(POINT_REGIMES))
 HOP_ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
 USE = "leave it out, or use feeder convey"

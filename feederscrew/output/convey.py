@@ -12,8 +12,10 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer, steady
 from feederscrew.conveying.answer import Neighbours, throw_of_flight
 from feederscrew.conveying.operating_point import PHASES
+from feederscrew.conveying.steady import MotionStatus
 from feederscrew.geometry.grids import Grid
 from feederscrew.heavy import heavy
+from feederscrew.mechanics.limits import Regime
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import PHASE_WORDS, Frame, regime_words, row_of
@@ -118,7 +120,7 @@ def remarks(document: Mapping[str, Any]) -> list[str]:
             "this velocity is reached from rest; a part that once slides down fast enough does not stop "
             "again: the climb is as steep as kinetic friction or steeper"
         )
-    if document["status"] == "averaged":
+    if document["status"] == MotionStatus.AVERAGED:
         lines.append(
             f"not periodic: an average; means over {steady.AVERAGED_PERIODS} periods span "
             f"{_range_text(low, high)} mm/s, single periods {_slowest_to_fastest(document)}"
@@ -171,8 +173,8 @@ def _in_mm_s(columns: Mapping[str, Array]) -> dict[str, Array]:
 def cell_remarks(status: Array, several: Bools) -> list[str]:
     """Return how many cells of a map or a curve have no steady velocity, no period, several velocities."""
     counts = {
-        "no steady state": (status == "no steady state").sum(),
-        "no period (averaged)": (status == "averaged").sum(),
+        "no steady state": (status == MotionStatus.NO_STEADY_STATE).sum(),
+        "no period (averaged)": (status == MotionStatus.AVERAGED).sum(),
         "several velocities": several.sum(),
     }
     return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
@@ -252,10 +254,14 @@ def map_offers(study: ConveyMap) -> list[offer.Offer]:
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
 PHASE_LINES = {"stick": "-", "forward": "-", "backward": "--", "flight": ":"}
-CONVEY_COLOURS = {  # what a designer wants is the strongest
-    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#c9dcea",
-    "no steady state": "#8c8c8c",
-}  # fmt: skip
+CONVEY_COLOURS: dict[str, str] = {  # what a designer wants is the strongest
+    Regime.STICK: "#eef2f5",
+    Regime.FORWARD: "#79bfa4",
+    Regime.BACKWARD: "#e3a08a",
+    Regime.BOTH: "#f3dfae",
+    Regime.HOP: "#c9dcea",
+    Regime.NO_STEADY_STATE: "#8c8c8c",
+}
 THROW_NAMES = {  # near 3 the velocity per stroke has its first peak, without rebound
     1.0: "hop", 3.0: "first peak", round(throw_of_flight(1.0), 4): "one period",
 }  # fmt: skip
@@ -290,7 +296,7 @@ def cycle_title(trace: steady.CycleTrace, solution: answer.Answer) -> str:
         return f"No steady state: {periods} periods without friction, from rest"
     if solution.unsteady:
         return f"No steady state: {periods} periods of a slide that does not stop"
-    if solution.status == "averaged":
+    if solution.status is MotionStatus.AVERAGED:
         return f"{periods} periods of a motion that does not repeat: {velocity} on average"
     if periods < solution.period:
         return f"{periods} of the {solution.period} periods of a steady cycle: {velocity}"

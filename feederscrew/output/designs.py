@@ -30,7 +30,6 @@ from feederscrew.output.tooling import settings_lines
 from feederscrew.part.record import Part
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -156,16 +155,6 @@ def short_alternatives(study: DesignStudy) -> Frame:
     return tables.frame(alternatives(study) | {"chain": chains})
 
 
-def short_device(text: str) -> str:
-    """Return a device of a bowl file for a page: 'narrowed track 13.35 mm' of 'narrowed_track: 13.35 mm'.
-
-    Of one with several values it is the name alone: the drawings have them.
-    """
-    kind, _, value = text.partition(": ")
-    name = (KINDS[kind].trade if kind in KINDS else "") or kind.replace("_", " ")
-    return name if value.startswith(("{", "[")) else f"{name} {value}".rstrip()
-
-
 def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
     """Return the rows of a long ride as a table."""
     becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
@@ -268,9 +257,7 @@ def attempts(study: DesignStudy) -> Frame:
 
 def short_attempts(study: DesignStudy) -> Frame:
     """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
-    chains = []
-    for attempt in study.attempts:
-        chains.append(", ".join(map(short_device, attempt.chain)) or "none")
+    chains = [", ".join(attempt.chain_brief) or "none" for attempt in study.attempts]
     history = attempts(study).without(["peak_to_peak_mm"])  # the throw number says as much
     return tables.frame(history | {"chain": chains})
 

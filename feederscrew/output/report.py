@@ -19,6 +19,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import UnsteadyMotion
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import HOP
+from feederscrew.mechanics.limits import Regime
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output import convey as convey_output
 from feederscrew.output import floor as floor_output
@@ -70,7 +71,7 @@ from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.track_sections import Passage
-from feederscrew.trial.course import FATES
+from feederscrew.trial.course import Fate
 from feederscrew.units import DEG, MM, MM_S
 
 PART_FACTS = (  # rows of the inertia that the chapter on the part shows
@@ -83,7 +84,7 @@ HEADINGS = {  # columns of the table, and their names here
     "aspect_share": "p_of all drops", "length_mm": "length_mm", "width_mm": "width_mm",
     "overhang_mm": "overhang_mm", "falls_off": "falls off",
 }  # fmt: skip
-WORDS = tables.REGIME_WORDS | {"stick": "sticks, does not travel"}  # of a regime
+WORDS = tables.REGIME_WORDS | {Regime.STICK: "sticks, does not travel"}  # of a regime
 METHOD_LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
     "p_recommended knows how the part is launched, and none considers other parts. They disagree, "
@@ -484,7 +485,8 @@ def trial(case: ReportStudy) -> Chapter | None:
 
 def columns(counts: Ints) -> list[str]:
     """Return the columns of a trial's table that a page has room for: a fate has one where a part met it."""
-    fates = [name for name, count in zip(FATES, counts.sum(axis=0)) if count or name == "passed"]
+    met = counts.sum(axis=0)
+    fates = [fate.word for fate in Fate if met[fate] or fate is Fate.PASSED]
     went = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")
     return ["aspect", "heading_deg", "share", "tried", *fates, *went]
 

@@ -10,6 +10,7 @@ from feederscrew.arrays import Floats
 from feederscrew.bowl import texts
 from feederscrew.bowl.reading import Setting
 from feederscrew.heavy import heavy
+from feederscrew.mechanics.limits import Regime
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame, regime_words
@@ -41,9 +42,13 @@ RATIO = "acceleration ratio G = A ω² / g [1]"
 FRICTION = "limiting friction μ [1]"
 HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has more
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
-SLIDE_COLOURS = {  # what a designer wants is the strongest; a hop is hatched as well
-    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#e1e5e8",
-}  # fmt: skip
+SLIDE_COLOURS: dict[str, str] = {  # what a designer wants is the strongest; a hop is hatched as well
+    Regime.STICK: "#eef2f5",
+    Regime.FORWARD: "#79bfa4",
+    Regime.BACKWARD: "#e3a08a",
+    Regime.BOTH: "#f3dfae",
+    Regime.HOP: "#e1e5e8",
+}
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
 LEVEL_COLOURS = "cividis"
 OWN_LABEL = "this bowl"
@@ -109,9 +114,9 @@ def remarks(study: SlideStudy) -> list[str]:
     for slide_map in study.maps:
         shares, beta = slide_map.grid.shares(), f"beta = {np.degrees(slide_map.beta):.6g} deg"
         empty, cells = slide_map.grid.unanswered("mu_limit"), slide_map.grid.codes.size
-        if shares["hop"] == 0.0:
+        if shares[Regime.HOP] == 0.0:
             lines.append(f"{beta}: the drive does not lift the part, so no cell hops.")
-        if shares["stick"] + shares["hop"] == 1.0:
+        if shares[Regime.STICK] + shares[Regime.HOP] == 1.0:
             lines.append(f"{beta}: nothing slips before it hops at static friction {slide_map.friction:g}.")
         if empty:
             lines.append(
@@ -210,7 +215,9 @@ def regimes(slide: SlideMap, ax: "Axes | None" = None) -> "Figure":
     axes.imshow(cells, extent=(-widest, widest, 0, top), **look)
     _hop_region(axes, slide, slide.onsets["hop"])
     # colours of the regimes that are on the map but too thin to be named there
-    unlabelled = [name for name in slide.grid.names if name != "hop" and not _label_region(axes, slide, name)]
+    unlabelled = [
+        name for name in slide.grid.names if name != Regime.HOP and not _label_region(axes, slide, name)
+    ]
     shares = slide.grid.shares()
     patches = [
         mpl_patches.Patch(color=SLIDE_COLOURS[name], label=regime_words(name))
@@ -260,7 +267,7 @@ def _hop_region(axes: "Axes", slide: SlideMap, start: float) -> None:
     if start >= top:
         return
     with matplotlib.rc_context({"hatch.color": "#b4bcc3", "hatch.linewidth": 0.5}):
-        axes.axhspan(start, top, facecolor=SLIDE_COLOURS["hop"], hatch="////", linewidth=0, zorder=1.5)
+        axes.axhspan(start, top, facecolor=SLIDE_COLOURS[Regime.HOP], hatch="////", linewidth=0, zorder=1.5)
     axes.axhline(start, color=style.INK, linewidth=1.0, zorder=1.6)
     x = -0.5 * axes.get_xlim()[1] if slide.ratio > start else 0.0  # beside the bowl's own point
     text = "no friction prevents forward slip (part hops)"

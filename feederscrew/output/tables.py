@@ -14,6 +14,7 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.arrays import Array
+from feederscrew.mechanics.limits import Regime
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -34,10 +35,13 @@ GAP, LEAST = "  ", 12  # between columns; letters that a column always has
 SLENDER = 20  # letters of a column of texts that is never made narrower so that the others fit beside it
 PAGE = 100  # letters of a line that a table for people should not be wider than
 PHASE_WORDS = {"stick": "sticks", "forward": "slips forward", "backward": "slips back", "flight": "flies"}
-REGIME_WORDS = {  # of a regime's name in files
-    "stick": "sticks", "forward": "slips forward only", "backward": "slips back only",
-    "both": "slips both ways", "hop": "hops",
-}  # fmt: skip
+REGIME_WORDS: dict[str, str] = {  # of a regime's name in files
+    Regime.STICK: "sticks",
+    Regime.FORWARD: "slips forward only",
+    Regime.BACKWARD: "slips back only",
+    Regime.BOTH: "slips both ways",
+    Regime.HOP: "hops",
+}
 HEADING_ZERO = (
     "at heading 0 the middle of the face it rests on lies ahead of its centre of mass, in the direction of "
     "travel (where it lies below it: the longest side of the outline lies along the track)"

@@ -217,7 +217,7 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     if not design.efficiency > 0.0:
         leave = "none of the parts offered leaves so"
     if tried is not None and tried.faults:
-        lead = f"{orientation.name} is not isolated: {tried.sentence.partition(': ')[2]}"
+        lead = f"{orientation.name} is not isolated: {tried.verdicts}"
     elif tried is None:
         lead = f"{orientation.name} is {'' if study.isolates(wanted_row) else 'not '}isolated: {leave}"
     else:

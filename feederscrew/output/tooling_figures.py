@@ -81,7 +81,8 @@ def chain(
                 word = f"{word}; else returned by {other.name}"
         else:
             word = f"{passages[-1].fate} by {passages[-1].device.name}"
-        colour = PASSED_COLOUR if through and word.startswith("leaves") else REJECTED_COLOUR
+        last = passages[-1].after if passages else orientation
+        colour = PASSED_COLOUR if through and not last.returned else REJECTED_COLOUR
         write_text(page, left + 16, top + 30, orientation.name, size=12, weight="bold", colour=colour)
         write_text(page, left + 16, top + 52, f"{100.0 * shares[k]:.3g} % of the parts")
         texts: list[tuple[str, style.Look]] = [(text, {"colour": colour}) for text in textwrap.wrap(word, 24)]

@@ -12,10 +12,13 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME, Key
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.mechanics.limits import Regime
 
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
 # regimes, the most wanted first
-REGIMES_BY_GENTLENESS = ("forward", "stick", "both", "backward", "hop", "no steady state")
+REGIMES_BY_GENTLENESS = (
+    Regime.FORWARD, Regime.STICK, Regime.BOTH, Regime.BACKWARD, Regime.HOP, Regime.NO_STEADY_STATE,
+)  # fmt: skip
 KNOB_SAMPLES = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
 KNOB_BISECTIONS = 24  # of a step of KNOB_SAMPLES, to 3e-10 of a knob's range

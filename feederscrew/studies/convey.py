@@ -14,7 +14,7 @@ from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer, steady
 from feederscrew.conveying.answer import Neighbours
-from feederscrew.conveying.steady import STATUSES
+from feederscrew.conveying.steady import STATUSES, MotionStatus
 from feederscrew.geometry import grids
 from feederscrew.machine import checks
 from feederscrew.records import ReadableRecord
@@ -78,7 +78,7 @@ class ConveyCurve(ReadableRecord):
     def several(self) -> Bools:
         """Return where a part has several steady velocities, (N,) bool."""
         spread, high = self.cells["high"] - self.cells["low"], np.abs(self.cells["high"])
-        return (self.statuses == "periodic") & (spread > answer.COEXISTING_VELOCITY_GAP * high)
+        return (self.statuses == MotionStatus.PERIODIC) & (spread > answer.COEXISTING_VELOCITY_GAP * high)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from feederscrew.arrays import Array, Floats, Reals
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, GridAxis, evaluate
 from feederscrew.mechanics import limits
+from feederscrew.mechanics.limits import Regime
 from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity, former_keywords
@@ -37,7 +38,7 @@ class SlideMap(ReadableRecord):
     alpha_minus_theta: float  # [rad] of a part that faces along the bowl's track
     friction: float  # [1] static
     at_bowl: dict[str, float]  # mu_limit, mu_forward, mu_backward, throw_number at the bowl's own point
-    regime: str  # there
+    regime: Regime  # there
     onsets: dict[str, float]  # [1] G of forward slip, backward slip and hop at the bowl's heading
     level_hop: float  # [1] G of the hop on a level floor, the pole of mu_limit
 

@@ -6,14 +6,17 @@ Trials, draws and queues are drawn by chance here: every kind of fault comes up,
 import hashlib
 import inspect
 import zlib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from design_counts import design_study, short_trial
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import exploring, loop, proposals, queues, record, short_trials, texts
+from feederscrew.designing import exploring, loop, nearest, proposals, queues, record, short_trials, texts
 from feederscrew.designing.findings import End, Fault, FaultKind, LeavingPose, PoseKind
 from feederscrew.designing.record import DesignRequest, FilledQueue, RobustRun
+from feederscrew.designing.search import Search
 from feederscrew.studies.rate import Shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.trial.course import Fate
@@ -177,3 +180,62 @@ def test_scrambled_sentences_change_no_decision(by_chance, monkeypatch):
     # the search did something: moves of several kinds, designs that hold and others that do not
     kinds = {move for _, _, _, _, tried, _, _ in plain for _, move, *_ in tried}
     assert len(kinds) >= 5 and len({status for status, *_ in plain}) >= 2
+
+
+NAMES = (
+    "A",
+    "lost_side",
+    "A at b (c)",
+    "is lost (stopped at gap",
+    "nothing leaves",
+)  # of an aspect, by its user
+
+
+@pytest.fixture
+def answer_to(monkeypatch, block):
+    """What a search does about a fault that most draws show: its moves are noted, and none is tried."""
+    moves = []
+
+    def note(name):
+        return lambda *_, **__: moves.append(name)
+
+    for module, name in (
+        (exploring, "try_livelier"), (exploring, "try_calmer"), (proposals, "_widen_slot"),
+        (proposals, "_cut_more"), (loop, "_faster"),
+    ):  # fmt: skip
+        monkeypatch.setattr(module, name, note(name))
+    wiper = SimpleNamespace(device=SimpleNamespace(overhead=True, hangs=False, kind="wiper"))
+    trial = short_trial(block.ways, (0,))
+
+    def call(fault):
+        moves.clear()
+        search = Search.begin(block.part, DesignRequest(0.5), bowls.default())
+        robust = RobustRun(20, 12, fault.counted_in_draws(8, 20))
+        study = design_study(block.part, robust=robust)
+        candidate = SimpleNamespace(
+            proposal=SimpleNamespace(cuts=(wiper,)), orientations=block.ways, bowl=study.bowl, trial=trial,
+            worst=robust.worst, attempt=SimpleNamespace(clean=False),
+        )  # fmt: skip
+        exploring._find_calmer(search, candidate)
+        loop._change_by_proof(search, study, candidate)
+        return (*moves, nearest._by_motion(study), study.cause, study.status)
+
+    return call
+
+
+def test_neither_a_sentence_nor_the_name_of_an_aspect_changes_what_a_fault_leads_to(answer_to, monkeypatch):
+    """Every kind of fault, at every place and end of its parts, by five names; then with texts scrambled."""
+    places = [(station, kind, kind) for station, kind in enumerate(("", "wiper", "gap"))]
+    ends = [(), *((End(fate, *place),) for fate in Fate for place in places)]
+    kinds = FaultKind.LOST, FaultKind.CARRIED, FaultKind.STAYS, FaultKind.NOTHING_LEAVES
+
+    def answers(name):
+        return [answer_to(Fault(kind, name, 0, some)) for kind in kinds for some in ends]
+
+    plain = answers("A")
+    assert len(set(plain)) >= 8 and {move for moves in plain for move in moves[:-3]} == {
+        "try_livelier", "try_calmer", "_widen_slot", "_cut_more", "_faster",
+    }  # fmt: skip
+    assert all(answers(name) == plain for name in NAMES)
+    scramble_all(monkeypatch)
+    assert all(answers(name) == plain for name in NAMES)

@@ -22,10 +22,12 @@ from design_counts import (
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import calm_drive, exploring, loop, nearest, proposals, queues
-from feederscrew.designing.exploring import Candidate, Search
 from feederscrew.designing.findings import Cause, LeavingPose, Move, MoveKind, PoseKind
 from feederscrew.designing.loop import alternatives
+from feederscrew.designing.policy import USUAL_POLICY
+from feederscrew.designing.progress import SearchProgress, SearchStage
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, RobustRun
+from feederscrew.designing.search import BankedTrack, Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
@@ -69,8 +71,8 @@ def candidate(ways, bowl=BOWL, fault=(), **more):
 def searching(*passed, **request):
     """A search that has passed some candidates, and what it says."""
     said = []
-    made = Search(PART, DesignRequest(10.0, **request), BOWL, frozenset(), said.append)
-    made.clean += passed
+    made = Search.begin(PART, DesignRequest(10.0, **request), BOWL, progress=SearchProgress(said.append))
+    made.state.clean += passed
     return made, said
 
 
@@ -132,9 +134,9 @@ def test_what_was_clean_and_slow_is_proved_until_one_holds_and_counted_where_non
     assert len([text for text in said if text.startswith("nearest that holds")]) == 2
     search, _ = searching(*(candidate(ways, rate=20.0 + k) for k in range(9)))
     monkeypatch.setattr(exploring, "candidates", lambda free: iter(()))
-    search.attempts += [attempt()] * 9
+    search.state.attempts += [attempt()] * 9
     found, made = nothing_near(search, lambda *_: study(600.0, queues=fills(jams=1)))
-    assert made is None and found.rate is None and len(found.denied) == nearest.PROOFS
+    assert made is None and found.rate is None and len(found.denied) == USUAL_POLICY.near_proofs
     assert (found.trials, found.proofs) == (9, 3) and "nothing near it holds" in found.text
     assert designs.nearest(replace(study(600.0), nearest=found))["rate_per_minute"] is None
     with pytest.raises(KeyboardInterrupt):
@@ -145,7 +147,7 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     """At the lively drive both wanted parts turn on the track; at the calmer one both pass."""
     search, _ = searching()
     ways, strokes = block.ways, []
-    search.shares = SimpleNamespace(aspects=block.aspects, measured=None)
+    search.state.shares = SimpleNamespace(aspects=block.aspects, measured=None)
     monkeypatch.setattr(exploring.stream, "oriented", lambda known, _: known)
 
     def short(_, bowl, ways, weights, proposal):
@@ -158,8 +160,8 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
     proposal = proposals.Proposal(0, (), (), Move(MoveKind.NO_DEVICE))
     found = list(exploring._try_and_mend(search, PLAIN, proposal, weights))
-    first, second = search.attempts
-    assert not found and len(search.clean) == 1  # clean, slower than 600 a minute
+    first, second = search.state.attempts
+    assert not found and len(search.state.clean) == 1  # clean, slower than 600 a minute
     assert first.cause == "drive" and not first.clean and second.clean and second.cause == ""
     assert first.peak_to_peak > second.peak_to_peak == 2.0 * strokes[1]
     assert first.faults[-1].is_on_bare_track and second.move.kind is MoveKind.CALMER_DRIVE
@@ -224,11 +226,11 @@ def test_a_queue_names_what_left_by_aspect_and_heading(block):
 def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
     search, said = searching(budget=7)
     order, told = [], []
-    search.before = lambda: order.append(len(said))
-    search.progress = lambda *row: told.append(row)
+    search.progress.before = lambda: order.append(len(said))
+    search.progress.report = lambda *row: told.append(row)
     search.begin_trial("A@0, no device")
-    search.attempts.append(attempt(0.0, (lost("A@0", TURNED_ON_TRACK),), Cause.DRIVE))
-    search.clock.end()
+    search.state.attempts.append(attempt(0.0, (lost("A@0", TURNED_ON_TRACK),), Cause.DRIVE))
+    search.progress.clock.end()
     search.begin_trial("A@0, calmer drive")
     assert order == [0]  # what is compiled is told before the first trial, once
     assert said[0].startswith("trial 1 of at most 7: A@0, no device")
@@ -236,9 +238,9 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
     assert [row[:3] for row in told] == [("trial", 0, 7), ("trial", 1, 7)]
     assert all(gone >= 0.0 and rest > 0.0 for *_, gone, rest in told)
     search.begin_proof("draws: A@0")
-    search.run("draws").tell(5, 20)
-    search.run("draws").tell(20, 20)
-    search.run("queue").tell(3000, 3000)
+    search.run(SearchStage.DRAWS).tell(5, 20)
+    search.run(SearchStage.DRAWS).tell(20, 20)
+    search.run(SearchStage.QUEUE).tell(3000, 3000)
     assert told[-1][:3] == ("queue", 3000, 3000) and told[-1][4] > 0.0
 
 
@@ -251,7 +253,7 @@ def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_t
         one = candidate(
             ways, bowl, (lost("A@0", end_at(Fate.RETURNED, "sorter")),), throw_number=throw_number(bowl)
         )
-        search.failures.append(replace(one, attempt=replace(one.attempt, efficiency=efficiency)))
+        search.state.failures.append(replace(one, attempt=replace(one.attempt, efficiency=efficiency)))
     found = list(nearest.variants(search, []))
     assert len(found) == len(drives_tried) == 2 and all("a calmer drive, " in one.change for one in found)
     for calmer, bowl in zip(drives_tried, (fast, lively), strict=True):
@@ -309,12 +311,12 @@ def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, dri
 
 def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(monkeypatch, ways):
     search, _ = searching(aspect="A", heading=0.0)
-    search.attempts += [attempt(0.0, ("nothing leaves as wanted",), "device")] * 5
+    search.state.attempts += [attempt(0.0, ("nothing leaves as wanted",), "device")] * 5
     asked = []
 
     def candidates(free):
         asked.append(free)
-        free.clean += [candidate(ways, rate=rate, wanted="B@0") for rate in (10.0, 30.0, 20.0)]
+        free.state.clean += [candidate(ways, rate=rate, wanted="B@0") for rate in (10.0, 30.0, 20.0)]
         yield candidate(ways, rate=900.0, wanted="C@0")
 
     monkeypatch.setattr(exploring, "candidates", candidates)
@@ -323,9 +325,8 @@ def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(mon
     assert all("another way up" in one.change and not one.as_requested for one in found)
     (free,) = asked
     assert (free.request.aspect, free.request.heading, free.request.target) == (None, None, 10.0)
-    assert free.limit == len(search.attempts) + nearest.FREE_TRIALS and not search.clean
-    search.request = DesignRequest(10.0)
-    assert list(nearest.variants(search, [])) == []
+    assert free.limit == len(search.state.attempts) + USUAL_POLICY.other_way_trials and not search.state.clean
+    assert list(nearest.variants(replace(search, request=DesignRequest(10.0)), [])) == []
 
 
 def test_the_cause_is_of_what_was_asked_for_and_of_nothing_that_holds():
@@ -378,8 +379,8 @@ def classes(monkeypatch):
     lying = [SimpleNamespace(name=f"{aspect}@0", aspect=aspect) for aspect in "AB"]
     for place, bank in enumerate((3.0, 0.0)):
         banked = SimpleNamespace(bowl=replace(BOWL, track=replace(BOWL.track, bank=np.radians(bank))))
-        track = banked, SimpleNamespace(lying=lying), shares, [0, 1], exploring.BANK_RANK**place
-        search.tracks.append(exploring._BankedTrack(*track))
+        track = banked, SimpleNamespace(lying=lying), shares, [0, 1], USUAL_POLICY.bank_rank**place
+        search.state.tracks.append(BankedTrack(*track))
     monkeypatch.setattr(exploring.proposals, "propose_no_device", lambda *_: None)
     monkeypatch.setattr(exploring, "_promise", lambda search, track, row, way: shares[row])
 
@@ -389,8 +390,8 @@ def classes(monkeypatch):
         return proposals.Proposal(row, (), (device,), PROPOSED)
 
     def tried_out(search, made_bowl, proposal, weights):
-        search.attempts.append(attempt(faults=(carried("B@0"),), cost_class=1))
-        search.chains.add(exploring.chain_key(made_bowl.bowl.track, proposal, lying))
+        search.state.attempts.append(attempt(faults=(carried("B@0"),), cost_class=1))
+        search.state.chains.add(exploring.chain_key(made_bowl.bowl.track, proposal, lying))
         yield from ()
 
     monkeypatch.setattr(exploring, "_propose", proposed)
@@ -404,26 +405,40 @@ def test_the_oftener_orientation_is_first_and_a_class_has_its_share_of_the_trial
     assert not list(exploring.candidates(search, 1))
     assert asked[0][:2] == (3, 0) and asked[1][1] == 0
     assert {bank for bank, _, _ in asked[:6]} == {3, 0}
-    assert len(search.attempts) == 5  # half of ten
+    assert len(search.state.attempts) == 5  # half of ten
     for cost_class, count in ((2, 7), (3, 10)):  # the first two 70 %
         list(exploring.candidates(search, cost_class))
-        assert len(search.attempts) == count
-    search.request = replace(search.request, budget=1000)
+        assert len(search.state.attempts) == count
+    search = replace(search, request=replace(search.request, budget=1000))
     list(exploring.candidates(search, 1))
     assert {row for _, row, way in asked if way.turns} == {1}
 
 
 def test_the_same_chain_is_not_tried_twice_nor_one_that_differs_by_a_hair():
     def key(*devices):
-        proposal = proposals.Proposal(0, (), devices, "test")
+        proposal = proposals.Proposal(0, (), devices, PROPOSED)
         return exploring.chain_key(BOWL.track, proposal, [SimpleNamespace(name="A@0")])
+
+    def alike(one, other):
+        return exploring._is_alike(key(*one), key(*other), USUAL_POLICY)
 
     first = make_device("sorter", "test", like=("A", 0.0, 1e-3), also=(("B", 1.0),)).rewritten()
     other = make_device("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),)).rewritten()
     assert first.text != other.text and key(first) == key(other)
     near, far = (make_device("gap", "test", limit=limit).rewritten() for limit in (9.05e-3, 9.5e-3))
-    assert exploring._is_alike(key(GAP), key(near)) and not exploring._is_alike(key(GAP), key(far))
-    assert not exploring._is_alike(key(GAP), key(GAP, GAP))
+    assert alike([GAP], [near]) and not alike([GAP], [far]) and not alike([GAP], [GAP, GAP])
+    assert not alike([GAP], [make_device("wiper", "test", limit=9e-3)])
+    # a gap that a user wrote otherwise, at another place, is the same gap
+    assert key(GAP) == key(make_device("gap", "bowl.yaml:7:5", limit=9e-3, text="0.9 cm"))
+    # a tenth of a degree of an angle makes no difference, two degrees do
+    blade, turned, other_blade = (
+        make_device("wiper", "test", limit=9e-3, sweep=np.radians(angle)) for angle in (1.0, 1.09, 3.0)
+    )
+    assert alike([blade], [turned]) and not alike([blade], [other_blade])
+    # what a camera lets pass and how closely it looks
+    coarse = make_device("sorter", "test", like=("B", 1.0, 2e-3), also=(("A", 0.0),))
+    side = make_device("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),), sees="side")
+    assert not alike([first], [coarse]) and not alike([first], [side])
 
 
 @pytest.mark.parametrize("every, asked", [(False, [1]), (True, [1, 2, 3])])

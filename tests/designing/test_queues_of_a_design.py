@@ -12,8 +12,10 @@ from scipy.stats import binom
 from feederscrew import bowl as bowls
 from feederscrew.designing import acceptance_sheet, calm_drive, loop, proposals, queues, short_trials
 from feederscrew.designing.findings import Move, MoveKind
+from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import DesignRequest, DesignStudy, RobustRun, share_interval
+from feederscrew.designing.search import Search
 from feederscrew.errors import FeederError
 from feederscrew.output import design_pages, designs
 from feederscrew.output import tables as tables_of
@@ -171,17 +173,17 @@ def prove(monkeypatch):
 
     def call(first, second, results):
         tried, proofs = [], []
-        search = SimpleNamespace(min_speed=0.0, kept_keys=(), request=DesignRequest(1.0), is_spent=False)
+        search = Search.begin(None, DesignRequest(1.0), BOWL)
 
         def attempted(search, made, proposal, weights, driven=None):
-            tried.append((proposal, driven, search.min_speed))
+            tried.append((proposal, driven, search.state.min_speed))
             return second
 
         monkeypatch.setattr(loop, "prove_design", lambda search, candidate, whole: results[candidate.bowl])
         monkeypatch.setattr(loop.exploring, "try_proposal", attempted)
         monkeypatch.setattr(loop.exploring, "_screen", lambda search, candidate: candidate)
         loop._prove(search, first, proofs)
-        assert search.min_speed == 0.0
+        assert search.state.min_speed == 0.0
         return [one for one, _ in proofs], tried
 
     return call
@@ -205,12 +207,12 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
     monkeypatch.setattr(loop.proposals, "mend_proposal", lambda *chain: None)
 
     def driven_for(search, made, proposal, weights):
-        asked.append(search.min_speed)
+        asked.append(search.state.min_speed)
         return other
 
     monkeypatch.setattr(loop.exploring, "drive_for_target", driven_for)
     studies, tried = prove(*candidates_of(BOWL, other.drive), {other: study(held=19), BOWL: slow})
-    assert asked == [pytest.approx(loop.FASTER * calm_drive.speed(BOWL))]
+    assert asked == [pytest.approx(USUAL_POLICY.faster * calm_drive.speed(BOWL))]
     assert len(studies) == proved == len(tried) + 1
 
 
@@ -245,12 +247,12 @@ def test_what_stays_at_a_blade_is_tried_at_a_livelier_drive(monkeypatch, fault, 
         plain_bowl=lambda search: None,
     )  # fmt: skip
     clean = SimpleNamespace(attempt=SimpleNamespace(clean=True, rate=2.0))
-    search = SimpleNamespace(is_spent=False, clean=[], request=DesignRequest(1.0))
+    search = Search.begin(None, DesignRequest(1.0), BOWL)
     monkeypatch.setattr(loop.exploring, "_screen", lambda search, candidate: candidate)
     monkeypatch.setattr(loop.exploring, "try_proposal", lambda *given: drives.append(given[-1]) or clean)
     monkeypatch.setattr(loop.calm_drive, "find_livelier", lambda made, own: bowls.default())
     assert loop.exploring._find_livelier(search, first) is (clean if count else None)
-    assert len(drives) == len(search.clean) == count
+    assert len(drives) == len(search.state.clean) == count
 
 
 @pytest.mark.parametrize(("content", "fault"), [

@@ -18,10 +18,10 @@ from scipy import stats
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.designing import exploring, proposals, short_trials, texts
-from feederscrew.designing.exploring import Search
 from feederscrew.designing.findings import LeavingPose, Move, MoveKind, PoseKind
 from feederscrew.designing.proposals import PULSE_RESERVE, PULSE_STEP_S, SHORTEST_PULSE_STEPS, lengthen_pulse
 from feederscrew.designing.record import Attempt, DesignRequest
+from feederscrew.designing.search import Search
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
@@ -175,7 +175,7 @@ def quarter(block):
 def test_a_bowl_is_driven_for_1_6_times_what_is_asked_for(block, quarter, apart):
     """Parts 1.5 lengths and a gap apart at 0.5 a second, of which a quarter is wanted."""
     weights, mean = quarter
-    search = Search(block.part, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
+    search = Search.begin(block.part, DesignRequest(0.5), bowls.default())
     needed = 1.6 * 0.5 * (1.5 * mean + apart) / 0.25
     found = exploring.required_velocity(search, block.ways, weights, 0.25, apart)
     assert found == pytest.approx(needed, rel=1e-12)
@@ -199,7 +199,7 @@ def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block, quart
 @pytest.mark.parametrize(("rate", "share"), [(0.5, 0.9), (0.6, 0.75), (5.0, 0.5), (0.1, 1.0)])
 def test_what_may_come_back_in_a_draw_is_what_the_target_does_not_take(rate, share):
     """0.9 of the target of 0.5 a second, over the rate of the short trial; half at least."""
-    search = Search(None, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
+    search = Search.begin(None, DesignRequest(0.5), bowls.default())
     attempt = Attempt("A@0", "A", (), Move(MoveKind.PROPOSED), 0.0, 0.1, 2, 1.0, 1.0, 0.0, rate, ())
     assert search.share_needed(attempt) == pytest.approx(share)
 

@@ -38,6 +38,8 @@ from feederscrew.studies.floor import floor
 from feederscrew.studies.headings import headings
 from feederscrew.studies.slide import sliding_map
 from feederscrew.studies.track import track
+from feederscrew.tooling.devices.kinds import make_device
+from feederscrew.trial.course import Fate
 
 LOOKED_AT = True
 
@@ -166,9 +168,13 @@ def test_a_contact_sheet_says_why_a_rate_is_zero_or_a_part_failed():
 
 def test_a_ride_is_named_by_its_device_and_the_history_of_a_loop_can_be_read():
     values = {"gap": "9 mm", "cut-out": "[[0 mm]]", "vision reject": "{of: A@90, play: 0.2 mm}"}
-    devices = [SimpleNamespace(name=name, short=short) for name, short in values.items()]
+    devices = [
+        SimpleNamespace(name=name, short=short, is_one_value=name == "gap") for name, short in values.items()
+    ]
     section = SimpleNamespace(stations=[SimpleNamespace(device=one) for one in devices])
-    titles = [DeviceRide(place, "A@0", "rolled_back", np.zeros((1, 8))).title(section) for place in range(3)]
+    titles = [
+        DeviceRide(place, "A@0", Fate.ROLLED_BACK, np.zeros((1, 8))).title(section) for place in range(3)
+    ]
     assert titles == [f"A@0 at {name}: rolled back" for name in ("gap 9 mm", "cut-out", "vision reject")]
     # The history of a loop can be read: once it was 7 x 3 pixels.
     attempts = [SimpleNamespace(rate=0.5 * k, clean=k > 1, wanted="A@0") for k in (1, 2)]
@@ -487,8 +493,11 @@ def test_the_captions_of_views_side_by_side_stay_over_their_own(monkeypatch):
 
 def test_devices_and_shares_of_a_design_are_in_words_on_its_page():
     """The page had a dump of YAML, and a yield of 0.0030 where the text says 0.299 %."""
-    assert designs.short_device("narrowed_track: 13.35 mm") == "narrowed track 13.35 mm"
-    assert designs.short_device("sorter: {of: A@90, play: 0.2 mm}") == "vision reject"
+    narrowed, sorter = (
+        make_device("narrowed_track", "test", limit=13.35e-3).rewritten(),
+        make_device("sorter", "test", like=("A", 0.5 * np.pi, 2e-4)).rewritten(),
+    )
+    assert (narrowed.brief, sorter.brief) == ("narrowed track 13.35 mm", "vision reject")
     chain = ("sorter: {of: A@90}",), ("camera from above",)
     option = Alternative(3, "holds", (1.0, 0.9, 1.1), 1.0, 0.00299, *chain)
     study = SimpleNamespace(alternatives=(option, Alternative(1, "not tried")))

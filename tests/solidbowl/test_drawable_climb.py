@@ -9,8 +9,9 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew import units
 from feederscrew.designing import calm_drive, exploring, proposals
-from feederscrew.designing.exploring import Search
+from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.search import Search
 from feederscrew.resting.aspects import find
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME, TrackTooLow
 from feederscrew.studies import bowl as machines
@@ -73,11 +74,11 @@ def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeyp
         raise Stop
 
     monkeypatch.setattr(exploring.short_trials, "try_parts", single)
-    search = Search(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, frozenset(fixed), print)
-    search.shares = shares(PART, made.bowl, rule="csa")
+    search = Search.begin(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, fixed)
+    search.state.shares = shares(PART, made.bowl, rule="csa")
     count = len(on_track(made, devices)[1].lying)
     cuts = tuple(Cut(one, np.nan, np.nan, one, one, ()) for one in devices)
-    proposal = proposals.Proposal(0, cuts, (), "test")
+    proposal = proposals.Proposal(0, cuts, (), Move(MoveKind.NO_DEVICE))
     with pytest.raises(Stop):
         exploring.try_proposal(search, made, proposal, np.full(count, 1.0 / count))
     (bowl,) = bowls_tried

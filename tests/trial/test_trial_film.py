@@ -19,6 +19,7 @@ from feederscrew.output.trial.figures import unroll_path
 from feederscrew.output.trial.rides import rides_to_show
 from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
+from feederscrew.trial.course import Fate
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +43,7 @@ def test_air_is_drawn_while_the_sensor_lets_it_blow(study, small):
     """The part that lies across is blown off: its jets blow as it comes to them at its own speed."""
     run = study.runs[0]
     passing, rejected = rides_to_show(study.part, run)
-    assert (passing.fate, passing.blows) == ("passed", None) and rejected.fate == "returned"
+    assert (passing.fate, passing.blows) == (Fate.PASSED, None) and rejected.fate is Fate.RETURNED
     stage, radius = run.course.stations[rejected.place], run.bowl.track.radius
     (watch,), (begin, end) = stage.air.watches, rejected.blows
     ways, _ = unroll_path(rejected.path, radius)

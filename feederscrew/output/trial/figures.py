@@ -9,19 +9,22 @@ from matplotlib.patches import Polygon
 from feederscrew.arrays import Floats, Points
 from feederscrew.output import style
 from feederscrew.trial import course, runs
+from feederscrew.trial.course import Fate
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.staging import Stage
 from feederscrew.units import MM
 
-LOOKS = {  # of each fate: colour, told apart by colour-blind eyes, line, and mark where the path ends
-    "passed": ("#0072b2", "-", ""),
-    "turned": ("#009e73", "--", "D"),
-    "returned": ("#d55e00", "-", "x"),
-    "blown off": ("#882255", "-", "^"),
-    "hanging": ("#cc79a7", "-", "v"),
-    "stopped": ("#e69f00", "-", "s"),
-    "rolled_back": ("#7a5c3e", ":", "<"),
-    "stuck": ("#000000", "-", "*"),
+BLOWN_OFF = None  # in place of the fate of a returned part, where a sensor saw it
+# of each fate: colour, told apart by colour-blind eyes, line, and mark where the path ends
+LOOKS: dict[Fate | None, tuple[str, str, str]] = {
+    Fate.PASSED: ("#0072b2", "-", ""),
+    Fate.TURNED: ("#009e73", "--", "D"),
+    Fate.RETURNED: ("#d55e00", "-", "x"),
+    BLOWN_OFF: ("#882255", "-", "^"),
+    Fate.HANGING: ("#cc79a7", "-", "v"),
+    Fate.STOPPED: ("#e69f00", "-", "s"),
+    Fate.ROLLED_BACK: ("#7a5c3e", ":", "<"),
+    Fate.STUCK: ("#000000", "-", "*"),
 }
 TRACK, AIR_COLOUR = "#e3e8ec", "#009e73"
 PATHS_WIDTH_IN = 7.2  # [in] of a panel of paths
@@ -66,7 +69,7 @@ def paths(run: TrialRun) -> Figure:
     panel = PATHS_WIDTH_IN * high / span
     figure = style.figure(PATHS_WIDTH_IN + 0.9, 0.7 + (panel + 0.75) * len(sent.rides))
     panels = figure.subplots(len(sent.rides), 1, squeeze=False)[:, 0]
-    drawn_fates: dict[str, None] = {}  # fates in the picture
+    drawn_fates: set[Fate | None] = set()  # fates in the picture
     stations = zip(panels, sent.stations, sent.rides, sent.riders, flat_paths)
     for axes, station, ride, riders, flat in stations:
         axes.set_facecolor("white")
@@ -87,16 +90,17 @@ def paths(run: TrialRun) -> Figure:
                 look = {"xycoords": ("data", "axes fraction"), "ha": side, "fontsize": 7, "color": AIR_COLOUR}
                 style.note(axes, word, (where / MM, 1.0), (0, -8), **look)
         for rider, (along, off), outcome in zip(riders, flat, ride.outcomes):
-            fate = course.FATES[sent.fates[rider]]
-            fate = fate if outcome != runs.PASSED or fate == "turned" else "passed"  # turned: leaves so
+            fate: Fate | None = Fate(int(sent.fates[rider]))
+            if outcome == runs.PASSED and fate is not Fate.TURNED:  # turned: leaves so
+                fate = Fate.PASSED
             looks = [watch.place for watch in station.air.watches]
-            if fate == "returned" and any(along.max(initial=-1.0) >= place for place in looks):
-                fate = "blown off"
+            if fate is Fate.RETURNED and any(along.max(initial=-1.0) >= place for place in looks):
+                fate = BLOWN_OFF
             colour, line, mark = LOOKS[fate]
             axes.plot(along / MM, off / MM, line, color=colour, linewidth=0.7, alpha=0.7)
             if len(along):
                 axes.plot(along[-1] / MM, off[-1] / MM, mark, color=colour, markersize=4)
-            drawn_fates.setdefault(fate, None)
+            drawn_fates.add(fate)
         title = f"{station.device.name}: {station.device.value_words}".removesuffix(": ")
         title = "\n".join(textwrap.wrap(title, 88))
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
@@ -105,9 +109,14 @@ def paths(run: TrialRun) -> Figure:
         axes.set(xlim=(left, left + span), ylim=(-WALL_MARGIN_MM, high - WALL_MARGIN_MM), aspect="equal")
     for fate in (fate for fate in LOOKS if fate in drawn_fates):
         colour, line, mark = LOOKS[fate]
-        panels[0].plot([], [], line, color=colour, marker=mark, markersize=4, label=fate.replace("_", " "))
+        panels[0].plot([], [], line, color=colour, marker=mark, markersize=4, label=label_of(fate))
     style.legend(figure, ncols=len(LOOKS), fontsize=7)
     return figure
+
+
+def label_of(fate: Fate | None) -> str:
+    """Return the fate of a part as a legend has it: 'rolled back', 'blown off'."""
+    return "blown off" if fate is BLOWN_OFF else fate.word.replace("_", " ")
 
 
 def unroll_path(path: Floats, radius: float) -> tuple[Floats, Floats]:

@@ -22,6 +22,7 @@ from feederscrew.output.trial.rides import WALL, DeviceRide
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.tooling import solid
+from feederscrew.trial.course import Fate
 from feederscrew.trial.queue import QueuedParts
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.staging import Stage
@@ -262,7 +263,7 @@ def _poses(path: Floats, times: Floats) -> Floats:
 
 
 def _colour(ride: DeviceRide) -> Floats:
-    if ride.fate == "passed":
+    if ride.fate is Fate.PASSED:
         return STEEL_COLOUR
     return np.array([int(LOOKS[ride.fate][0][n : n + 2], 16) / 255 for n in (1, 3, 5)])
 

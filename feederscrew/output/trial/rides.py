@@ -18,6 +18,7 @@ from feederscrew.part.record import Part
 from feederscrew.tooling import solid
 from feederscrew.tooling.track_sections import bend_ring
 from feederscrew.trial import course, runs
+from feederscrew.trial.course import Fate
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
 from feederscrew.trial.staging import Stage
@@ -38,17 +39,21 @@ class DeviceRide:
 
     place: int  # station
     orientation: str  # it was laid down in
-    fate: str  # of course.FATES
+    fate: Fate
     path: Floats  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
     looked: float = np.nan  # [s] when the sensor looks at it; NaN without one
     blows: tuple[float, float] | None = None  # [s] from when to when jets blow at it; None where none does
 
     def title(self, sent: course.Course) -> str:
-        """'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
+        """Return 'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
+        return f"{self.orientation} {self.caption(sent)}"
+
+    def caption(self, sent: course.Course) -> str:
+        """Return the same without the orientation: 'at gap 9 mm: returned'."""
         device = sent.stations[self.place].device
-        value = "" if device.short.startswith(("{", "[")) else device.short
+        value = device.short if device.is_one_value else ""
         where = f"{device.name} {value}".strip()
-        return f"{self.orientation} at {where}: {self.fate.replace('_', ' ')}"
+        return f"at {where}: {self.fate.word.replace('_', ' ')}"
 
 
 def rides_to_show(part: Part, *tried: TrialRun) -> list[DeviceRide]:
@@ -71,7 +76,7 @@ def rides_to_show(part: Part, *tried: TrialRun) -> list[DeviceRide]:
                 continue
             number, path = sent.riders[place][riders[0]], ride.paths[riders[0]]
             path = path[np.isfinite(path[:, 0])]
-            fate = course.FATES[course.PASSED if passes else sent.fates[number]]
+            fate = Fate.PASSED if passes else Fate(int(sent.fates[number]))
             name = run.orientations.lying[sent.entry_rows[number]].name
             rides.append(DeviceRide(place, name, fate, path, *_air_at(part, run, sent.stations[place], path)))
             break
@@ -214,5 +219,5 @@ def scene(part: Part, *tried: TrialRun) -> tuple[dict[str, Any], list[tuple[str,
         start = {"quaternion": [short(q) for q in path[0, 4:]], "height": short(path[0, 3])}
         poses.append({"name": ride.orientation, **start, "contact": [], "track": 0, "path": place})
         paths.append(encode_base64(path, "<f4"))
-    captions = [(ride.orientation, ride.title(sent).partition(" ")[2]) for ride in rides]
+    captions = [(ride.orientation, ride.caption(sent)) for ride in rides]
     return view | {"reach": REACH, "tracks": [shading.track(*cut)], "paths": paths, "poses": poses}, captions

@@ -14,6 +14,7 @@ from feederscrew.output.convey import restitution_entry
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.trial import ENGINE, TrialStudy
 from feederscrew.trial import course
+from feederscrew.trial.course import Fate
 from feederscrew.trial.result import Outlet, TrialRun
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
@@ -132,7 +133,7 @@ def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]
 def spare(study: TrialStudy) -> tuple[Sequence[str], ...]:
     """Return groups of columns to leave out of a table that is too wide; fates of no part go first."""
     counts = sum(run.counts.sum(axis=0) for run in study.runs)
-    none = [name for name, count in zip(course.FATES, counts) if not count and name != "passed"]
+    none = [fate.word for fate in Fate if not counts[fate] and fate is not Fate.PASSED]
     measures = (*ENGINE_FIGURES, "length_mm", "velocity_mm_s")
     return measures, none, ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
 

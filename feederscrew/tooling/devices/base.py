@@ -5,11 +5,12 @@ track. A device hands over one `Standing`: holes, blades, slopes, jets and a sen
 `trial.staging` makes of it what the kernel takes.
 """
 
+import enum
 import math
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 import shapely
@@ -35,11 +36,23 @@ GRIP = 0.6  # [1] friction of a dry steel track
 LIMIT_TOLERANCE_M = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
-RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
 ENDLESS_HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
 YAML_MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
 ROOM_PER_DEVICE = 1.3  # a device has so many lengths of the longest part to itself
+WRITTEN_FIELDS = ("where", "text", "assumption")  # of a device, that say how it was written
+COMPARED_DIGITS = 7  # decimals of a value in SI units: a tenth of a micrometre
 DRAWN_LINE_M = 2e-4  # [m] the width with which a line along or across the track is drawn
+
+
+class DeviceFate(enum.StrEnum):
+    """What becomes at a device of a part that does not pass it as it came; tables print the word."""
+
+    RETURNED = "returned"
+    STOPPED = "stopped"
+    CARRIED = "carried"
+
+
+RETURNED, STOPPED, CARRIED = DeviceFate
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +139,13 @@ class Verdict:
         return not -UNSURE <= self.margin <= 0.0
 
 
+class ComparedValue(NamedTuple):
+    """A word or number of a device, to be compared with that of another one."""
+
+    value: str | float | None
+    is_angle: bool = False  # [rad]; other numbers are in SI units as well
+
+
 @dataclass(frozen=True)
 class Device:
     """One device of a chain: its values, and what its kind makes of them.
@@ -172,6 +192,7 @@ class Device:
     senses: ClassVar[bool] = False  # whether it sees parts and blows off others: air, no edge that is met
     serves: ClassVar[str] = ""  # what one that returns nothing is for
     searched: ClassVar[bool] = False  # whether a design looks for its shape, by many verdicts
+    angles: ClassVar[tuple[str, ...]] = ()  # its fields that are angles [rad]
     cost_class: ClassVar[int] = 1  # what it takes: 1 steel alone, 2 steady air, 3 a sensor with a valve
 
     # -- as it is read and written
@@ -207,9 +228,22 @@ class Device:
         return {"value_mm": (self.like[2] if self.like else self.limit) / MM}
 
     @property
-    def canonical_text(self) -> str:
-        """Its value as a bowl file has it, alike for devices that do the same."""
-        return self.text
+    def compared_values(self) -> tuple[ComparedValue, ...]:
+        """Everything that it does, as values one after another: the same for devices that do the same."""
+        own = (one.name for one in fields(self) if one.name not in WRITTEN_FIELDS)
+        return tuple(
+            value for name in own for value in compared(getattr(self, name), is_angle=name in self.angles)
+        )
+
+    @property
+    def is_one_value(self) -> bool:
+        """Whether a bowl file has one value of it, and neither a mapping nor a list."""
+        return not self.text.startswith(("{", "["))
+
+    @property
+    def brief(self) -> str:
+        """'narrowed track 13.35 mm'; of a device of several values its name alone: the drawings have them."""
+        return f"{self.name} {self.text}".rstrip() if self.is_one_value else self.name
 
     @property
     def label(self) -> str:
@@ -403,6 +437,32 @@ def box_ring(x0: float, x1: float, y0: float, y1: float) -> Points:
 def tall_of(orientations: "Sequence[Orientation]", least: float) -> float:
     """Return how tall [m] a gate is made: well over the tallest part, and a ``least`` height [m]."""
     return 2.0 * max(max(orientation.height for orientation in orientations), least) + GATE_FRAME_M
+
+
+def compared(value: Any, *, is_angle: bool = False) -> Iterator[ComparedValue]:
+    """Yield the words and numbers of a value of a device, one after another.
+
+    Parameters
+    ----------
+    value : str, number, None, or a tuple of such values
+        A tuple that begins with the name of an aspect goes on with its heading [rad].
+    is_angle : bool
+        Whether a number is an angle.
+
+    Yields
+    ------
+    ComparedValue
+        Numbers in SI units, to ``COMPARED_DIGITS`` decimals.
+    """
+    if isinstance(value, tuple):
+        yield ComparedValue(len(value))
+        is_orientation = len(value) > 1 and isinstance(value[0], str)
+        for k, item in enumerate(value):
+            yield from compared(item, is_angle=is_angle or (is_orientation and k == 1))
+    elif isinstance(value, int | float):
+        yield ComparedValue(round(float(value), COMPARED_DIGITS), is_angle)
+    else:
+        yield ComparedValue(value)
 
 
 def length_text(value: float) -> str:

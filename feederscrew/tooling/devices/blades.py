@@ -79,6 +79,7 @@ class Wiper(_Overhead):
     contour: tuple[tuple[float, float], ...] = ()  # [m] distance from the wall and clearance there
 
     kind = "wiper"
+    angles = ("sweep",)
     form = forms.either(forms.LENGTH_FORM, SWEPT)
     example = "6 mm"
     meaning = (

@@ -45,6 +45,7 @@ class Lean(Device):
     angle: float = 0.0  # [rad]
 
     leans = True
+    angles = ("angle",)
     layer = "SLOPE"
     labelled = True
     key: ClassVar[str] = ""  # of the angle in a mapping; '': it is written alone

@@ -23,6 +23,7 @@ from feederscrew.tooling.devices.base import (
     MM,
     RETURNED,
     UNSURE,
+    ComparedValue,
     Device,
     Jet,
     Sensor,
@@ -312,9 +313,11 @@ class Sorter(Device):
         return replace(self, time=time).rewritten()
 
     @property
-    def canonical_text(self) -> str:
+    def compared_values(self) -> tuple[ComparedValue, ...]:
+        # the order of the orientations that pass makes no difference
         first, *rest = sorted(self.names)
-        return replace(self, like=(*first, self.like[2]), also=tuple(rest)).value_text()
+        ordered = replace(self, like=(*first, self.like[2]), also=tuple(rest))
+        return super(Sorter, ordered).compared_values
 
     def value_text(self) -> str:
         names = [orientation_names.written(*orientation) for orientation in self.names]

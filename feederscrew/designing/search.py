@@ -1,0 +1,226 @@
+"""A search of a design: what it is asked, what it knows so far, how far it is, by which policy it goes on."""
+
+import functools
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from feederscrew.arrays import Floats
+from feederscrew.bowl.record import Bowl, Track
+from feederscrew.designing import calm_drive, proposals, short_trials
+from feederscrew.designing.findings import Fault
+from feederscrew.designing.policy import USUAL_POLICY, SearchPolicy
+from feederscrew.designing.progress import SearchProgress, SearchStage, TrialBudget
+from feederscrew.designing.proposals import Proposal
+from feederscrew.designing.record import RATE_KEPT, Attempt, DesignRequest, RobustRun
+from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING
+from feederscrew.part.record import Part
+from feederscrew.rates import stream
+from feederscrew.rates.stream import Orientations
+from feederscrew.running import RunSettings
+from feederscrew.studies.rate import Shares
+from feederscrew.tooling.devices.base import ComparedValue
+
+Place = tuple[float, int]  # bank [rad] of a track, and row of an orientation on it
+ChainKey = tuple[Track, str, tuple[tuple[str, tuple[ComparedValue, ...]], ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class BankedTrack:
+    """A bank of the track: the bowl without devices, and what comes along it."""
+
+    plain_bowl: calm_drive.PlainBowl
+    orientations: Orientations
+    weights: Floats  # (M,)
+    rows: list[int]  # those worth a try
+    rank: float  # [1] how likely the bank is to do
+
+    @functools.cached_property
+    def fastest(self) -> float:
+        """Velocity [m/s] at the fastest drive."""
+        return calm_drive.speed(calm_drive.drive_at(self.plain_bowl, np.inf, hops=True))
+
+
+@dataclass(eq=False)
+class SearchState:
+    """What a search has found so far; each of its steps reads and changes it."""
+
+    reserve: float  # [1] of the target, for which a bowl is driven
+    shares: Shares | None = None  # what arrives; None before the tracks are known
+    attempts: list[Attempt] = field(default_factory=list)  # short trials, those of searches beside it too
+    clean: list["Candidate"] = field(default_factory=list)  # of clean attempts
+    failures: list["Candidate"] = field(default_factory=list)  # of others that deliver
+    min_speed: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
+    tracks: list[BankedTrack] = field(default_factory=list)  # of each bank what comes along it
+    # what was proposed, by bank, row and way
+    proposed: dict[tuple[float, int, proposals.Recipe], Proposal | None] = field(default_factory=dict)
+    chains: set[ChainKey] = field(default_factory=set)  # tried on their tracks, whatever the drive
+    # kinds of devices at which a row was lost, by bank and row
+    avoided_kinds: dict[Place, tuple[str, ...]] = field(default_factory=dict)
+    # bank and row, and the first devices that lost all of it
+    lost_behind: list[tuple[Place, tuple[str, ...]]] = field(default_factory=list)
+    start: int = 0  # trials that were made before this search began
+    reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
+    most_trials: float = np.inf  # short trials that are worth it
+    nearest_limit: int | None = None  # trials at most, where the nearest that holds is looked for
+
+    @property
+    def best_rate(self) -> float:
+        """The most that a clean attempt would deliver [1/s]."""
+        return max((candidate.attempt.rate for candidate in self.clean), default=0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """A search for a bowl: what it is asked, and by which policy it goes on."""
+
+    part: Part
+    request: DesignRequest
+    plain: Bowl  # as given
+    kept_keys: frozenset[str]  # names of the keys that the user gave
+    given_shares: Shares | None  # what arrives, where the user says so
+    progress: SearchProgress
+    policy: SearchPolicy
+    state: SearchState
+
+    @classmethod
+    def begin(
+        cls,
+        part: Part,
+        request: DesignRequest,
+        plain: Bowl,
+        kept_keys: Collection[str] = (),
+        *,
+        shares: Shares | None = None,
+        progress: SearchProgress | None = None,
+        policy: SearchPolicy = USUAL_POLICY,
+    ) -> "Search":
+        """Return a search that has found nothing so far.
+
+        Parameters
+        ----------
+        part : Part
+        request : DesignRequest
+        plain : Bowl
+            As given, completed by the defaults.
+        kept_keys : collection of str
+            Names of the keys of the bowl file that the user gave.
+        shares : Shares, optional
+            What arrives, where the user says so.
+        progress : SearchProgress, optional
+            Whom it tells how far it is; nobody without one.
+        policy : SearchPolicy
+
+        Returns
+        -------
+        Search
+        """
+        state = SearchState(policy.rate_reserve, shares)
+        said = progress or SearchProgress()
+        return cls(part, request, plain, frozenset(kept_keys), shares, said, policy, state)
+
+    def beside(self, request: DesignRequest) -> "Search":
+        """Return a search for another request that tells and counts as this one does, and begins anew."""
+        state = self.state
+        new = SearchState(
+            state.reserve, state.shares, state.attempts, min_speed=state.min_speed, start=len(state.attempts)
+        )
+        return replace(self, request=request, state=new)
+
+    def keeps(self, key: str) -> bool:
+        """Return whether the user gave a key of the bowl file, by its name."""
+        return key in self.kept_keys
+
+    @property
+    def limit(self) -> int:
+        """Short trials at most."""
+        return int(self.state.nearest_limit or min(self.request.budget, self.state.most_trials))
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether the budget of trials is used up."""
+        state = self.state
+        return len(state.attempts) >= min(self.request.budget, state.most_trials, state.reach)
+
+    @property
+    def arrivals(self) -> Shares:
+        """What arrives."""
+        if self.state.shares is None:
+            raise ValueError("what arrives is not known before the tracks are")
+        return self.state.shares
+
+    def through(self, bowl: Bowl) -> Orientations:
+        """Return what becomes of each orientation on the track and through the devices of a bowl."""
+        return proposals.follow_orientations(self.part, self.arrivals.aspects, bowl)
+
+    def orientations_along(self, bowl: Bowl, shares: Shares | None = None) -> Orientations:
+        """Return the same with what was counted of what arrives, where it was.
+
+        Parameters
+        ----------
+        bowl : Bowl
+        shares : Shares, optional
+            What arrives; by default as the search knows it.
+
+        Returns
+        -------
+        Orientations
+        """
+        own = self.arrivals if shares is None else shares
+        ways = proposals.follow_orientations(self.part, own.aspects, bowl)
+        return stream.oriented(ways, own.measured)
+
+    @property
+    def budget(self) -> TrialBudget:
+        """What it has made and may make."""
+        return TrialBudget(self.state.attempts, self.limit, self.request.draws)
+
+    def tell(self, text: str) -> None:
+        """Tell the user a sentence."""
+        self.progress.tell(text)
+
+    def begin_trial(self, text: str) -> None:
+        """Tell which trial begins."""
+        self.progress.begin_trial(text, self.budget)
+
+    def begin_proof(self, text: str) -> None:
+        """Tell that draws begin."""
+        self.progress.begin_proof(text, self.budget)
+
+    def run(self, stage: SearchStage) -> RunSettings:
+        """Return how draws or queues run: as was asked, and progress is told."""
+        return self.progress.watch(self.request.run, stage, self.budget)
+
+    def share_needed(self, attempt: Attempt) -> float:
+        """Return the share [1] of what is wanted that has to leave in a draw, for the target to be kept."""
+        need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
+        return float(np.clip(need, LEAST_SHARE_LEAVING, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A chain on its bowl, as it was tried."""
+
+    proposal: Proposal
+    bowl: Bowl
+    orientations: Orientations
+    weights: Floats  # (M,)
+    trial: short_trials.ShortTrial
+    attempt: Attempt
+    robust: RobustRun | None = None  # some draws that it did not all hold
+
+    def plain_bowl(self, search: Search) -> calm_drive.PlainBowl:
+        """Return its bowl without devices, with the keys that the user gave."""
+        bare = replace(self.bowl, devices=())
+        return calm_drive.PlainBowl(bare, search.kept_keys, search.request.drive)
+
+    @property
+    def worst(self) -> Fault | None:
+        """The fault that some draws show most often; None where it was not drawn, or all of them held."""
+        return None if self.robust is None else self.robust.worst
+
+    def is_nearly_robust(self, policy: SearchPolicy) -> bool:
+        """Return whether all draws of its screening but one held."""
+        robust = self.robust
+        return robust is not None and robust.held == robust.draws - 1 >= policy.screening_draws - 1
