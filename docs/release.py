@@ -34,11 +34,9 @@ def version():
 def faults():
     """Return what stands in the way of a release, a line each."""
     here = version()
-    top = re.search(r"^## (\S+?),? (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
-    if top[1] != here:
-        yield f"CHANGELOG.md begins with {top[1]}, not with {here}"
-    if "not yet" in top[2]:
-        yield f"CHANGELOG.md says of {here}: {top[2]}"
+    top = re.search(r"^## (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1]
+    if not re.fullmatch(rf"{re.escape(here)}, \d{{4}}-\d\d-\d\d", top):
+        yield f"CHANGELOG.md begins with '{top}', not with '{here}, ' and a date"
     if f"version: {here}\n" not in (ROOT / "CITATION.cff").read_text():
         yield f"CITATION.cff does not say {here}"
     if subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout:
