@@ -178,8 +178,8 @@ release: ## what a release is, step by step; checks, builds, tries and tags it
 	@$(PYTHON) docs/release.py --tag
 
 fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files, on from where the last run stopped
-	PYTHONPATH=tests $(BIN)/python -m fuzz.rounds 2000
-	PYTHONPATH=tests $(BIN)/python -m fuzz 600
+	PYTHONPATH=tests:tests/support $(BIN)/python -m fuzz.rounds 2000
+	PYTHONPATH=tests:tests/support $(BIN)/python -m fuzz 600
 
 clean: ## remove results and caches
 	rm -rf results build dist site .pytest_cache .ruff_cache .mypy_cache .hypothesis

@@ -15,7 +15,7 @@ from feederscrew.resting.rules.formulas import surface_weights
 from feederscrew.running import RunSettings
 
 ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path.insert(0, str(ROOT / "tests/support"))
 import shapes  # noqa: E402 - the parts with closed forms
 
 MADE, ROUND = 2013, 1909  # seeds

@@ -29,7 +29,7 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 
 ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path.insert(0, str(ROOT / "tests/support"))
 import shapes  # noqa: E402 - the parts with closed forms
 
 COIN = 0.354  # thickness over diameter

@@ -34,7 +34,7 @@ JUDGED = "tests/resting/test_judged_by_measurement.py"
 TIPPING = "tests/rates/test_tipping.py"
 SIGNS = "tests/trial/test_trial_signs.py"
 TESTS = {  # by name; more than one file, or `-k`, as on a command line
-    "machine.sizing": f"{SIZING} tests/cli/moving/test_cli_bowl.py",
+    "machine.sizing": f"{SIZING} tests/cli/test_cli_bowl.py",
     "machine.condition._of_stroke": CONDITION,
     "machine.condition._why": CONDITION,
     "rates.tipping.goes_over": ROCKING,
@@ -53,7 +53,7 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "tooling.devices.openings": LEDGES,
     "tooling.devices.pneumatics.SteadyJet": VERDICTS,
     "trial.course": "tests/studies/test_trial_numbers.py tests/trial/test_trial_course.py",
-    "trial.result": "tests/studies/test_trial_numbers.py tests/cli/moving/test_cli_trial.py",
+    "trial.result": "tests/studies/test_trial_numbers.py tests/cli/test_cli_trial.py",
     "trial.queue.PartsQueue.enter": "tests/trial/test_trial_queue.py -k 'enter or wait'",
     "trial.kernel.steps._want_no_strike": f"{SIGNS} -k 'slides and 0.2'",
     "trial.kernel.steps._stand_share": f"{SIGNS} -k stand",

@@ -22,7 +22,7 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find, require_ground
 from feederscrew.resting.exact_tumbling import tumble
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests/support"))
 import shapes
 
 THROW = Launch("benchmark", (2.0, 2.0), (3.0, 3.0), (3.0, 3.0), (0.3, 0.3), (0.3, 0.3))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests/support"))
 import shapes
 
 L_SHAPE = [(0, 0), (18, 0), (18, 5), (5, 5), (5, 14), (0, 14)]

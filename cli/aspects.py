@@ -24,26 +24,33 @@ EACH_FACE_COUNTS = (
 @options.as_published("Count each class once in p_pmi, as Tables 3-8 and 3-9 do.")
 @options.launch
 @options.choice(
-    "--surface", ["soft", "medium", "hard"],
+    "--surface",
+    ["soft", "medium", "hard"],
     "What it lands on: p_surface is then the answer.  [default: hard]",
-)  # fmt: skip
+)
 @options.option(
     "--surface-exponent", None, "The same as a number, 0 to about 3.", type=options.Number(-10, 10)
 )
 @options.whole(
-    "--drops", 0, 10**7, "How many drops; 0 for none.  [default: until every share is known to 1.6 %]",
+    "--drops",
+    0,
+    10**7,
+    "How many drops; 0 for none.  [default: until every share is known to 1.6 %]",
     former=("--drop",),
-)  # fmt: skip
+)
 @options.choice(
-    "--rule", ["recommended", "closed"], default="recommended",
+    "--rule",
+    ["recommended", "closed"],
+    default="recommended",
     text="closed: a closed form is the answer, at once, as with --drops 0.",
-)  # fmt: skip
+)
 @options.flag("--graph", "With -o: what tips into what over which barrier, CSV and PNG.")
 @options.option(
-    "--columns", "NAMES",
+    "--columns",
+    "NAMES",
     "Columns to print, with commas between, or all.  [default: all of them as CSV; in the table "
     "height, recommended answer, rules of the thesis]",
-)  # fmt: skip
+)
 @options.drawn_output
 def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chosen: Any) -> None:
     """Example: feeder aspects lbracket_30x20x15.stl --launch feed -o results

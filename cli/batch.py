@@ -33,16 +33,25 @@ def process_count(value: str) -> int | None:
 @options.whole("--drops", 0, 10**7, "Simulated drops of each part; none without it.", default=0)
 @options.option("--jobs", "N|auto", "Processes of this machine.  [default: auto]", type=process_count)
 @options.option(
-    "--scheduler", "ADDRESS", envvar="DASK_SCHEDULER_ADDRESS",
+    "--scheduler",
+    "ADDRESS",
+    envvar="DASK_SCHEDULER_ADDRESS",
     text="Work on this Dask cluster: tcp://host:8786.  [default: $DASK_SCHEDULER_ADDRESS, if set]",
-)  # fmt: skip
+)
 @options.flag("--resume", "Go on where a batch stopped: only what is missing or changed.")
 @options.drawn_output
 @click.pass_context
 def batch(
-    ctx: click.Context, rule: str, launch: str | None, drops: int, jobs: int | None, scheduler: str | None,
-    resume: bool, out: Output, **inputs: Any,
-) -> None:  # fmt: skip
+    ctx: click.Context,
+    rule: str,
+    launch: str | None,
+    drops: int,
+    jobs: int | None,
+    scheduler: str | None,
+    resume: bool,
+    out: Output,
+    **inputs: Any,
+) -> None:
     """Example: feeder batch squarenut_m5.stl washer_m6.stl --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the

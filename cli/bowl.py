@@ -8,24 +8,31 @@ from feederscrew_cli.options import Output, Values
 SOLID_OPTIONS = (
     options.flag("--solid", "Make the bowl as one closed body: STL, 3MF and a drawing."),
     options.choice(
-        "--print material", ["pla", "pa12", "steel"], default="steel",
+        "--print material",
+        ["pla", "pa12", "steel"],
+        default="steel",
         text="What the solid is made of: thickness of wall and floor.",
     ),
     options.option(
-        "--bed", "XxYxZ",
+        "--bed",
+        "XxYxZ",
         "Cut it into segments that fit a printer: 220x220x250mm; with holes for dowels at the seams.",
     ),
     options.choice(
-        "--join", ["dowels", "screws"],
+        "--join",
+        ["dowels", "screws"],
         "What holds the segments together: dowels, or screws in lugs outside the wall as well.  "
         "[default: dowels]",
     ),
     options.flag("--step", "Write bowl.step, of exact faces; needs feederscrew[cad]."),
     options.quantity(
-        "--chord", "length", "0.05 mm", "Greatest distance of the solid's flat facets from the true arc.",
+        "--chord",
+        "length",
+        "0.05 mm",
+        "Greatest distance of the solid's flat facets from the true arc.",
         positive=True,
     ),
-)  # fmt: skip
+)
 
 
 @grouped.command(
@@ -42,17 +49,24 @@ SOLID_OPTIONS = (
 )
 @options.group("solid_request", *SOLID_OPTIONS)
 @options.option(
-    "--measured", "VALUES",
+    "--measured",
+    "VALUES",
     "What was measured at the machine, any of 'acceleration=64 m/s2, stroke=0.3 mm, frequency=50 Hz, "
     "fill=50 %': what it does now beside what it should, and the likely cause.",
-)  # fmt: skip
+)
 @options.bowl
 @options.title_block
 @options.drawn_output
 def bowl(
-    part: Values, target: float | None, solid_request: Values, measured: str | None, bowl: Values,
-    fields: Values, out: Output, chain_options: Values,
-) -> None:  # fmt: skip
+    part: Values,
+    target: float | None,
+    solid_request: Values,
+    measured: str | None,
+    bowl: Values,
+    fields: Values,
+    out: Output,
+    chain_options: Values,
+) -> None:
     """Example: feeder bowl lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs

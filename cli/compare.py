@@ -16,14 +16,21 @@ from feederscrew_cli.options import Output, Values
 )
 @options.as_published("Count each class once in PMI, as Tables 3-8 and 3-9 do.")
 @options.option(
-    "--bowl bowl", "FILE", type=options.FILE,
+    "--bowl bowl",
+    "FILE",
+    type=options.FILE,
     text="Bowl file of the bowl in which FILE was filmed: fit friction, restitution and stroke to it.",
-)  # fmt: skip
+)
 @options.drawn_output
 def compare(
-    sources: tuple[str, ...], reading: Values, counts: str | None, launch: str | None, as_published: bool,
-    bowl: str | None, out: Output,
-) -> None:  # fmt: skip
+    sources: tuple[str, ...],
+    reading: Values,
+    counts: str | None,
+    launch: str | None,
+    as_published: bool,
+    bowl: str | None,
+    out: Output,
+) -> None:
     """Example: feeder compare lbracket_30x20x15.stl --with counts.csv -o results
 
     How far your counts of PART are from each rule. Three measures: the deviation of the thesis's

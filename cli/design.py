@@ -24,27 +24,43 @@ if TYPE_CHECKING:
 REQUEST = (  # what shall leave, and what may be used
     options.target("Parts that must leave the bowl: 60/min."),
     options.option(
-        "--aspect", "NAME", "Aspect on which they must leave.  [default: the one that delivers most]",
+        "--aspect",
+        "NAME",
+        "Aspect on which they must leave.  [default: the one that delivers most]",
     ),
     options.heading("DEG", "Heading of that aspect.  [default: the one that delivers most]"),
     options.option("--up", "NAME,...", "Aspects that count as one, whatever their heading: A,B.", default=""),
     options.choice(
-        "--outcome", ["any", "lying", "hanging"], default="any",
+        "--outcome",
+        ["any", "lying", "hanging"],
+        default="any",
         text="Lying on the track, or hanging by the head between rails.",
     ),
     options.option("--without", "KINDS", "Kinds of devices that are not used: 'profile,wiper'.", default=""),
     options.choice(
-        "--drive", ["leaf-spring", "two-axis", "any"], default="leaf-spring",
+        "--drive",
+        ["leaf-spring", "two-axis", "any"],
+        default="leaf-spring",
         text="Kind of drive: one magnet on leaf springs, or two magnets with a two-channel controller.",
     ),
     options.option(
-        "--diameter", "LOW:HIGH", "Least and greatest diameter of the bowl: 200mm:400mm.", type=options.span,
+        "--diameter",
+        "LOW:HIGH",
+        "Least and greatest diameter of the bowl: 200mm:400mm.",
+        type=options.span,
     ),
     options.quantity(
-        "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be.",
+        "--tolerance",
+        "length",
+        "0.1 mm",
+        "How much larger or smaller than its file a part may be.",
     ),
     options.whole(
-        "--trials budget", 1, 1000, "Short trials of the search, at most.", default=16,
+        "--trials budget",
+        1,
+        1000,
+        "Short trials of the search, at most.",
+        default=16,
         former=("--budget",),
     ),
     options.flag(
@@ -52,12 +68,15 @@ REQUEST = (  # what shall leave, and what may be used
         "Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
     ),
     options.whole(
-        "--draws", 1, 1000, default=20,
+        "--draws",
+        1,
+        1000,
+        default=20,
         text="Trials of the answer with part, friction, drive and cuts drawn from their spread.",
     ),
     options.seed("Seed of everything that is drawn."),
     options.jobs,
-)  # fmt: skip
+)
 OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_mass")  # options
 
 
@@ -74,9 +93,15 @@ OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_m
 @options.bowl
 @options.drawn_output
 def design(
-    part: Values, more_parts: tuple[str, ...], request_options: Values, is_list: bool, rule: str,
-    share_options: Values, bowl: Values, out: Output,
-) -> None:  # fmt: skip
+    part: Values,
+    more_parts: tuple[str, ...],
+    request_options: Values,
+    is_list: bool,
+    rule: str,
+    share_options: Values,
+    bowl: Values,
+    out: Output,
+) -> None:
     """Example: feeder design washer_m6.stl --target 40/min -o results
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
@@ -156,9 +181,13 @@ def design(
 
 
 def _batch(
-    out: Output, part: Values, own: Values, design_part: Callable[..., "DesignStudy"],
-    settings: Sequence["Setting"], path: str | None,
-) -> int:  # fmt: skip
+    out: Output,
+    part: Values,
+    own: Values,
+    design_part: Callable[..., "DesignStudy"],
+    settings: Sequence["Setting"],
+    path: str | None,
+) -> int:
     """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
     from feederscrew import bowl as bowls
     from feederscrew.batch import inputs as lists
@@ -237,9 +266,12 @@ def _keeps_earlier(out: Output, folder: "ResultFolder | None", page: str) -> boo
 
 
 def _family(
-    out: Output, parts: Sequence["Part"], problem: tuple["Bowl", set[str], "DesignRequest"],
-    settings: Sequence["Setting"], path: str | None,
-) -> "FamilyStudy":  # fmt: skip
+    out: Output,
+    parts: Sequence["Part"],
+    problem: tuple["Bowl", set[str], "DesignRequest"],
+    settings: Sequence["Setting"],
+    path: str | None,
+) -> "FamilyStudy":
     """Several parts for one bowl; the study of all of them."""
     from feederscrew import bowl as bowls
     from feederscrew.designing import families

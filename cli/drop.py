@@ -17,32 +17,41 @@ CONDITIONS = (
     options.option("--speed", "SPEED", 'Velocity along the plane: "0.3 m/s".'),
     options.option("--restitution", "E", "Coefficient of restitution where a corner hits: 0.3 or 0.1:0.5."),
     options.option("--friction", "MU", "Coefficient of friction on the plane: 0.4 or 0.3:0.6."),
-)  # fmt: skip
+)
 TEST = (  # how often and how it is dropped
     options.whole(
-        "--drops", 1, 10**7, "How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
+        "--drops",
+        1,
+        10**7,
+        "How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
     ),
     options.option("--until", "SHARE", 'Go on until no 95 % interval is wider: "1%" to either side.'),
     options.seed("Seed of the random launches."),
     options.jobs,
     options.option("--trace", "K", "With -o: the motion of the first K drops.", type=options.Whole(1, 1000)),
-)  # fmt: skip
+)
 PLATE = (
     options.flag("--plate is_plate", "The plane vibrates with a bowl's drive."),
     options.option(
-        "--config paths", "FILE", type=options.FILE, multiple=True,
+        "--config paths",
+        "FILE",
+        type=options.FILE,
+        multiple=True,
         text="With --plate: the bowl file (YAML); give it again for a further plate.",
     ),
     options.overrides,
     options.option(
-        "--amplitude amplitudes", "LIST",
+        "--amplitude amplitudes",
+        "LIST",
         "With --plate: a plate for each, '78%,80%,82%' of the bowl's or '0.3 mm,0.4 mm'.",
     ),
     options.option(
-        "--seconds", None, "With --plate: how long each part is on it.  [default: 5]",
+        "--seconds",
+        None,
+        "With --plate: how long each part is on it.  [default: 5]",
         type=Number(0.05, 3600.0),
     ),
-)  # fmt: skip
+)
 
 
 @grouped.command(
@@ -59,9 +68,14 @@ PLATE = (
 @options.group("plate", *PLATE)
 @options.drawn_output
 def drop(
-    part: Values, launch: str, test: Values, launches: str | None, plate: Values, conditions: Values,
+    part: Values,
+    launch: str,
+    test: Values,
+    launches: str | None,
+    plate: Values,
+    conditions: Values,
     out: Output,
-) -> None:  # fmt: skip
+) -> None:
     """Example: feeder drop lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is

@@ -19,9 +19,23 @@ OWN_OPTIONS = "Options"
 COMMON = "Options of most commands"
 # shared options that few calls need
 RARE_OPTIONS = {
-    "centre_of_mass", "names", "allow_open", "body", "rule", "launch", "probabilities", "fed", "surface",
-    "surface_exponent", "seed", "jobs", "pictures", "depfile", "quiet", "verbose",
-}  # fmt: skip
+    "centre_of_mass",
+    "names",
+    "allow_open",
+    "body",
+    "rule",
+    "launch",
+    "probabilities",
+    "fed",
+    "surface",
+    "surface_exponent",
+    "seed",
+    "jobs",
+    "pictures",
+    "depfile",
+    "quiet",
+    "verbose",
+}
 
 
 class Grouped(click.Command):

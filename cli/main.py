@@ -25,16 +25,22 @@ COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Files": ("sample", "batch", "config", "cache", "serve", "doctor", "reproduce"),
 }
 MODULES = {  # of commands that share one, else it has their name
-    "floor": "motion", "track": "motion", "headings": "motion", "slide": "motion",
-    "inertia": "aspects", "calibrate": "compare", "tune": "rate",
-}  # fmt: skip
+    "floor": "motion",
+    "track": "motion",
+    "headings": "motion",
+    "slide": "motion",
+    "inertia": "aspects",
+    "calibrate": "compare",
+    "tune": "rate",
+}
 COMMANDS = {
     name: f"feederscrew_cli.{MODULES.get(name, name)}" for names in COMMAND_GROUPS.values() for name in names
 }
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
 NO_CHOICE = re.compile(r"'([^']*)' is not one of")
 GARBAGE_THRESHOLD = 20_000  # objects between two searches for garbage: libraries make hardly any as they load
-WRONG_DATA, WRONG_CALL = 1, 2  # the second as click ends for a value that it checks itself
+WRONG_DATA = 1
+WRONG_CALL = 2  # as click ends for a value that it checks itself
 PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
 
 

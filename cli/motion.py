@@ -62,9 +62,14 @@ def floor(
 @options.bowl
 @options.drawn_output
 def track(
-    part: Values, aspect: str | None, heading: float | None, as_published: bool, spans: tuple[str, ...],
-    bowl: Values, out: Output,
-) -> None:  # fmt: skip
+    part: Values,
+    aspect: str | None,
+    heading: float | None,
+    as_published: bool,
+    spans: tuple[str, ...],
+    bowl: Values,
+    out: Output,
+) -> None:
     """Example: feeder track lbracket_30x20x15.stl --set track.bank="10 deg" -o results
 
     Reactions on PART on the banked, climbing track against the bowl wall, its acceleration and the
@@ -129,9 +134,12 @@ def headings(part: Values, aspect: str | None, bowl: Values, out: Output) -> Non
 
 @grouped.command(short_help="Map of when a part slips, and which way.")
 @options.option(
-    "--beta betas", "DEG", "Vibration angle; repeatable.  [default: the bowl's]", type=vibration_angle,
+    "--beta betas",
+    "DEG",
+    "Vibration angle; repeatable.  [default: the bowl's]",
+    type=vibration_angle,
     multiple=True,
-)  # fmt: skip
+)
 @options.as_published("Keep mu_limit where [4.27] is negative, as past the hop.")
 @options.bowl
 @options.drawn_output

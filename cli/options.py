@@ -313,24 +313,28 @@ def _title(value: str) -> str:
 
 
 DENSITY = option(
-    "--density", "DENSITY",
+    "--density",
+    "DENSITY",
     'A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
-    type=_density, shell_complete=_complete(_materials),
-)  # fmt: skip
+    type=_density,
+    shell_complete=_complete(_materials),
+)
 READING = (
     option("--units", None, "Length unit of the file (STL has none).  [default: mm]", type=LENGTH_UNITS),
     DENSITY,
     option(
-        "--centre-of-mass", "X,Y,Z",
+        "--centre-of-mass",
+        "X,Y,Z",
         "Where it is, in the file's units and axes, if the part is not homogeneous.",
     ),
     path(
-        "--names", "FILE",
+        "--names",
+        "FILE",
         "Names of its aspects (names.yaml of aspects -o): they stay when the ranks change.",
     ),
     option("--body", "BODY", "Which of several bodies in the file: its number, its name, or largest."),
     flag("--allow-open", "Compute from an open surface; every output says so."),
-)  # fmt: skip
+)
 
 
 def _source(**keywords: Any) -> Callable:
@@ -353,18 +357,27 @@ def parts(command: Callable) -> Callable:
 
 
 overrides = option(
-    "--set overrides", "KEY=VALUE", 'Override one value: --set drive.frequency="50 Hz".',
-    multiple=True, shell_complete=_complete(_bowl_keys),
-)  # fmt: skip
+    "--set overrides",
+    "KEY=VALUE",
+    'Override one value: --set drive.frequency="50 Hz".',
+    multiple=True,
+    shell_complete=_complete(_bowl_keys),
+)
 bowl = group(  # the keywords of ``feederscrew.bowl.read``
     "bowl",
     option("--config path", "FILE", "Bowl file (YAML); without it, the defaults.", type=FILE),
     overrides,
 )
 rule = option(
-    "--rule", "NAME", "Whose probabilities are taken.", names=_rules, default="recommended",
-    show_default=True, type=_rule, shell_complete=_complete(_rules),
-)  # fmt: skip
+    "--rule",
+    "NAME",
+    "Whose probabilities are taken.",
+    names=_rules,
+    default="recommended",
+    show_default=True,
+    type=_rule,
+    shell_complete=_complete(_rules),
+)
 launch = choice("--launch", LAUNCHES, "What is done to the part.", default="feed")
 jobs = whole("--jobs", 1, 256, "Cores to use.  [default: all]")
 

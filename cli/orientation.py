@@ -26,7 +26,7 @@ CHAIN_OPTIONS = (
     options.quantity(
         "--fill", "number", "1", "Share of the track that is occupied.", positive=True, most=1.0
     ),
-)  # fmt: skip
+)
 # the wanted orientation, and what the rate depends on: aspect, heading, rule, gap and fill
 chain = options.group("chain_options", *CHAIN_OPTIONS)
 
@@ -37,9 +37,10 @@ def any_chain(text: str) -> tuple[Callable, ...]:
 
 
 LAUNCHED = options.choice(
-    "--launch", options.LAUNCHES,
+    "--launch",
+    options.LAUNCHES,
     "What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
-)  # fmt: skip
+)
 SHARE_OPTIONS = (
     LAUNCHED,
     options.path("--probabilities", "CSV", "Take the shares of a file of counts, or of drop.csv."),

@@ -21,19 +21,30 @@ from feederscrew_cli.options import Output, Values
 )
 @orientation.share_options_and_seed
 @options.quantity(
-    "--position-deviation play", "length", "0 mm", "Standard deviation of where a part is over a cut.",
+    "--position-deviation play",
+    "length",
+    "0 mm",
+    "Standard deviation of where a part is over a cut.",
     former=("--play",),
-)  # fmt: skip
+)
 @options.quantity(
-    "--edge-deviation tolerance", "length", "0 mm", "Standard deviation of where a cut's edge is.",
+    "--edge-deviation tolerance",
+    "length",
+    "0 mm",
+    "Standard deviation of where a cut's edge is.",
     former=("--tolerance",),
-)  # fmt: skip
+)
 @options.bowl
 @options.output
 def rate(
-    part: Values, chain_options: Values, share_options: Values, play: float, tolerance: float, bowl: Values,
+    part: Values,
+    chain_options: Values,
+    share_options: Values,
+    play: float,
+    tolerance: float,
+    bowl: Values,
     out: Output,
-) -> None:  # fmt: skip
+) -> None:
     """Example: feeder rate lbracket_30x20x15.stl --aspect A --config bowl.yaml
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
@@ -80,9 +91,14 @@ def rate(
 @options.bowl
 @options.output
 def tune(
-    part: Values, target: float, chain_options: Values, share_options: Values, worst: bool, bowl: Values,
+    part: Values,
+    target: float,
+    chain_options: Values,
+    share_options: Values,
+    worst: bool,
+    bowl: Values,
     out: Output,
-) -> None:  # fmt: skip
+) -> None:
     """Example: feeder tune lbracket_30x20x15.stl --aspect A --target 20/min
 
     Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %. One-way
@@ -107,10 +123,14 @@ def tune(
     find_shares = orientation.shares_finder(out, solid, share_options, chain_options)
     with out.folder_of(solid, find_shares(record).inputs, settings=settings) as folder:
         result = study(
-            solid, record, target=target, aspect_shares=find_shares, worst=worst,
+            solid,
+            record,
+            target=target,
+            aspect_shares=find_shares,
+            worst=worst,
             progress=click.get_current_context().with_resource(progress.bar(out, "settings")).reach,
             **chain_options,
-        )  # fmt: skip
+        )
         tried = verified(bowl["path"])
         own = solid, record, orientation.name(chain_options)
         out.warn(*result.warnings, *rate_output.tune_remarks(result), *proof.warnings(tried, *own))

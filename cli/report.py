@@ -15,19 +15,25 @@ REQUEST = (
     ),
     options.target("Size a bowl for this rate as well: 120/min."),
     options.whole(
-        "--parts sent", 1, 10**4, "Send N parts along the track and through the devices, to be played.",
+        "--parts sent",
+        1,
+        10**4,
+        "Send N parts along the track and through the devices, to be played.",
         former=("--trial",),
     ),
-)  # fmt: skip
+)
 PLACE = (
     options.path(
-        "-o --output directory", "DIR", "Write the page and run.json to DIR/<name>/.", default="results",
+        "-o --output directory",
+        "DIR",
+        "Write the page and run.json to DIR/<name>/.",
+        default="results",
         show_default=True,
     ),
     options.choice("--format", ["html", "md"], "One HTML file, or Markdown with pictures beside it.", "html"),
     options.QUIET,
     options.flag("-v --verbose", "Say what is read and how long each chapter takes."),
-)  # fmt: skip
+)
 
 
 @grouped.command(short_help="Everything about a part in a bowl, on one page to read, print and keep.")

@@ -15,18 +15,27 @@ from feederscrew_cli.options import Output
     "--ratio", "NUMBER", "Thickness over width of t-shape.  [default: 0.4]", type=options.Number()
 )
 @options.option(
-    "--wall", "LENGTH", "Thickness of cap and bracket.  [default: 1 mm]",
+    "--wall",
+    "LENGTH",
+    "Thickness of cap and bracket.  [default: 1 mm]",
     type=options.quantity_type("length", positive=True),
-)  # fmt: skip
+)
 @options.flag("--step", "Write the exact faces beside the mesh; sizes of your own need the extra cad.")
 @options.flag("--all everything", "Write every file that an example of --help names.")
 @options.flag("--force replace", "Write over a file of the same name.")
 @options.FORMAT
 @options.QUIET
 def sample(
-    name: str | None, size: str, ratio: float | None, wall: float | None, step: bool, everything: bool,
-    replace: bool, format: str, quiet: bool,
-) -> None:  # fmt: skip
+    name: str | None,
+    size: str,
+    ratio: float | None,
+    wall: float | None,
+    step: bool,
+    everything: bool,
+    replace: bool,
+    format: str,
+    quiet: bool,
+) -> None:
     """Example: feeder sample washer_m6
 
     Write a file into the current folder: a part, a bowl file, or counts of dropped parts. Without NAME it

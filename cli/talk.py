@@ -159,9 +159,13 @@ class Output:
         return solid, settings, record(settings)
 
     def show(
-        self, frame: "Frame", document: Mapping[str, Any], *, hidden: Iterable[str] = (),
+        self,
+        frame: "Frame",
+        document: Mapping[str, Any],
+        *,
+        hidden: Iterable[str] = (),
         spare: Sequence[Sequence[str]] | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Print the document with ``--format json``, else the frame as a table or as CSV.
 
         A table for people leaves out ``hidden`` columns. Where ``spare`` is given it is no wider than a page.
@@ -227,9 +231,12 @@ class Output:
             raise KeyboardInterrupt
 
     def folder_of(
-        self, solid: "Part", *inputs: Mapping[str, str], settings: Sequence["Setting"] = (),
+        self,
+        solid: "Part",
+        *inputs: Mapping[str, str],
+        settings: Sequence["Setting"] = (),
         values: Mapping[str, Any] | None = None,
-    ) -> contextlib.AbstractContextManager["ResultFolder | None"]:  # fmt: skip
+    ) -> contextlib.AbstractContextManager["ResultFolder | None"]:
         """``folder`` of a part, with further ``inputs``, settings of a bowl file and values of its own."""
         from feederscrew.bowl import texts
         from feederscrew.output.columns import conditions

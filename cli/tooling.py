@@ -18,28 +18,43 @@ from feederscrew_cli.options import Output, Values
 @options.heading("DEG", "Heading of that aspect.  [default: the most frequent]")
 @options.rule
 @options.quantity(
-    "--margin", "length", "0.15 mm", positive=True,
+    "--margin",
+    "length",
+    "0.15 mm",
+    positive=True,
     text="Least margin by which the wanted orientation passes and the others fail, "
     "beside play and tolerance.",
-)  # fmt: skip
+)
 @options.quantity(
-    "--purity", "number", "1", positive=True, most=1.0,
+    "--purity",
+    "number",
+    "1",
+    positive=True,
+    most=1.0,
     text="Share of what leaves that must be in the wanted orientation: below 1 a shorter chain may do.",
-)  # fmt: skip
+)
 @options.quantity(
-    "--efficiency", "number", "0", most=1.0,
+    "--efficiency",
+    "number",
+    "0",
+    most=1.0,
     text="Share of what is offered that must leave: the search goes on until it does, "
     "or says what is missing.",
-)  # fmt: skip
+)
 @options.choice(
-    "--outcome", ["lying", "hanging", "any"], default="any",
+    "--outcome",
+    ["lying", "hanging", "any"],
+    default="any",
     text="How parts must leave: as they lie, hanging between rails, or either.",
-)  # fmt: skip
+)
 @options.option("--without", "KIND,...", "Kinds of devices that are not used: wiper,cut_out.", default="")
 @options.quantity(
-    "--step", "length", "0.05 mm", positive=True,
+    "--step",
+    "length",
+    "0.05 mm",
+    positive=True,
     text="Step in which a shop makes dimensions: values are whole multiples of it.",
-)  # fmt: skip
+)
 @options.option("--up", "NAME,...", "Other aspects that count as the one wanted: B,C.", default="")
 @options.quantity("--cutter", "length", "0 mm", "Radius that corners of holes are rounded to.")
 @options.quantity("--play", "length", "0.05 mm", "Play of parts at the wall, on top of every margin.")
@@ -48,22 +63,34 @@ from feederscrew_cli.options import Output, Values
 @options.flag("--turn", "Allow steps and ledges that turn parts over, before the cuts.")
 @options.seed("Seed of the search for holes.")
 @options.whole(
-    "--verdicts", 1, None, default=30000,
+    "--verdicts",
+    1,
+    None,
+    default=30000,
     text="Limit of the search for holes, in verdicts an orientation: it ends alike on every machine.",
-)  # fmt: skip
+)
 @options.quantity(
-    "--limit seconds", "time", "10 min", positive=True,
+    "--limit seconds",
+    "time",
+    "10 min",
+    positive=True,
     text="Time after which the best so far is taken; the answer then says so.",
-)  # fmt: skip
+)
 @options.flag("--static", "Do not send parts through what is proposed.")
 @orientation.share_options
 @options.bowl
 @options.title_block
 @options.drawn_output
 def tooling(
-    part: Values, cad: bool, static: bool, share_options: Values, bowl: Values, fields: Values, out: Output,
+    part: Values,
+    cad: bool,
+    static: bool,
+    share_options: Values,
+    bowl: Values,
+    fields: Values,
+    out: Output,
     **request: Any,
-) -> None:  # fmt: skip
+) -> None:
     """Example: feeder tooling lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the

@@ -37,9 +37,13 @@ class FilmFile(Place):
 @options.whole("--queue", 1, 1000, "Send a queue of N parts as well, which push each other.")
 @options.flag("--poured", "The parts of the queue fall onto the track; without it they lie in a row.")
 @options.option(
-    "--seconds", None, "Simulated time of the queue, in seconds.", type=Number(0.05, 3600.0), default=10.0,
+    "--seconds",
+    None,
+    "Simulated time of the queue, in seconds.",
+    type=Number(0.05, 3600.0),
+    default=10.0,
     show_default=True,
-)  # fmt: skip
+)
 @options.path("--with measured", "CSV", "Counts of a feeding test, set beside the profile of the queue.")
 @options.option(
     "--amplitude amplitudes", "LIST", "A trial at each, '60%,80%,100%' of the bowl's or '0.3 mm,0.4 mm'."
@@ -47,15 +51,22 @@ class FilmFile(Place):
 @options.seed("Seed of the play and the phases that are drawn.")
 @options.jobs
 @options.option(
-    "--film", "FILE", type=FilmFile(),
+    "--film",
+    "FILE",
+    type=FilmFile(),
     text="Write a film of ten seconds, FILE.gif, or FILE.mp4 or FILE.webm where ffmpeg is installed.",
-)  # fmt: skip
+)
 @options.bowl
 @options.drawn_output
 def trial(
-    part: Values, share_options: Values, amplitudes: str | None, film: str | None, bowl: Values, out: Output,
+    part: Values,
+    share_options: Values,
+    amplitudes: str | None,
+    film: str | None,
+    bowl: Values,
+    out: Output,
     **run_options: Any,
-) -> None:  # fmt: skip
+) -> None:
     """Example: feeder trial lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
@@ -100,11 +111,15 @@ def trial(
     with out.folder_of(solid, inputs, settings=settings) as folder:
         with progress.bar(out, "runs") as bar:
             study = studies.trial(
-                solid, driven, aspect_shares=aspect_shares, measured=measured, progress=bar.reach,
+                solid,
+                driven,
+                aspect_shares=aspect_shares,
+                measured=measured,
+                progress=bar.reach,
                 before=lambda: progress.tell_compiling(out, "trial"),
                 frames=films.QUEUE_FRAMES if film else 0,
                 **run_options | {"jobs": run_options["jobs"] or os.cpu_count()},
-            )  # fmt: skip
+            )
         document = tables.document(study)
         out.warn(*study.warnings)
         out.say(*tables.summary(study))

@@ -34,11 +34,9 @@ def version():
 def faults():
     """Return what stands in the way of a release, a line each."""
     here = version()
-    top = re.search(r"^## (\S+?),? (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
-    if top[1] != here:
-        yield f"CHANGELOG.md begins with {top[1]}, not with {here}"
-    if "not yet" in top[2]:
-        yield f"CHANGELOG.md says of {here}: {top[2]}"
+    top = re.search(r"^## (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1]
+    if not re.fullmatch(rf"{re.escape(here)}, \d{{4}}-\d\d-\d\d", top):
+        yield f"CHANGELOG.md begins with '{top}', not with '{here}, ' and a date"
     if f"version: {here}\n" not in (ROOT / "CITATION.cff").read_text():
         yield f"CITATION.cff does not say {here}"
     if subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, text=True).stdout:
@@ -78,24 +76,28 @@ def environment(python, folder, *packages):
 
 
 def build():
-    """Build sdist and wheel in dist/, the wheel from the sdist, and try the wheel outside the checkout."""
+    """Build sdist and wheel in dist/, the wheel from the sdist, and try both outside the checkout."""
     shutil.rmtree(ROOT / "dist", ignore_errors=True)
     with tempfile.TemporaryDirectory() as place:
         tools = environment(sys.executable, Path(place) / "build", "build", "uv")
         run(tools / "python", "-m", "build", "--outdir", ROOT / "dist", ROOT, cwd=place)
-        [wheel] = (ROOT / "dist").glob("*.whl")
-        for minor, python in pythons().items():
-            home = Path(place) / "py{}{}".format(*minor)
+        [sdist], [wheel] = (ROOT / "dist").glob("*.tar.gz"), (ROOT / "dist").glob("*.whl")
+        programs_of = pythons()
+        first = next(iter(programs_of))
+        for minor, package in [(first, sdist), *((minor, wheel) for minor in programs_of)]:
+            home = Path(place) / f"{minor[0]}{minor[1]}{package.suffix}"
             programs = home / tools.name
-            run(tools / "uv", "venv", "--quiet", "--python", python, home, cwd=place)
-            run(tools / "uv", "pip", "install", "--quiet", "--python", programs / "python", wheel, cwd=place)
+            run(tools / "uv", "venv", "--quiet", "--python", programs_of[minor], home, cwd=place)
+            run(
+                tools / "uv", "pip", "install", "--quiet", "--python", programs / "python", package, cwd=place
+            )
             shutil.copy(ROOT / "parts" / PART, home)
             run(programs / "python", "-m", "feederscrew", "--version", cwd=home)
             run(programs / "feeder", "aspects", PART, "-o", "results", cwd=home)
             run(programs / "feeder", "tooling", PART, "--static", "-o", "results", cwd=home)
             if not list(home.glob("results/*/aspects.png")):
                 sys.exit(f"Python {minor[0]}.{minor[1]}: no picture was written")
-            print(f"Python {minor[0]}.{minor[1]}: {wheel.name} installed, aspects and tooling run")
+            print(f"Python {minor[0]}.{minor[1]}: {package.name} installed, aspects and tooling run")
 
 
 def main():

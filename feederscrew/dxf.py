@@ -19,11 +19,30 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing
 
 MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 states none
-    0: 1.0, 1: 25.4, 2: 304.8, 3: 1609344.0, 4: 1.0, 5: 10.0, 6: 1000.0, 7: 1e6, 8: 25.4e-6, 9: 25.4e-3,
-    10: 914.4, 11: 1e-7, 12: 1e-6, 13: 1e-3, 14: 100.0, 15: 1e4, 16: 1e5, 21: 1200e3 / 3937.0,
-    22: 100e3 / 3937.0, 23: 3600e3 / 3937.0,
-}  # fmt: skip
-NO_UNIT_CODE, MILLIMETRE_CODE = 0, 4  # of $INSUNITS
+    0: 1.0,
+    1: 25.4,
+    2: 304.8,
+    3: 1609344.0,
+    4: 1.0,
+    5: 10.0,
+    6: 1000.0,
+    7: 1e6,
+    8: 25.4e-6,
+    9: 25.4e-3,
+    10: 914.4,
+    11: 1e-7,
+    12: 1e-6,
+    13: 1e-3,
+    14: 100.0,
+    15: 1e4,
+    16: 1e5,
+    21: 1200e3 / 3937.0,
+    22: 100e3 / 3937.0,
+    23: 3600e3 / 3937.0,
+}
+# of $INSUNITS
+NO_UNIT_CODE = 0
+MILLIMETRE_CODE = 4
 MAX_DXF_COORDINATE_M = 1e3  # [m] from the origin of a drawing to a corner of a hole
 CHORD_ERROR_M = 1e-6  # at most between a curve and the chord read for it; the corners lie on the curve
 MAX_CHORD_ANGLE = math.radians(15.0)  # of an arc to one chord

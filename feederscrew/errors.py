@@ -4,12 +4,24 @@ import struct
 from collections.abc import Iterable
 
 DAMAGE: tuple[type[Exception], ...] = (  # what other people's readers raise on damaged files
-    ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, NameError,
-    NotImplementedError, OSError, RecursionError, RuntimeError, StopIteration, TypeError, ValueError,
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    MemoryError,
+    NameError,
+    NotImplementedError,
+    OSError,
+    RecursionError,
+    RuntimeError,
+    StopIteration,
+    TypeError,
+    ValueError,
     struct.error,
     ImportError,  # of what only odd files need
     SyntaxError,  # lxml's
-)  # fmt: skip
+)
 
 
 def printable(text: str) -> str:

@@ -20,9 +20,13 @@ class ShownSignature(inspect.Signature):
             return text
         inner, _, returned = text.removeprefix("(").rpartition(")")
         parameters = textwrap.wrap(
-            inner, LINE_LETTERS, break_long_words=False, break_on_hyphens=False, initial_indent="    ",
+            inner,
+            LINE_LETTERS,
+            break_long_words=False,
+            break_on_hyphens=False,
+            initial_indent="    ",
             subsequent_indent="    ",
-        )  # fmt: skip
+        )
         return "\n".join(["(", *parameters, f"){returned}"])
 
 

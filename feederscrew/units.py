@@ -8,10 +8,15 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 from feederscrew.errors import printable as printable  # of a user's text, as a whole line
 
-FOOT, INCH, POUND = 0.3048, 0.0254, 0.45359237  # [m, m, kg] exact by definition
-MINUTE, HOUR = 60.0, 3600.0  # [s]
+# exact by definition
+FOOT = 0.3048  # [m]
+INCH = 0.0254  # [m]
+POUND = 0.45359237  # [kg]
+MINUTE = 60.0  # [s]
+HOUR = 3600.0  # [s]
 GRAVITY = 9.80665  # [m/s2] standard: 3rd General Conference on Weights and Measures, 1901
-DEGREE, TURN = math.pi / 180.0, 2.0 * math.pi  # [rad]
+DEGREE = math.pi / 180.0  # [rad]
+TURN = 2.0 * math.pi  # [rad]
 
 UNITS_BY_DIMENSION = {  # dimension: {unit: SI units in it}, the unit we suggest first
     "number": {"": 1.0, "%": 0.01},
@@ -52,7 +57,13 @@ UNITS_BY_DIMENSION = {  # dimension: {unit: SI units in it}, the unit we suggest
     "energy": {"J": 1.0, "mJ": 1e-3, "uJ": 1e-6},
 }
 # [m], [rad], [m/s], [1/s], [kg], [m3], [Pa]: people read these most
-MM, DEG, MM_S, PER_MINUTE, GRAM, LITRE, MPA = 1e-3, DEGREE, 1e-3, 1.0 / MINUTE, 1e-3, 1e-3, 1e6
+MM = 1e-3  # [m]
+DEG = DEGREE  # [rad]
+MM_S = 1e-3  # [m/s]
+PER_MINUTE = 1.0 / MINUTE  # [1/s]
+GRAM = 1e-3  # [kg]
+LITRE = 1e-3  # [m3]
+MPA = 1e6  # [Pa]
 SPELLINGS = {
     **{"°": "deg", "degree": "deg", "degrees": "deg", "µm": "um", "μm": "um", "inch": "in", '"': "in"},
     **{f"Hz {wave}{end}": f"Hz {wave} wave" for wave in ("full", "half") for end in ("", "-wave", "wave")},

@@ -6,6 +6,16 @@ from feederscrew.batch.task import Choices, Conditions, Outcome, Request, Task
 from feederscrew.batch.workers import Cluster, Processes
 
 __all__ = [
-    "Choices", "Cluster", "Conditions", "Outcome", "Processes", "Request", "StoppedBatchError", "Task",
-    "count_stale", "crew", "gather", "run",
-]  # fmt: skip
+    "Choices",
+    "Cluster",
+    "Conditions",
+    "Outcome",
+    "Processes",
+    "Request",
+    "StoppedBatchError",
+    "Task",
+    "count_stale",
+    "crew",
+    "gather",
+    "run",
+]

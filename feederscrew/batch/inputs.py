@@ -25,7 +25,10 @@ from feederscrew.part.card import read_aspect_names
 from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.part.record import AspectNames
 
-PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
+PART = "part"
+NAMES = "names"
+ASPECT = "aspect"
+CONFIG = "config"
 LISTED_OPTIONS = ("units", "density", "centre_of_mass", "body")
 LISTING_COLUMNS = (PART, *LISTED_OPTIONS, NAMES, ASPECT, CONFIG)
 ORDER_COLUMNS = (PART, "target", ASPECT)
@@ -33,7 +36,9 @@ MAX_LISTING_BYTES = 20_000_000  # [bytes] a few hundred thousand parts
 CARDS = set(MESH_FORMATS[CARD_FORMAT].suffixes)
 MESHES = {suffix for form in MESH_FORMATS.values() for suffix in form.suffixes} - CARDS
 CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
-LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
+# of a folder's name
+LONGEST = 80  # letters
+MOST_BYTES = 160  # bytes
 Rows = list[tuple[int, list[str]]]
 
 

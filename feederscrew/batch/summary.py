@@ -14,26 +14,68 @@ from feederscrew.units import counted
 SUMMARY_FILE = "summary.csv"
 PARTIAL = "summary_partial.csv"  # of a run that was stopped, beside the tables of an earlier one
 SUMMARY_COLUMNS = (
-    "part", "folder", "config", "status", "reason", "material", "mass_g", "aspects", "aspect", "heading_deg",
-    "orientation", "rule", "answer", "p_orientation", "passes_devices", "velocity_mm_s", "regime", "pitch_mm",
-    "parts_per_minute", "parts_per_minute_low", "parts_per_minute_high",
-    "drops", "drop_aspect", "p_drop", "note", "warnings",
-)  # fmt: skip
+    "part",
+    "folder",
+    "config",
+    "status",
+    "reason",
+    "material",
+    "mass_g",
+    "aspects",
+    "aspect",
+    "heading_deg",
+    "orientation",
+    "rule",
+    "answer",
+    "p_orientation",
+    "passes_devices",
+    "velocity_mm_s",
+    "regime",
+    "pitch_mm",
+    "parts_per_minute",
+    "parts_per_minute_low",
+    "parts_per_minute_high",
+    "drops",
+    "drop_aspect",
+    "p_drop",
+    "note",
+    "warnings",
+)
 Rows = tuple[dict[str, Any], ...]
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 TILES = ACROSS * DOWN
 HIDDEN_SUMMARY_COLUMNS = (  # from a table for people; reasons stand above it, a line each
-    "reason", "folder", "aspects", "material", "aspect", "heading_deg", "rule", "answer", "regime",
-    "passes_devices", "drops", "drop_aspect", "p_drop",
-    "note", "warnings",
-)  # fmt: skip
+    "reason",
+    "folder",
+    "aspects",
+    "material",
+    "aspect",
+    "heading_deg",
+    "rule",
+    "answer",
+    "regime",
+    "passes_devices",
+    "drops",
+    "drop_aspect",
+    "p_drop",
+    "note",
+    "warnings",
+)
 NO_RATE = "; rate is 0"  # what a note ends in where the number says it already
-INDEX_FILE, LATER_INDEX_FILE = "index.html", "index_{}.html"
+INDEX_FILE = "index.html"
+LATER_INDEX_FILE = "index_{}.html"
 INDEX_ROWS = 200  # parts of one page of the index: what a browser lays out at once
 INDEX_HEADINGS = (
-    "", "part", "bowl", "mass [g]", "aspects", "leaves on", "velocity [mm/s]", "parts a minute",
+    "",
+    "part",
+    "bowl",
+    "mass [g]",
+    "aspects",
+    "leaves on",
+    "velocity [mm/s]",
+    "parts a minute",
     "what to know",
-)  # fmt: skip
+)
 SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SUMMARY_FILE),),))
 
 

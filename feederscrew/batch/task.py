@@ -13,7 +13,8 @@ from feederscrew.bowl.verified import Verified, VoidTrial
 from feederscrew.output.folder import LIBRARIES
 from feederscrew.part.record import AspectNames
 
-DONE, FAILED = "done", "failed"
+DONE = "done"
+FAILED = "failed"
 NOT_COMPUTED = "not computed"  # of a part to which a run that was stopped did not come
 PARTS = "parts"  # folder of the results of a batch, one folder a part in it
 THUMBNAIL = "thumbnail.png"  # among the files of a part

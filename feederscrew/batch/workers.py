@@ -1,24 +1,21 @@
 """Parts on processes of this machine, or on a Dask cluster: one that dies costs a retry, never the batch."""
 
 import contextlib
-import gc
 import importlib
 import logging
-import multiprocessing
 import os
 import re
-import signal
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import CancelledError
 from itertools import islice
-from multiprocessing import forkserver, resource_tracker
 from multiprocessing.connection import wait
 from typing import Any
 
 from feederscrew import __version__
 from feederscrew.batch.task import Outcome, Task, libraries
 from feederscrew.errors import ArgumentError, FeederError, MissingPackage
+from feederscrew.processes import Process, ProcessEnded, server_context
 from feederscrew.units import quantity_text
 
 ATTEMPTS = 3  # of a part whose worker dies under it
@@ -39,17 +36,7 @@ class Processes:
 
     def __init__(self, jobs: int, job: Callable[[Task], Outcome] = work, lifetime: int = LIFETIME) -> None:
         self.jobs, self.job, self.lifetime = jobs, job, lifetime
-        methods = multiprocessing.get_all_start_methods()
-        self.context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-        self.context.set_forkserver_preload(["feederscrew.batch.preload", job.__module__])
-        # the server forks the processes; deaf to Ctrl-C: the batch decides when to stop
-        if self.context.get_start_method() == "forkserver":
-            resource_tracker.ensure_running()  # it would let the signal through again
-            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            try:
-                forkserver.ensure_running()
-            finally:
-                signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        self.context = server_context(["feederscrew.batch.preload", job.__module__])
 
     def outcomes(self, tasks: Iterable[Task]) -> Generator[Outcome, None, None]:
         """Yield the outcome of each task as it comes; a task is taken only when a process is free for it."""
@@ -58,7 +45,7 @@ class Processes:
         tasks, failures = iter(tasks), []
         try:
             while self._busy(crew, tasks, retries):
-                lines = {worker.connection: worker for worker in crew if worker.task is not None}
+                lines = {worker.process.line: worker for worker in crew if worker.task is not None}
                 for worker in [lines[line] for line in wait(list(lines))]:
                     task, outcome = worker.take()
                     if outcome is None:
@@ -73,12 +60,12 @@ class Processes:
                     yield outcome
         finally:
             for worker in crew:
-                worker.stop()
+                worker.process.stop()
 
     def _busy(self, crew: list["_Worker"], tasks: Iterator[Task], retries: list[Task]) -> list["_Worker"]:
         """Give every process work, as long as there is any; return those at work."""
         for worker in [w for w in crew if w.task is None and (w.dead or w.served >= self.lifetime)]:
-            worker.stop()
+            worker.process.stop()
             crew.remove(worker)
         while len(idle := [w for w in crew if w.task is None]) or len(crew) < self.jobs:
             task = retries.pop() if retries else next(tasks, None)
@@ -92,44 +79,25 @@ class Processes:
 
 
 class _Worker:
-    """One process, and the line to it."""
+    """One process, the task it is at, and how many it has had."""
 
     def __init__(self, context: Any, job: Callable[[Task], Outcome]) -> None:
-        self.connection, theirs = context.Pipe()
-        self.process = context.Process(target=_serve, args=(theirs, job), daemon=True)
-        self.process.start()
-        theirs.close()  # so that the line breaks when the process does
+        self.process = Process(context, job)
         self.task: Task | None = None
         self.served, self.dead = 0, False
 
     def give(self, task: Task) -> None:
         self.task, self.served = task, self.served + 1
-        with contextlib.suppress(OSError):  # it is dead: ``take`` finds out
-            self.connection.send(task)
+        self.process.give(task)
 
     def take(self) -> tuple[Any, ...]:
         """Return the task and its outcome; None for a worker that died over it."""
         task, self.task = self.task, None
         try:
-            return task, self.connection.recv()
-        except (EOFError, OSError):
+            return task, self.process.take()
+        except ProcessEnded:
             self.dead = True
             return task, None
-
-    def stop(self) -> None:
-        self.connection.close()
-        self.process.terminate()
-        self.process.join()
-
-
-def _serve(connection: Any, job: Callable[[Task], Outcome]) -> None:
-    """Answer tasks until the other end of the line is gone."""
-    gc.freeze()  # what was there before the fork stays shared, and is not searched after every part
-    gc.enable()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the batch itself decides when to stop
-    with contextlib.suppress(EOFError, OSError):
-        while True:
-            connection.send(job(connection.recv()))
 
 
 def processors() -> int:

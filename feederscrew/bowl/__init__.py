@@ -25,10 +25,26 @@ from feederscrew.bowl.record import Bowl, Drive, Friction, Track
 from feederscrew.bowl.verified import verified
 
 __all__ = [
-    "Bowl", "Drive", "Friction", "Track",
-    "adjust", "assumptions", "at_strokes", "bowl_names", "default", "identity", "key_ranges",
-    "name", "read", "record", "remarks", "settings", "swept", "texts", "verified",
-]  # fmt: skip
+    "Bowl",
+    "Drive",
+    "Friction",
+    "Track",
+    "adjust",
+    "assumptions",
+    "at_strokes",
+    "bowl_names",
+    "default",
+    "identity",
+    "key_ranges",
+    "name",
+    "read",
+    "record",
+    "remarks",
+    "settings",
+    "swept",
+    "texts",
+    "verified",
+]
 
 
 def read(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:

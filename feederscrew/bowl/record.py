@@ -16,7 +16,8 @@ from feederscrew.tooling.devices.base import Device
 if TYPE_CHECKING:
     from feederscrew.bowl.values import BowlValues, Overrides
 
-VALUES_MODULE, WRITING_MODULE = "feederscrew.bowl.values", "feederscrew.bowl.writing"
+VALUES_MODULE = "feederscrew.bowl.values"
+WRITING_MODULE = "feederscrew.bowl.writing"
 MAX_TRACK_WIDTH_SHARE = 0.95  # of the wall's radius: about the axis there is no track
 
 

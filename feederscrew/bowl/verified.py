@@ -19,7 +19,9 @@ from feederscrew.tooling.devices.base import Device
 
 VERIFIED_SECTION = "verified"
 SHARED = {field.name for field in fields(Device)}  # what every device has
-RATE_KEPT, PURE, DRAWS_HELD = 0.9, 0.98, 0.95  # [1] of the target, of what leaves, of the draws
+RATE_KEPT = 0.9  # [1] of the target
+PURE = 0.98  # [1] of what leaves
+DRAWS_HELD = 0.95  # [1] of the draws
 VERIFIED_TOLERANCE = 1e-3  # [1] of a number as the file writes it
 NOTHING_LEFT = "none"  # the purity of a queue that nothing left
 MAX_RATE = 1e6 / units.MINUTE  # [1/s]
@@ -30,7 +32,9 @@ MAX_TEXT = 200  # letters
 HASH = re.compile(r"[0-9a-f]{16,64}", re.ASCII)
 VERSION = re.compile(r"\d+(\.[0-9A-Za-z]+){1,5}([+-][0-9A-Za-z.]+)?", re.ASCII)
 MAX_CLOCK_SKEW = datetime.timedelta(days=1)  # by which the clock of another machine may be wrong
-LYING, HANGING = "lying", "hanging"  # how parts leave
+# how parts leave
+LYING = "lying"
+HANGING = "hanging"
 AMONG = " or "  # between the names of what counts as one
 
 

@@ -101,9 +101,13 @@ def answer(bowl: Bowl) -> Answer:
         float(limits.of_floor(limit, mu.wall, bowl.track.bank)) for limit in limits_of_slip(setting)
     )
     velocities = {
-        "velocity": steady.VELOCITY, "low": steady.LOW, "high": steady.HIGH, "slowest": steady.SLOWEST,
-        "fastest": steady.FASTEST, "hardest_impact": steady.IMPACT,
-    }  # fmt: skip
+        "velocity": steady.VELOCITY,
+        "low": steady.LOW,
+        "high": steady.HIGH,
+        "slowest": steady.SLOWEST,
+        "fastest": steady.FASTEST,
+        "hardest_impact": steady.IMPACT,
+    }
     status = int(out[steady.STATUS])
     return Answer(
         setting=setting,
@@ -161,10 +165,18 @@ def settings(bowl: Bowl) -> Floats:
     drive, friction = here.drive, here.friction
     ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
     rows = np.broadcast_arrays(
-        np.maximum(ratio, LEAST_ACCELERATION_RATIO), drive.vibration_angle, here.track.climb,
-        friction.static, friction.kinetic, *friction.backward, bowl.restitution, -np.asarray(drive.phase),
-        drive.second_harmonic, drive.second_harmonic_phase, drive.second_harmonic_turn,
-    )  # fmt: skip
+        np.maximum(ratio, LEAST_ACCELERATION_RATIO),
+        drive.vibration_angle,
+        here.track.climb,
+        friction.static,
+        friction.kinetic,
+        *friction.backward,
+        bowl.restitution,
+        -np.asarray(drive.phase),
+        drive.second_harmonic,
+        drive.second_harmonic_phase,
+        drive.second_harmonic_turn,
+    )
     return np.stack(rows, axis=-1).astype(float)
 
 

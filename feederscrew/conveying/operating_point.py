@@ -13,7 +13,10 @@ import numpy as np
 from feederscrew import check
 from feederscrew.conveying.waves import Harmonic, Wave, above, harmonic, peak, value
 
-STICK, FORWARD, BACKWARD, FLIGHT = range(4)
+STICK = 0
+FORWARD = 1
+BACKWARD = 2
+FLIGHT = 3
 PHASES = ("stick", "forward", "backward", "flight")
 OVERTONE_RATIO = 4.0  # accelerations of the second harmonic over those of the first, for equal ways
 

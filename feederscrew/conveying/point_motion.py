@@ -27,8 +27,16 @@ MAX_NEWTON_STEPS = 80
 LATE_NEWTON_STEPS = 10
 LAST_BOUNCE_RAD = 1e-6  # a bounce that would last twice this ends endless bouncing: an error of second order
 MAX_EVENTS_A_PERIOD = 100_000
-TRAVEL, TIMES, LONGEST, HARDEST, FLIGHTS = 0, 1, 5, 6, 7  # places in a tally; TIMES holds one per phase
-STOPS, UPWARD, DOWNWARD = 8, 9, 10  # how often it came to rest on the plate, and slid or landed each way
+# places in a tally
+TRAVEL = 0
+TIMES = 1  # one per phase
+LONGEST = 5
+HARDEST = 6
+FLIGHTS = 7
+# how often the point ...
+STOPS = 8  # came to rest on the plate
+UPWARD = 9  # slid or landed upward
+DOWNWARD = 10  # slid or landed downward
 TALLY = 11
 
 

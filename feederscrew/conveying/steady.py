@@ -50,13 +50,19 @@ RUNS = -1  # in place of a period: the part slides on without stopping and does 
 LEAPS = 200  # of a motion that closes in slowly
 SPEED_BRACKET = 1e-13  # [A w] width of the bracket of its speed at which it is found
 MAX_RUNAWAY_SPEED = 1e6  # [A w] no bracket is sought beyond
-PERIODIC, AVERAGED, NO_STEADY_STATE = range(len(MotionStatus))  # a status code is a place in STATUSES
-STATUSES = tuple(MotionStatus)
+STATUSES = tuple(MotionStatus)  # a status code is a place in it
+PERIODIC = STATUSES.index(MotionStatus.PERIODIC)
+AVERAGED = STATUSES.index(MotionStatus.AVERAGED)
+NO_STEADY_STATE = STATUSES.index(MotionStatus.NO_STEADY_STATE)
 STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
 FLIGHT_TIME, IMPACT, HOPS, SLOWEST, FASTEST = range(FRACTIONS + 4, FRACTIONS + 9)
 THROW, REGIME, RUNAWAY, COLUMNS = range(FASTEST + 1, FASTEST + 5)
-AVERAGED_PERIODS, AVERAGED_LOTS = 32, 8  # where there is no period: periods of a lot, and lots averaged
-BRIEF_PERIODS, BRIEF_LOTS = 64, 4  # periods followed, lots averaged, where the first start has no period
+# where there is no period
+AVERAGED_PERIODS = 32  # of a lot
+AVERAGED_LOTS = 8  # lots averaged
+# where the first start has no period
+BRIEF_PERIODS = 64  # periods followed
+BRIEF_LOTS = 4  # lots averaged
 MAX_NOTED_STATES = 64  # states of steady motions that are noted, for further starts to join
 RUNAWAY_LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
 ALTERNATING_STATES_GAP = 1e-8  # of two states: what closes in from alternate sides repeats doubly first
@@ -81,9 +87,12 @@ def memory() -> Memory:
     """Return the arrays, empty, that following a part takes."""
     size = LONGEST_PERIOD + 1
     return Memory(
-        np.zeros(motion.TALLY), np.zeros((size, 3)), np.zeros(size), np.zeros((MAX_NOTED_STATES, 3)),
+        np.zeros(motion.TALLY),
+        np.zeros((size, 3)),
+        np.zeros(size),
+        np.zeros((MAX_NOTED_STATES, 3)),
         np.zeros(COLUMNS),
-    )  # fmt: skip
+    )
 
 
 def settle(rules: Law, state: State) -> tuple[State, int]:

@@ -18,7 +18,10 @@ from feederscrew.resting.rules.recommended import launch_of_name
 from feederscrew.units import GRAVITY, QuantityError, factor, quantity, quantity_text
 
 DRAWS_A_DROP = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
-ANY_AXIS, LEVEL_AXIS, FLIP_AXIS = "any", "horizontal", "in the greatest face"  # axes a launch spins about
+# axes a launch spins about
+ANY_AXIS = "any"
+LEVEL_AXIS = "horizontal"
+FLIP_AXIS = "in the greatest face"
 FLIP_LEAN_RAD = np.radians(40.0)  # of FLIP_AXIS's axis from the level, at most: see docs/resting.md
 
 
@@ -166,7 +169,9 @@ CONDITION_KEYS = {  # argument: dimension; lowest, highest without dimensions
     "restitution": ("number", 0.0, 1.0),
     "friction": ("number", 0.0, 5.0),
 }
-MIN_HALF_WIDTH, MAX_HALF_WIDTH = 1e-4, 0.5  # [1] half-widths of an interval that drops may go on for
+# half-widths of an interval that drops may go on for
+MIN_HALF_WIDTH = 1e-4  # [1]
+MAX_HALF_WIDTH = 0.5  # [1]
 LIMIT_UNITS = {"length": "mm", "velocity": "mm/s", "angular velocity": "rad/s", "number": ""}
 
 

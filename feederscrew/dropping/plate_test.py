@@ -50,7 +50,9 @@ PARTS_A_BATCH = 40  # parts a core takes at a time
 DEFAULT_PLATE_PARTS = 400  # parts, where the user names no number
 PARTS_A_LOOK = 400  # parts between two looks at the intervals
 MAX_PLATE_STEPS = 20_000_000  # for one part: a minute of computing; 10 mm for ten minutes take 4,000,000
-MIN_LOOKS, MAX_LOOKS = 8, 600  # looks at a part, one a period or one in so many
+# looks at a part, one a period or one in so many
+MIN_LOOKS = 8
+MAX_LOOKS = 600
 RATE_DRAWS = 400  # of the rates, for the interval of where they lead
 MISSED_TRANSITIONS = 0.5  # transition out of each class that may have been missed, shared by the ways out
 MIN_TRANSITIONS = 5  # transitions: with fewer nothing is said of where they lead
@@ -403,14 +405,21 @@ def occupancy(
     distances = np.einsum("nk,nka->na", np.diff(places[:, middle:], axis=1), within)
     arrays = {
         "start": np.bincount(first, minlength=count + 1)[:count] / len(classes),
-        "plate": half, "plate_low": low, "plate_high": high,
+        "plate": half,
+        "plate_low": low,
+        "plate_high": high,
         "error": each.std(axis=0) / np.sqrt(len(each)),
-        "limit": limit, "limit_low": ends[0], "limit_high": ends[1],
+        "limit": limit,
+        "limit_low": ends[0],
+        "limit_high": ends[1],
         "changing": np.abs(change.mean(axis=0)) > np.maximum(SURE_ERRORS * error, MIN_SHARE_CHANGE),
-        "counts": counts, "times": times, "course": inside.mean(axis=0), **_rates(counts, times),
+        "counts": counts,
+        "times": times,
+        "course": inside.mean(axis=0),
+        **_rates(counts, times),
         "velocity": _ratio(whole[:, None], np.ones((len(whole), 1)))[0],
         "velocities": _ratio(distances, period * within.sum(axis=1)),
-    }  # fmt: skip
+    }
     return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in arrays.items()})
 
 
@@ -480,11 +489,18 @@ def occupancy_from(arrays: Mapping[str, Array], count: int, parts: int) -> Occup
         raise ValueError("shares add up to more than 1, or there are none")
     low, high = wilson(plate * parts, parts)
     fields = {
-        "start": start, "plate": plate, "plate_low": low, "plate_high": high,
+        "start": start,
+        "plate": plate,
+        "plate_low": low,
+        "plate_high": high,
         "error": read("error", row, 0.0, 1.0),
         **{name: read(name, row, 0.0, most, gaps=True) for name in ("limit", "limit_low", "limit_high")},
-        "changing": changing, "counts": counts, "times": times, "course": course, **_rates(counts, times),
+        "changing": changing,
+        "counts": counts,
+        "times": times,
+        "course": course,
+        **_rates(counts, times),
         "velocity": read("velocity", (3,), gaps=True),
         "velocities": read("velocities", (count, 3), gaps=True),
-    }  # fmt: skip
+    }
     return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in fields.items()})

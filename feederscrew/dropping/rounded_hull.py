@@ -20,7 +20,12 @@ from feederscrew.resting.exact_tumbling import Ground, tumble
 from feederscrew.resting.half_edges import Edges, half_edges, saddles, sinks
 from feederscrew.resting.landscape import SMOOTH_ANGLE
 
-CENTRE, AXIS, RADIUS, MIDDLE, OPENING, RIM = slice(0, 3), slice(3, 6), 6, slice(7, 10), 10, 11
+CENTRE = slice(0, 3)
+AXIS = slice(3, 6)
+RADIUS = 6
+MIDDLE = slice(7, 10)
+OPENING = 10
+RIM = 11
 MIN_ARC_EDGES = 4  # edges of an arc
 STRAIGHT_CORNER_RAD = np.radians(0.2)  # a corner that turns less is a point on an edge
 RIM_PLANE_SHARE = 1e-5  # of the radius of the hull: how far corners of one rim may lie off its plane

@@ -24,15 +24,22 @@ from feederscrew.resting.exact_tumbling import Ground
 from feederscrew.resting.profiles import FaultList, split_cells
 from feederscrew.units import GRAVITY, QuantityError, decimal, quantity_text
 
-POSITION_COLUMNS, ATTITUDE_COLUMNS = ("x0_m", "y0_m", "z0_m"), ("qw0", "qx0", "qy0", "qz0")
-VELOCITY_COLUMNS, SPIN_COLUMNS = ("vx0", "vy0", "vz0"), ("wx0", "wy0", "wz0")
+POSITION_COLUMNS = ("x0_m", "y0_m", "z0_m")
+ATTITUDE_COLUMNS = ("qw0", "qx0", "qy0", "qz0")
+VELOCITY_COLUMNS = ("vx0", "vy0", "vz0")
+SPIN_COLUMNS = ("wx0", "wy0", "wz0")
 STATE_COLUMNS = (*POSITION_COLUMNS, *ATTITUDE_COLUMNS, *VELOCITY_COLUMNS, *SPIN_COLUMNS)
-END_COLUMNS, FACE_COLUMN = ("xe_m", "ye_m"), "face_up_end"
+END_COLUMNS = ("xe_m", "ye_m")
+FACE_COLUMN = "face_up_end"
 FACE_NAMES = ("-x", "+x", "-y", "+y", "-z", "+z")  # sides of a part by the axes of its file
 CAMERA_PATTERN = re.compile(r"frames_(\d+(?:\.\d+)?)Hz")
 QUATERNION_TOLERANCE = 0.02  # [1] that the length of a quaternion may differ from 1 by
-MAX_SPEED_M_S, MAX_SPIN_RAD_S, MAX_DISTANCE_M = 1e3, 1e4, 1e3  # beyond, the unit is not SI
-MAX_LAUNCHES_BYTES, MAX_TOSSES = 5_000_000, 5_000  # [bytes], tosses
+# beyond, the unit is not SI
+MAX_SPEED_M_S = 1e3
+MAX_SPIN_RAD_S = 1e4
+MAX_DISTANCE_M = 1e3
+MAX_LAUNCHES_BYTES = 5_000_000
+MAX_TOSSES = 5_000
 STATE_EXAMPLE = f"give the columns toss,{','.join(STATE_COLUMNS)} in SI units"
 DEFAULT_RUNS = 64  # runs of each toss
 TOSSES_A_BATCH = 4  # tosses a core takes at a time
@@ -249,9 +256,15 @@ def follow(
         seconds[n] = np.sqrt(length / GRAVITY) * np.median(times[n][chosen])
     released = _upward(launches.attitudes[:count], np.eye(3))
     arrays = {
-        "shares": shares, "faces": best, "rows": lain, "places": places, "spreads": spreads,
-        "times": seconds, "settled": settled.sum(axis=1), "released": released,
-    }  # fmt: skip
+        "shares": shares,
+        "faces": best,
+        "rows": lain,
+        "places": places,
+        "spreads": spreads,
+        "times": seconds,
+        "settled": settled.sum(axis=1),
+        "released": released,
+    }
     return Tosses(runs, **{name: check.frozen(array) for name, array in arrays.items()}, partial=partial)
 
 

@@ -1,8 +1,8 @@
-"""How a kernel is compiled: by numba into code of LLVM for each function, by LLVM into code of the machine.
+"""How a kernel is compiled: by numba into code of LLVM, with what numba documents for its users alone.
 
 numba itself hands on a named tuple as every number behind it, some hundred for a workspace, at each call, and
 spells all of their types in the name of each function. Here it is one address, behind which its fields lie as
-words. And numba makes machine code of each function by itself, which nobody would call.
+words.
 """
 
 import hashlib
@@ -12,18 +12,12 @@ from typing import Any
 
 import numpy as np
 from llvmlite import binding, ir
-from numba import cfunc, extending, from_dtype, types
-from numba.core import cgutils, typed_passes, untyped_passes
-from numba.core.codegen import AOTCodeLibrary, AOTCPUCodegen
-from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
-from numba.core.options import DefaultOptions
-from numba.core.typing.templates import AttributeTemplate
-from numba.np.arrayobj import make_array, populate_array
+from numba import carray, cfunc, extending, from_dtype, njit, types
 
 RESULTS = {float: types.float64, int: types.int64, bool: types.boolean, None: types.void}
 
 WORD = ir.IntType(64)
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "forceinline": True}  # of what reads words
 
 
 class HandedRecord(types.Type):
@@ -37,23 +31,18 @@ class HandedRecord(types.Type):
 
 extending.register_model(HandedRecord)(extending.models.OpaqueModel)
 
-
-@extending.infer_getattr
-class FieldOfRecord(AttributeTemplate):
-    """The type of a field."""
-
-    key = HandedRecord
-
-    def generic_resolve(self, value: Any, attr: str) -> Any:  # type: ignore[override]  # numba's is no function
-        """Return the type of a field; None of a name that is none."""
-        return value.fields[attr][0] if attr in value.fields else None
+DECLARED: set[str] = set()  # names of fields that numba is told of
 
 
-@extending.lower_getattr_generic(HandedRecord)
-def read_field(context: Any, builder: Any, record: HandedRecord, address: Any, name: str) -> Any:
-    """Emit the reading of a field."""
-    kind, place = record.fields[name]
-    return _read(context, builder, kind, place, address)
+def _declare_field(name: str) -> None:
+    """Let compiled code read a field of that name from any record that has one."""
+    if name in DECLARED:
+        return
+    DECLARED.add(name)
+
+    @extending.overload_attribute(HandedRecord, name, jit_options=OPTIONS)  # type: ignore[call-arg]  # of `overload`
+    def read(record):  # type: ignore[no-untyped-def]  # numba compares the names of parameters with their types
+        return _reader(*record.fields[name]) if name in record.fields else None
 
 
 def _places(kinds: Sequence[Any]) -> Iterator[int]:
@@ -70,121 +59,66 @@ def _words_of(kind: Any) -> int:
     return sum(map(_words_of, _items(kind))) if isinstance(kind, types.BaseTuple) else 1
 
 
-def _items(kind: Any) -> list[Any]:
-    return list(kind.types)
+def _items(kind: Any) -> tuple[Any, ...]:
+    """The types of a tuple's items."""
+    return tuple(kind.types)
 
 
-def _reader(kind: Any, place: int) -> Any:
-    """A function for compiled code: the value of a type that lies at a place behind an address."""
-
-    @extending.intrinsic
-    def read(typing_context: Any, words: Any) -> Any:
-        def emit(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            return _read(context, builder, kind, place, builder.bitcast(arguments[0], cgutils.voidptr_t))
-
-        return kind(words), emit
-
-    return read
-
-
-def _read(context: Any, builder: Any, kind: Any, place: int, address: Any) -> Any:
-    """Emit the reading of a value; its words stay as they are as long as the kernel runs."""
-
-    def word(number: int, of: Any) -> Any:
-        pointer = builder.gep(builder.bitcast(address, WORD.as_pointer()), [WORD(place + number)])
-        loaded = builder.load(builder.bitcast(pointer, of.as_pointer()))
-        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
-        return loaded
-
-    if isinstance(kind, HandedRecord):
-        return builder.gep(builder.bitcast(address, cgutils.voidptr_t), [WORD(8 * place)])
+def _reader(kind: Any, place: int) -> Callable[[Any], Any]:
+    """A function to be compiled: the value of a type that lies at a place behind an address."""
     if isinstance(kind, types.Array):  # in C order, of its address and shape
-        shape = [word(1 + k, WORD) for k in range(kind.ndim)]
-        data_type = context.get_data_type(kind.dtype)
-        size = context.get_abi_sizeof(data_type)
-        strides: list[Any] = [WORD(size)]
-        for length in reversed(shape[1:]):
-            strides.insert(0, builder.mul(strides[0], length))
-        array, data = make_array(kind)(context, builder), word(0, data_type.as_pointer())
-        populate_array(array, data=data, shape=shape, strides=strides, itemsize=size, meminfo=None)
-        return array._getvalue()
+        data = _loader(types.CPointer(kind.dtype), place)
+        shape = _loader(types.UniTuple(types.int64, kind.ndim), place + 1)
+        return lambda record: carray(data(record), shape(record))
     if isinstance(kind, types.BaseTuple):
         items = _items(kind)
         places = [place + first for first in _places(items)]
-        values = [_read(context, builder, *each, address) for each in zip(items, places, strict=True)]
-        return context.make_tuple(builder, kind, values)
-    if isinstance(kind, types.Boolean):
-        return builder.icmp_signed("!=", word(0, WORD), WORD(0))
-    return word(0, context.get_value_type(kind))
+        return _joined([_reader(*each) for each in zip(items, places, strict=True)])
+    load = _loader(kind, place)
+    return lambda record: load(record)
 
 
-class KernelLibrary(AOTCodeLibrary):
-    """The code of a function as LLVM has it: machine code is made of a whole kernel alone."""
-
-    def get_pointer_to_function(self, name: str) -> int:
-        """Return 0, as there is no machine code, once the function is optimised."""
-        self._ensure_finalized()
-        return 0
-
-
-class KernelCodegen(AOTCPUCodegen):
-    """Makes such libraries."""
-
-    _library_class = KernelLibrary
-
-    def set_env(self, env_name: str, env: Any) -> None:
-        """Keep no objects of Python: kernels have none."""
+def _joined(readers: Sequence[Callable[[Any], Any]]) -> Callable[[Any], Any]:
+    """A function to be compiled: a tuple of what some of them read."""
+    first = njit(**OPTIONS)(readers[0])
+    if len(readers) == 1:
+        return lambda record: (first(record),)
+    others = njit(**OPTIONS)(_joined(readers[1:]))
+    return lambda record: (first(record), *others(record))
 
 
-CODEGEN = KernelCodegen("kernels", "host")
+def _loader(kind: Any, place: int) -> Any:
+    """A function for compiled code: the words at a place, as a number, an address, or a tuple of numbers."""
+
+    @extending.intrinsic
+    def load(typing_context: Any, record: Any) -> Any:
+        def emit(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            words = builder.bitcast(arguments[0], WORD.as_pointer())
+            if not isinstance(kind, types.UniTuple):
+                return _load(context, builder, kind, words, place)
+            values = [_load(context, builder, kind.dtype, words, place + k) for k in range(kind.count)]
+            return context.make_tuple(builder, kind, values)
+
+        return kind(record), emit
+
+    return load
 
 
-@register_pass(mutates_CFG=False, analysis_only=True)
-class ChooseLibrary(FunctionPass):
-    """Lets a function be compiled into a KernelLibrary."""
-
-    _name = "kernel_library"
-
-    def __init__(self) -> None:
-        super().__init__()
-
-    def run_pass(self, state: Any) -> bool:
-        """Give the state of a compilation its library."""
-        state.library = CODEGEN.create_library(state.func_id.func_qualname)
-        return False
-
-
-class LeanCompiler(CompilerBase):
-    """numba's compiler without the passes for what kernels do without: closures, parallel loops, branches."""
-
-    def define_pipelines(self) -> list[PassManager]:
-        """Return the passes that are made, in order."""
-        passes, untyped, typed = PassManager("kernel"), untyped_passes, typed_passes
-        steps: list[Any] = []
-        if self.state.func_ir is None:
-            steps = [untyped.TranslateByteCode, untyped.FixupArgs]
-        steps += [ChooseLibrary, untyped.IRProcessing, untyped.GenericRewrites, untyped.ReconstructSSA]
-        steps += [typed.NopythonTypeInference, typed.PreLowerStripPhis, typed.IRLegalization]
-        steps += [typed.NativeLowering, typed.NoPythonBackend]
-        for step in steps:
-            passes.add_pass(step, step.__name__)
-        passes.finalize()
-        return [passes]
+def _load(context: Any, builder: Any, kind: Any, words: Any, place: int) -> Any:
+    """Emit the reading of a word, which stays as it is as long as the kernel runs."""
+    pointer = builder.gep(words, [WORD(place)])
+    if isinstance(kind, HandedRecord):
+        return builder.bitcast(pointer, context.get_value_type(kind))
+    is_flag = isinstance(kind, types.Boolean)
+    value_type = WORD if is_flag else context.get_value_type(kind)
+    loaded = builder.load(builder.bitcast(pointer, value_type.as_pointer()))
+    loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return builder.icmp_signed("!=", loaded, WORD(0)) if is_flag else loaded
 
 
 def register(function: Callable[..., Any], is_inlined: bool) -> None:
-    """Let compiled code call a function, which becomes a part of its callers if it ``is_inlined``.
-
-    No reference counting, which costs more than the arithmetic, and no way in from Python or C.
-    """
-    counting = {"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {}
-    extending.register_jitable(
-        error_model="numpy",
-        no_cfunc_wrapper=True,
-        forceinline=is_inlined,
-        pipeline_class=LeanCompiler,
-        **counting,
-    )(function)
+    """Let compiled code call a function, which becomes a part of its callers if it ``is_inlined``."""
+    extending.register_jitable(error_model="numpy", forceinline=is_inlined)(function)
 
 
 def numba_type(kind: Any, kind_of: dict[int, Any]) -> Any:
@@ -194,7 +128,11 @@ def numba_type(kind: Any, kind_of: dict[int, Any]) -> Any:
     if isinstance(kind[0], np.dtype):
         return types.Array(from_dtype(kind[0]), kind[1], "C")
     items = tuple(numba_type(kind_of[number], kind_of) for number in kind[1:])
-    return types.Tuple(items) if kind[0] is tuple else HandedRecord(kind[0].__name__, kind[0]._fields, items)
+    if kind[0] is tuple:
+        return types.Tuple(items)
+    for name in kind[0]._fields:
+        _declare_field(name)
+    return HandedRecord(kind[0].__name__, kind[0]._fields, items)
 
 
 def llvm_code(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[str, Any]:
@@ -202,11 +140,11 @@ def llvm_code(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[str, 
 
     ``kinds`` are numba's types of its arguments, which lie in the block one behind the other.
     """
-    names: dict[str, Any] = {"kernel": function}
-    for k, (kind, place) in enumerate(zip(kinds, _places(kinds), strict=True)):
-        names[f"read{k}"] = _reader(kind, place)
-    call = ", ".join(f"read{k}(words)" for k in range(len(kinds)))
-    exec(f"def call(words):\n    return kernel({call})\n", names)
+    read = njit(**OPTIONS)(_reader(types.Tuple(tuple(kinds)), 0))
+
+    def call(words: Any) -> Any:
+        return function(*read(words))
+
     signature = RESULTS[function.__annotations__["return"]](types.CPointer(types.int64))
-    code = cfunc(signature, error_model="numpy", pipeline_class=LeanCompiler)(names["call"])
+    code = cfunc(signature, error_model="numpy")(call)
     return code.native_name, binding.parse_assembly(code.inspect_llvm())

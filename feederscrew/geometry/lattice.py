@@ -51,10 +51,13 @@ def cells(corners: Points, triangles: Triangles, count: int) -> Cells:
     solid = _filled(corners[triangles], origin, size, shape)
     hull = _filled(corners[ConvexHull(corners).simplices], origin, size, shape)
     return Cells(
-        origin=check.frozen(origin), size=size, solid=check.frozen(solid), hull=check.frozen(hull | solid),
+        origin=check.frozen(origin),
+        size=size,
+        solid=check.frozen(solid),
+        hull=check.frozen(hull | solid),
         away=check.frozen(size * distance_transform_edt(~solid)),
         inside=check.frozen(size * distance_transform_edt(solid)),
-    )  # fmt: skip
+    )
 
 
 def _filled(triangles: Floats, origin: Vector, size: float, shape: Ints) -> Bools:

@@ -156,7 +156,8 @@ def _circle(machine: Machine, wanted: float, radius: float, ends: tuple[float, f
 
 SAME_ANGLE = np.radians(0.5)  # angles at the track that are nearer than this count as one
 SAME_PHASE = np.radians(0.05)
-LEAF_SPRING, TWO_AXIS = "leaf-spring drive", "two-axis drive"
+LEAF_SPRING = "leaf-spring drive"
+TWO_AXIS = "two-axis drive"
 TWO_MAGNETS = "needs two magnets and a two-channel controller: one set of leaf springs cannot make it"
 
 
@@ -242,7 +243,9 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
 GREATEST_PULL_N = 1900.0
 FLOW_TOLERANCE_SHARE = 1e-9  # [1] flows closer than this are equal
 MAX_DRIVE_ITERATIONS = 4  # of strokes and leaves that follow from each other
-ALONE, CONTROLLED = "strokes", "controlled"  # fields of an Emptying
+# fields of an Emptying
+ALONE = "strokes"
+CONTROLLED = "controlled"
 STROKE_CONTROL_LABELS = {ALONE: "amplitude left alone", CONTROLLED: "amplitude controlled"}
 
 

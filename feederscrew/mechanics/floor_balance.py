@@ -22,7 +22,10 @@ from feederscrew.mechanics import cycle
 from feederscrew.resting.posture import Posture
 
 MOTION_STATES = ("stick", "slide", "hop", "tip")  # a state code is a place in this list
-STICK, SLIDE, HOP, TIP = range(len(MOTION_STATES))
+STICK = 0
+SLIDE = 1
+HOP = 2
+TIP = 3
 UPPER_REVERSAL = 0.5 * np.pi
 ON_THE_LINE = 1e-9  # [m] a normal force this near the contact polygon's border does not tip the part
 SLIP_HALVINGS = 90  # of the interval of slip accelerations: down to rounding

@@ -45,7 +45,11 @@ class Regime(enum.StrEnum):
 
 # a regime code is a place in this list
 POINT_REGIMES = (Regime.STICK, Regime.FORWARD, Regime.BACKWARD, Regime.BOTH, Regime.HOP)
-RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(POINT_REGIMES))
+RIDE = POINT_REGIMES.index(Regime.STICK)
+FORWARD = POINT_REGIMES.index(Regime.FORWARD)
+BACKWARD = POINT_REGIMES.index(Regime.BACKWARD)
+BOTH = POINT_REGIMES.index(Regime.BOTH)
+HOP = POINT_REGIMES.index(Regime.HOP)
 HOP_ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
 USE = "leave it out, or use feeder convey"
 

@@ -40,12 +40,21 @@ def floor_cells(posture: Posture, bowl: Bowl, heading: Reals) -> dict[str, Array
 
 
 TRACK_REGIMES = (*MOTION_STATES, "leaves the wall", "does not fit")  # a code is a place in this list
-LEAVES_WALL, DOES_NOT_FIT = len(MOTION_STATES), len(MOTION_STATES) + 1
+LEAVES_WALL = len(MOTION_STATES)
+DOES_NOT_FIT = len(MOTION_STATES) + 1
 MOTION_MAP_COLUMNS = (
-    "acceleration_x_m_s2", "normal_force_N", "wall_1_N", "wall_2_N",
-    "radial_friction_N", "traction_N", "normal_line_offset_m", "normal_line_offset_across_m",
-)  # fmt: skip
-SECTIONS, SINGLE = ("drive", "friction", "track"), ("restitution", "gravity")  # of a bowl, that act on a part
+    "acceleration_x_m_s2",
+    "normal_force_N",
+    "wall_1_N",
+    "wall_2_N",
+    "radial_friction_N",
+    "traction_N",
+    "normal_line_offset_m",
+    "normal_line_offset_across_m",
+)
+# of a bowl, that act on a part
+SECTIONS = ("drive", "friction", "track")  # sections
+SINGLE = ("restitution", "gravity")  # keys
 TRACK_DECIMALS = 12  # decimals that tell two radii, widths or banks apart
 
 

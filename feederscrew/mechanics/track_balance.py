@@ -285,9 +285,12 @@ def solve_rest(
     unheld, divisor = slip(unslid)
     guess = ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
     root = _zero(
-        lambda mobilised: slip(mobilised)[0], unslid, unheld, guess,
+        lambda mobilised: slip(mobilised)[0],
+        unslid,
+        unheld,
+        guess,
         lambda after, step: after - np.clip(step, -10.0, 10.0),
-    )  # fmt: skip
+    )
     left, divisor_there = slip(root)
     holds = (np.abs(left) <= HELD_SLIP_SHARE * np.abs(unheld)) & (root * guess >= 0.0)
     mobilised = np.where(holds & (divisor_there * divisor > 0.0), root, guess)

@@ -1,7 +1,6 @@
 """What a subject offers of its study: files by name, each made only when it is asked for."""
 
 import contextlib
-import signal
 import sys
 import threading
 import warnings
@@ -13,6 +12,7 @@ from typing import Any, Protocol
 from feederscrew.heavy import heavy
 from feederscrew.output import tables
 
+futures = heavy("concurrent.futures")
 multiprocessing = heavy("multiprocessing")
 style = heavy("feederscrew.output.style")
 
@@ -110,51 +110,38 @@ def _make_in_parallel(files: Sequence[Offer]) -> Iterator[Callable[[Offer], str 
     if not files or not sys.platform.startswith("linux") or threading.active_count() > 1:
         yield lambda offer: None
         return
-    contents: dict[str, str | bytes] = {}
-    news, is_over = threading.Condition(), threading.Event()
-    context = multiprocessing.get_context("fork")
-    ours, theirs = context.Pipe(duplex=False)
+    from feederscrew import processes  # and all of multiprocessing with it
 
-    def make_all() -> None:
-        """Make files in turn and send each; what fails is left to the process that asks for it."""
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the other one decides when to stop
-        for ending in (signal.SIGTERM, signal.SIGHUP):  # whose handlers of that one would raise an interrupt
-            signal.signal(ending, signal.SIG_DFL)
-        with contextlib.suppress(Exception, KeyboardInterrupt):
-            for offer in files:
-                theirs.send((offer.name, offer.make()))
-
-    process = context.Process(target=make_all, daemon=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of threads that BLAS keeps, and that sleep
-        process.start()
-    theirs.close()  # so that the line breaks when the process ends
+        process = processes.Process(multiprocessing.get_context("fork"), lambda k: _made(files[k]))
 
-    def receive() -> None:
-        with contextlib.suppress(EOFError, OSError):
-            while True:
-                name, content = ours.recv()
-                with news:
-                    contents[name] = content
-                    news.notify()
-        is_over.set()
-        with news:
-            news.notify()
+    def ask(k: int) -> str | bytes | None:
+        process.give(k)
+        return process.take()
+
+    errand = futures.ThreadPoolExecutor(1)
+    tasks = {offer.name: errand.submit(ask, k) for k, offer in enumerate(files)}
 
     def wait_for(offer: Offer) -> str | bytes | None:
-        with news:
-            news.wait_for(lambda: offer.name in contents or is_over.is_set())
-        return contents.pop(offer.name, None)
+        try:
+            return tasks.pop(offer.name).result()
+        except processes.ProcessEnded:
+            return None
 
-    receiver = threading.Thread(target=receive, daemon=True)
-    receiver.start()
     try:
         yield wait_for
     finally:
-        process.kill()
-        process.join()
-        receiver.join()
-        ours.close()
+        errand.shutdown(wait=False, cancel_futures=True)
+        process.stop()
+        errand.shutdown()
+
+
+def _made(offer: Offer) -> str | bytes | None:
+    """Return a file; None of one that fails, which the process that asks for it makes itself, and fails."""
+    with contextlib.suppress(Exception):
+        return offer.make()
+    return None
 
 
 def by_name(files: Iterable[Offer]) -> dict[str, Offer]:

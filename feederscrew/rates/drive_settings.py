@@ -17,8 +17,13 @@ from feederscrew.mechanics.limits import Regime
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
 # regimes, the most wanted first
 REGIMES_BY_GENTLENESS = (
-    Regime.FORWARD, Regime.STICK, Regime.BOTH, Regime.BACKWARD, Regime.HOP, Regime.NO_STEADY_STATE,
-)  # fmt: skip
+    Regime.FORWARD,
+    Regime.STICK,
+    Regime.BOTH,
+    Regime.BACKWARD,
+    Regime.HOP,
+    Regime.NO_STEADY_STATE,
+)
 KNOB_SAMPLES = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
 KNOB_BISECTIONS = 24  # of a step of KNOB_SAMPLES, to 3e-10 of a knob's range
@@ -30,8 +35,10 @@ ACCEPTED_RATE_ERROR = 0.04
 LED = 0.1  # of the rate: a setting led no nearer to it by the bowl's own shares waits for all others
 LEADS = 3  # steps that the shares of the bowl's own drive lead
 # settings whose arriving parts are simulated, at 2 to 6 s each: in all, and where none gives the rate so far
-MAX_SIMULATED, MAX_SIMULATED_IN_VAIN = 8, 16
-ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
+MAX_SIMULATED = 8
+MAX_SIMULATED_IN_VAIN = 16
+ROUNDS = 8  # steps towards a setting
+REMEMBERED = 3  # those whose parts lead on
 SETTING_TOLERANCE = 0.01  # of a value: two settings are one
 SETTING_DIGITS = 5  # of a value as it is printed
 Density = Callable[[Bowl | None], float]  # [1/m] as ``solutions`` takes it

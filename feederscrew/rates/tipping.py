@@ -26,7 +26,8 @@ from feederscrew.tooling.orientations import Orientation, add_travel, gyration, 
 from feederscrew.units import MM, listed
 
 ROCKING_STEPS = 48  # of one period
-SETTLES, FOLLOWED = 12, 60  # periods until the sliding repeats itself, and that the rocking is followed
+SETTLES = 12  # periods until the sliding repeats itself
+FOLLOWED = 60  # periods that the rocking is followed
 REST_ANGULAR_SPEED = 1e-4  # [rad/s] a part that comes down slower lies still
 SENSES = (0.0, 1.0, -1.0)  # at rest, sliding ahead, sliding back
 
@@ -152,7 +153,11 @@ class TrackTipping:
     over: Bools  # (M,) bool, whether its rocking turns it over
 
 
-STAYS, ROCKS, OVER, BACK, THROWN = "stays on its aspect", "rocks", "turns over", "rolls back", "is thrown"
+STAYS = "stays on its aspect"
+ROCKS = "rocks"
+OVER = "turns over"
+BACK = "rolls back"
+THROWN = "is thrown"
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,12 @@ from feederscrew.resting.rules.registry import ClassQuantities
 from feederscrew.signatures import with_shown_signature
 from feederscrew.units import MM, one_line
 
-FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
-BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
+FLAT = "flat"
+CYLINDER = "cylinder"
+CONE = "cone"
+BALL = "ball"
+OFF_CENTRE = "off-centre ball"
+WITH_A_FLAT = "ball with a flat"
 ASPECTS_MEND = "give Aspects, as find_aspects returns them"
 ROLLING_POSTURE = "on side (rolls)"
 SAME_SIZE = 0.02  # share by which two sizes of a part may differ and count as one, for a posture's words

@@ -16,7 +16,8 @@ from feederscrew.resting.deviation import ChiSquare, chi_square, chi_square_pass
 from feederscrew.resting.profiles import CountFile, DeviceCounts
 from feederscrew.resting.rules.formulas import surface_shares
 
-LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
+LOWEST = -2.0  # [1] least exponent tried
+HIGHEST = 8.0  # [1] greatest exponent tried
 CONFIDENCE = 0.95
 EQUAL_SHARE_TOLERANCE = 1e-9  # [1] so near two heights or shares are the same
 DEVICES_FIT = "devices"  # the name of the fit to a feeding test
@@ -71,9 +72,12 @@ def calibrate(counts: ArrayLike, shares: ArrayLike, heights: ArrayLike, radius: 
 
 
 def _likeliest(
-    loss: Callable[[Floats], float], test: Callable[[Floats], ChiSquare], shares: Floats, heights: Floats,
+    loss: Callable[[Floats], float],
+    test: Callable[[Floats], ChiSquare],
+    shares: Floats,
+    heights: Floats,
     radius: float,
-) -> Calibration:  # fmt: skip
+) -> Calibration:
     """The exponent whose shares have the least loss, with its interval and a test of these shares."""
 
     def shares_at(exponent: float) -> Floats:

@@ -73,9 +73,20 @@ def half_edges(hull: Hull) -> Edges:
     around = np.zeros_like(borders.ahead)  # the first half-edge off the borders
     around[borders.ahead[edges]] = borders.twins[edges]
     arrays = Edges(
-        hull.vertices, origins, borders.targets, borders.twins, facets, borders.part, borders.ahead, around,
-        slopes, sides, normals, by_facet, by_vertex,
-    )  # fmt: skip
+        hull.vertices,
+        origins,
+        borders.targets,
+        borders.twins,
+        facets,
+        borders.part,
+        borders.ahead,
+        around,
+        slopes,
+        sides,
+        normals,
+        by_facet,
+        by_vertex,
+    )
     return Edges(*map(check.frozen, arrays))
 
 

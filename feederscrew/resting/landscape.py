@@ -38,9 +38,15 @@ def find_root(forest: Ints, k: int) -> int:
 
 @compiled
 def join_trees(
-    heights: Floats, limits: Floats, lefts: Ints, rights: Ints, tops: Floats,
-    region: Ints, basin: Ints, stands: Bools,
-) -> None:  # fmt: skip
+    heights: Floats,
+    limits: Floats,
+    lefts: Ints,
+    rights: Ints,
+    tops: Floats,
+    region: Ints,
+    basin: Ints,
+    stands: Bools,
+) -> None:
     """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
 
     A way between sinks that lower ways have led to each other is passed over. ``heights`` and ``limits`` (B,)

@@ -25,7 +25,8 @@ HEAD_LINE = re.compile(r"#\s*([A-Za-z_ -]{1,30}?)\s*:\s*(.*)")
 DIGEST = re.compile(r"(?:sha256:)?([0-9a-f]{8,64})", re.IGNORECASE)
 MAX_VALUE_LETTERS = 500  # letters of a value
 MAX_COUNTS_BYTES = 1_000_000  # [bytes] a thousand aspects in a hundred columns
-MAX_ROWS, MAX_COLUMNS = 10_000, 200
+MAX_ROWS = 10_000
+MAX_COLUMNS = 200
 MAX_FAULTS_LISTED = 20  # faults of one file that are shown
 COUNTS_EXAMPLE = "give a header 'aspect,counts' and one row an aspect"
 
@@ -164,7 +165,10 @@ def split_cells(where: str, number: int, line: str, mend: str = COUNTS_EXAMPLE) 
 SUM_TOLERANCE = 0.005  # of the whole: how far printed fractions may miss their sum
 COLUMN_SUM = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
 DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
-BY_ASPECT, BY_ORIENTATION, BY_DEVICE = "aspect", "orientation", "device"  # first column: what it counts by
+# first column: what it counts by
+BY_ASPECT = "aspect"
+BY_ORIENTATION = "orientation"
+BY_DEVICE = "device"
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
 MAX_PARTS_COUNTED = 1e12  # of a count
@@ -351,7 +355,9 @@ def profile_of(name: str, kind: str, values: Floats, whole: float = 1.0) -> Aspe
     return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))
 
 
-PASSED, REJECTED = "passed", "rejected"  # the columns after the device, in either order
+# the columns after the device, in either order
+PASSED = "passed"
+REJECTED = "rejected"
 PASSED_EXAMPLE = "give a header 'device,passed,rejected' and one row a device"
 
 

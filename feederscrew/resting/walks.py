@@ -193,9 +193,15 @@ def climb(
 
 @compiled
 def trace_saddles(
-    edges: Edges, tops: Bools, saddles: Ints, directions: Floats, gauges: Floats,
-    pairs: Ints, peaks: Ints, areas: Floats,
-) -> None:  # fmt: skip
+    edges: Edges,
+    tops: Bools,
+    saddles: Ints,
+    directions: Floats,
+    gauges: Floats,
+    pairs: Ints,
+    peaks: Ints,
+    areas: Floats,
+) -> None:
     """Sinks joined by each saddle, and the boundary integral of every facet's basin.
 
     ``tops`` (V,) bool; ``saddles`` (E,); ``directions`` (E, 3); ``gauges`` (M, 3); ``pairs`` (E, 2);

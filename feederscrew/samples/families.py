@@ -19,34 +19,78 @@ from feederscrew.thesis import parts as thesis_parts
 from feederscrew.units import MM
 
 PITCHES_MM = {  # ISO 261, coarse series: of each size of thread, whose number is its major diameter
-    "M1.6": 0.35, "M2": 0.4, "M2.5": 0.45, "M3": 0.5, "M4": 0.7, "M5": 0.8,
-    "M6": 1.0, "M8": 1.25, "M10": 1.5, "M12": 1.75, "M16": 2.0, "M20": 2.5,
-}  # fmt: skip
+    "M1.6": 0.35,
+    "M2": 0.4,
+    "M2.5": 0.45,
+    "M3": 0.5,
+    "M4": 0.7,
+    "M5": 0.8,
+    "M6": 1.0,
+    "M8": 1.25,
+    "M10": 1.5,
+    "M12": 1.75,
+    "M16": 2.0,
+    "M20": 2.5,
+}
 HEX_BOLTS_MM = {  # ISO 4017: height of the head, across flats (nominal), shortest and longest bolt
-    "M1.6": (1.1, 3.2, 2, 16), "M2": (1.4, 4, 4, 20), "M2.5": (1.7, 5, 5, 25), "M3": (2, 5.5, 6, 30),
-    "M4": (2.8, 7, 8, 40), "M5": (3.5, 8, 10, 50), "M6": (4, 10, 12, 60), "M8": (5.3, 13, 16, 80),
-    "M10": (6.4, 16, 20, 100), "M12": (7.5, 18, 25, 120),
-    "M16": (10, 24, 30, 150), "M20": (12.5, 30, 40, 150),
-}  # fmt: skip
+    "M1.6": (1.1, 3.2, 2, 16),
+    "M2": (1.4, 4, 4, 20),
+    "M2.5": (1.7, 5, 5, 25),
+    "M3": (2, 5.5, 6, 30),
+    "M4": (2.8, 7, 8, 40),
+    "M5": (3.5, 8, 10, 50),
+    "M6": (4, 10, 12, 60),
+    "M8": (5.3, 13, 16, 80),
+    "M10": (6.4, 16, 20, 100),
+    "M12": (7.5, 18, 25, 120),
+    "M16": (10, 24, 30, 150),
+    "M20": (12.5, 30, 40, 150),
+}
 SOCKET_SCREWS_MM = {  # ISO 4762: across the plain head, across flats and depth of the socket, lengths
-    "M1.6": (3, 1.5, 0.7, 2.5, 16), "M2": (3.8, 1.5, 1, 3, 20), "M2.5": (4.5, 2, 1.1, 4, 25),
-    "M3": (5.5, 2.5, 1.3, 5, 30), "M4": (7, 3, 2, 6, 40),
-    "M5": (8.5, 4, 2.5, 8, 50), "M6": (10, 5, 3, 10, 60), "M8": (13, 6, 4, 12, 80),
-    "M10": (16, 8, 5, 16, 100), "M12": (18, 10, 6, 20, 120),
-    "M16": (24, 14, 8, 25, 160), "M20": (30, 17, 10, 30, 200),
-}  # fmt: skip
+    "M1.6": (3, 1.5, 0.7, 2.5, 16),
+    "M2": (3.8, 1.5, 1, 3, 20),
+    "M2.5": (4.5, 2, 1.1, 4, 25),
+    "M3": (5.5, 2.5, 1.3, 5, 30),
+    "M4": (7, 3, 2, 6, 40),
+    "M5": (8.5, 4, 2.5, 8, 50),
+    "M6": (10, 5, 3, 10, 60),
+    "M8": (13, 6, 4, 12, 80),
+    "M10": (16, 8, 5, 16, 100),
+    "M12": (18, 10, 6, 20, 120),
+    "M16": (24, 14, 8, 25, 160),
+    "M20": (30, 17, 10, 30, 200),
+}
 HEX_NUTS_MM = {  # ISO 4032: greatest height, across flats (nominal)
-    "M1.6": (1.3, 3.2), "M2": (1.6, 4), "M2.5": (2, 5), "M3": (2.4, 5.5), "M4": (3.2, 7), "M5": (4.7, 8),
-    "M6": (5.2, 10), "M8": (6.8, 13), "M10": (8.4, 16), "M12": (10.8, 18), "M16": (14.8, 24), "M20": (18, 30),
-}  # fmt: skip
+    "M1.6": (1.3, 3.2),
+    "M2": (1.6, 4),
+    "M2.5": (2, 5),
+    "M3": (2.4, 5.5),
+    "M4": (3.2, 7),
+    "M5": (4.7, 8),
+    "M6": (5.2, 10),
+    "M8": (6.8, 13),
+    "M10": (8.4, 16),
+    "M12": (10.8, 18),
+    "M16": (14.8, 24),
+    "M20": (18, 30),
+}
 WASHERS_MM = {  # ISO 7089: hole, across, thickness (nominal)
-    "M1.6": (1.7, 4, 0.3), "M2": (2.2, 5, 0.3), "M2.5": (2.7, 6, 0.5), "M3": (3.2, 7, 0.5),
-    "M4": (4.3, 9, 0.8), "M5": (5.3, 10, 1), "M6": (6.4, 12, 1.6), "M8": (8.4, 16, 1.6), "M10": (10.5, 20, 2),
-    "M12": (13, 24, 2.5), "M16": (17, 30, 3), "M20": (21, 37, 3),
-}  # fmt: skip
+    "M1.6": (1.7, 4, 0.3),
+    "M2": (2.2, 5, 0.3),
+    "M2.5": (2.7, 6, 0.5),
+    "M3": (3.2, 7, 0.5),
+    "M4": (4.3, 9, 0.8),
+    "M5": (5.3, 10, 1),
+    "M6": (6.4, 12, 1.6),
+    "M8": (8.4, 16, 1.6),
+    "M10": (10.5, 20, 2),
+    "M12": (13, 24, 2.5),
+    "M16": (17, 30, 3),
+    "M20": (21, 37, 3),
+}
 LENGTHS_MM = (  # ISO 888, of bolts and screws
-    2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 80, 90, 100, 110, 120, 130,
-    140, 150, 160, 180, 200,
+    2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 80, 90, 100, 110, 120,
+    130, 140, 150, 160, 180, 200,
 )  # fmt: skip
 MINOR_OUTSIDE = 1.2269  # [1] of the pitch, major less minor diameter of a bolt's thread (ISO 724, d3)
 MINOR_INSIDE = 1.0825  # [1] the same of a nut's thread (ISO 724, D1)
@@ -55,16 +99,17 @@ BEVEL_CIRCLE = 0.95  # [1] of the width across flats: what the bevel leaves flat
 CORE_MARGIN = 1.05  # [1] of the major diameter: where a nut's thread is countersunk
 HEAD_BEVEL = 0.1  # [1] of the major diameter: upper edge of a socket head
 PIN_BEVEL = 0.2  # [1] of the diameter of a pin
-CHORD_M, CHORD_RAD = (
-    1e-5,
-    np.pi / 30.0,
-)  # a circle's chord lies so far within it at most, and spans so much at most
+# a circle's chord ...
+CHORD_M = 1e-5  # lies so far within it at most
+CHORD_RAD = np.pi / 30.0  # spans so much at most
 SIZE_RANGE_MM = (0.2, 500.0)  # of a part's edges
 THREAD = re.compile(r"m([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE)
 NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?")
 BETWEEN = re.compile(r"\s*[x\u00d7]\s*", re.IGNORECASE)  # the sizes of 'M8x25'
 T_RATIO_RANGE = (0.05, 20.0)  # thickness over width
-T_RATIO, WALL_MM = 0.4, 1.0  # without an option
+# without an option
+T_RATIO = 0.4
+WALL_MM = 1.0
 
 Kit = ModuleType  # ``solidbowl.facets`` or ``solidbowl.exact.exact_body``: functions of the same names
 

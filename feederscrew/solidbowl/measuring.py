@@ -101,7 +101,8 @@ CUT_EDGE_MARGIN_M = 5e-4  # [m] from the border of a cut, where no ray is cast
 LEAD_IN_HEIGHT_M = 3e-3  # [m] over the floor: what lies there is the lead-in, where it grows from the floor
 SLOPE_STEP_M = 1e-3  # [m] inwards, from place to place down a slope
 FACE_TOLERANCE_M = 5e-4  # [m] from a face: what lies on it
-ON_FLOOR, ON_TURN = "the floor", "the turn of the track before"
+ON_FLOOR = "the floor"
+ON_TURN = "the turn of the track before"
 
 
 def ways_down(solid: BowlSolid) -> dict[str, str]:

@@ -19,10 +19,13 @@ from feederscrew.solidbowl.cuts import Stretch
 
 Extents = Floats | tuple[float, ...]  # (3,) [m] of a part along its axes
 STEEL_NAME = "steel"
-CYLINDER, CONICAL = "cylinder", "conical"  # the third shape is stepped
+# the third shape is stepped
+CYLINDER = "cylinder"
+CONICAL = "conical"
 FULL_TURN_RAD = 2.0 * np.pi
 TURN_CLEARANCE_M = 1e-3  # [m] by which the next turn stands further out than the track is wide
-SLOPE, SURE = np.radians(40.0), np.radians(5.0)  # least slope, and how much steeper than parts hold still on
+SLOPE = np.radians(40.0)  # [rad] least slope
+SURE = np.radians(5.0)  # [rad] how much steeper than parts hold still on
 UNSUPPORTED_SLOPE_RAD = np.radians(45.5)  # a slope that needs no support
 MIN_FLOOR_RADIUS_SHARE = 0.5  # of the bowl's radius: no floor is smaller
 
@@ -185,7 +188,9 @@ MIN_TRACK_HEIGHT_M = 10e-3  # [m] over the floor of a track that goes down
 BANK_DROP_FACTOR = 1.5  # of the tangent of a bank: beside the chord a twist takes some of the height
 MIN_CLEAR_TRACK_RAD = 0.25 * FULL_TURN_RAD  # of track at least, over floor and dome: there it is measured
 SHORTEST = 0.999  # of it: what is told has four digits
-SEEN, CLEARED = 0.3, 3e-4  # of the plate, and [m] over the dome: there the free edge is measured
+# where the free edge is measured
+SEEN = 0.3  # of the plate
+CLEARED = 3e-4  # [m] over the dome
 
 
 @dataclass(frozen=True)
@@ -221,8 +226,11 @@ class Stairs:
             slide = step * np.tan(self.slope)
             high = np.clip(pitch - slide - self.below, 0.0, self.upright)
             slide = np.minimum(slide, pitch - high)
-            corners += [foot, foot + np.column_stack([0.0 * high, high]),
-                        np.column_stack([above[:, 0], foot[:, 1] + high + slide])]  # fmt: skip
+            corners += [
+                foot,
+                foot + np.column_stack([0.0 * high, high]),
+                np.column_stack([above[:, 0], foot[:, 1] + high + slide]),
+            ]
         return np.stack([*corners, rows[-1]], axis=1)
 
 
@@ -323,9 +331,14 @@ class SolidOptions:
 
 
 def plan(
-    size: Size, track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions, *,
+    size: Size,
+    track: Track,
+    made_of: BowlMaterial,
+    tooled: Stretch | None,
+    options: SolidOptions,
+    *,
     extents: Extents,
-) -> BowlPlan:  # fmt: skip
+) -> BowlPlan:
     """Return the measures of a bowl as a solid.
 
     ``track``: of that size; ``tooled`` Stretch or None; ``extents`` (3,) [m]: of the part along its axes.
@@ -406,9 +419,13 @@ def _stairs(
 
 
 def _track_path(
-    size: Size, track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions,
+    size: Size,
+    track: Track,
+    made_of: BowlMaterial,
+    tooled: Stretch | None,
+    options: SolidOptions,
     stepped: Stairs | None,
-) -> tuple[TrackPath, float]:  # fmt: skip
+) -> tuple[TrackPath, float]:
     """The way of the track, and where on it the tooled stretch begins."""
     height, flare = options.outlet_height, 0.0 if stepped is None else stepped.flare
     needed = 0.0 if tooled is None else tooled.length + OUTLET_LEAD_M

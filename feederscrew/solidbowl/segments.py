@@ -24,12 +24,15 @@ if TYPE_CHECKING:
 Frame = tuple[Vector, Vector, Vector, Vector]  # place, along, out, across
 
 HOLE = 3.4e-3  # [m] for a screw M3, ISO 273
-FLATS, LUG_DEPTH_M = 5.7e-3, 2.6e-3  # [m] of the pocket for its nut, ISO 4032 and 0.2 mm of play
+# the pocket for a nut, ISO 4032 and 0.2 mm of play
+FLATS = 5.7e-3  # [m] over its flats
+LUG_DEPTH_M = 2.6e-3  # [m]
 SCREW_LENGTH_M = 16e-3  # [m] of the screw, and of both halves of a lug
 SCREW_NAME = "M3 x 16"
 WEIGHT = 1.5e-3  # [kg] of a screw, ISO 4762, with its nut
 LUG_HALF_WIDTH_M = 5e-3  # [m] of a lug to either side of its screw
-OFF, OVER = 6e-3, 5e-3  # [m] from the wall to the screw, and from there to the lug's outer face
+OFF = 6e-3  # [m] from the wall to the screw
+OVER = 5e-3  # [m] from the screw to the lug's outer face
 LUG_OVERLAP_M = 5e-4  # [m] by which a lug reaches into the wall
 SCREW_SPACING_M = 40e-3  # [m] between screws of a seam, about
 LUG_CLEARANCE_M = 15e-3  # [m] from devices and outlet
@@ -156,7 +159,9 @@ LAND = 0.8  # of its diameter: solid round a dowel
 DOWEL_SPACING_M = 25e-3  # [m] between dowels
 DOWEL_GRID_M = 1.5e-3  # [m] at which places for dowels are looked for
 SURFACE_DISTANCE_M = 1e-3  # [m] of a surface
-DOWELS, SCREWS = JOINTS = ("dowels", "screws")
+DOWELS = "dowels"
+SCREWS = "screws"
+JOINTS = (DOWELS, SCREWS)
 
 
 @dataclass(frozen=True, eq=False)

@@ -137,9 +137,15 @@ def aspects(
         return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=closed)
 
     test = simulation_cache.once(
-        part, closed, "drop", (launch, drops),
-        make, lambda test: not test.result.drops.partial, to_arrays, from_arrays,
-    )  # fmt: skip
+        part,
+        closed,
+        "drop",
+        (launch, drops),
+        make,
+        lambda test: not test.result.drops.partial,
+        to_arrays,
+        from_arrays,
+    )
     test = replace(test, part=part, aspects=closed)
     return with_drops(closed, test, launch)
 

@@ -32,7 +32,10 @@ from feederscrew.tooling.orientations import orientations
 from feederscrew.version import __version__
 
 ASSUMED_DENSITY = 7850.0  # [kg/m3] of a fill of which nothing is known: steel, solid
-PART, FILE, ASSUMED = "of the part", "as sizing.fill_density says", "steel assumed: give the part"  # fills
+# where a fill comes from
+PART = "of the part"
+FILE = "as sizing.fill_density says"
+ASSUMED = "steel assumed: give the part"
 TARGET_TOLERANCE = 1.0 - 1e-6  # of a target
 SAME_STROKE = 1e-3  # [1] strokes that are nearer than this are one
 

@@ -372,12 +372,16 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
 
 
 Grid = tuple[Vector, ...]
-VELOCITY, SPREAD, PARTS = "velocity_mm_s", "spread_mm_s", "parts"
-MAX_BYTES, MAX_ROWS = 200_000, 200
+VELOCITY = "velocity_mm_s"
+SPREAD = "spread_mm_s"
+PARTS = "parts"
+MAX_BYTES = 200_000
+MAX_ROWS = 200
 LEAST_DOUBT = 0.03  # [1] of a velocity: what a film and a point mass leave open at least (assumption)
 QUANTITIES = ("friction", "restitution", "stroke")
 COARSE_GRID = (np.linspace(0.1, 1.0, 19), np.linspace(0.0, 0.8, 9), np.linspace(0.85, 1.15, 9))
-FINE, LEVEL = 9, 0.95  # values of each quantity between the neighbours of the best; of the intervals
+FINE = 9  # values of each quantity between the neighbours of the best
+LEVEL = 0.95  # of the intervals
 
 
 @dataclass(frozen=True, eq=False)

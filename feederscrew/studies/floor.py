@@ -18,8 +18,13 @@ from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import likeliest
 
-TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
-LEAST_FREQUENCY, TOP_FREQUENCY, TOP_AMPLITUDE = 10.0, 120.0, 0.5e-3  # [Hz], [Hz], [m] as Figure 5-7, or more
+# as Figure 5-6
+TOP_ANGLE = np.pi / 2.0  # [rad]
+TOP_FRICTION = 1.0  # [1]
+# as Figure 5-7, or more
+LEAST_FREQUENCY = 10.0  # [Hz]
+TOP_FREQUENCY = 120.0  # [Hz]
+TOP_AMPLITUDE = 0.5e-3  # [m]
 MAP_MARGIN = 1.25  # a map reaches at least so far beyond the bowl's own point
 
 

@@ -133,9 +133,15 @@ def shares(
 
     decides = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
     arrival = simulation_cache.once(
-        part, aspects, "arrival", decides, make, lambda arrived: not arrived.shaken.partial,
-        floor.to_arrays, lambda arrays: floor.from_arrays(part, aspects, bowl, fed, arrays),
-    )  # fmt: skip
+        part,
+        aspects,
+        "arrival",
+        decides,
+        make,
+        lambda arrived: not arrived.shaken.partial,
+        floor.to_arrays,
+        lambda arrays: floor.from_arrays(part, aspects, bowl, fed, arrays),
+    )
     arrived = stream.arrived(aspects, arrival, seed)
     return Shares(arrived, fed=arrived.recommended is not aspects.recommended)
 
@@ -347,8 +353,10 @@ class PassagesStudy(ReadableRecord):
     @property
     def wanted(self) -> int:
         """Place of the most frequent orientation that leaves; of the most frequent one where none does."""
-        leaves = [not orientation.returned and all(k.verdict.passes > 0.0 for k in until_gone)
-                  for orientation, until_gone in zip(self.orientations, self.passages)]  # fmt: skip
+        leaves = [
+            not orientation.returned and all(k.verdict.passes > 0.0 for k in until_gone)
+            for orientation, until_gone in zip(self.orientations, self.passages)
+        ]
         shares = np.round(self.shares, 9)
         return int(np.argmax(np.where(leaves, shares, 0.0) if any(leaves) else shares))
 

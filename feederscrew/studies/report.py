@@ -29,7 +29,9 @@ from feederscrew.studies.slide import SlideStudy, slide
 from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial
 
-ANGLES, STROKES = 56, 48  # cells of the velocity map
+# cells of the velocity map
+ANGLES = 56
+STROKES = 48
 LEAST_STROKE = 0.1e-3  # [m] the velocity map goes at least so far
 RECOMMENDED = "recommended"  # the default rule
 STROKE_RANGE = 2.5  # and to so many times the bowl's own stroke
@@ -113,9 +115,15 @@ class ReportStudy(ReadableRecord):
     def rate(self) -> rates.RateStudy:
         """Well-oriented parts, a RateStudy: of the wanted aspect, without one of what leaves most often."""
         return rates.rate(
-            self.part, self.bowl, self.counted, heading=self.heading, rule=self.rule,
-            gap=self.gap, fill=self.fill, aspect_shares=self.shares,
-        )  # fmt: skip
+            self.part,
+            self.bowl,
+            self.counted,
+            heading=self.heading,
+            rule=self.rule,
+            gap=self.gap,
+            fill=self.fill,
+            aspect_shares=self.shares,
+        )
 
     @cached_property
     def passages(self) -> rates.PassagesStudy | None:
@@ -138,10 +146,17 @@ class ReportStudy(ReadableRecord):
         if self.target is not None:
             heading = self.heading if self.counted else None
             return machines.size_machine(
-                self.settings, self.part, self.target,
-                aspect=self.counted, heading=heading, rule=self.rule, gap=self.gap, fill=self.fill,
-                aspects=self.resting.aspects, as_tried=self.as_tried,
-            )  # fmt: skip
+                self.settings,
+                self.part,
+                self.target,
+                aspect=self.counted,
+                heading=heading,
+                rule=self.rule,
+                gap=self.gap,
+                fill=self.fill,
+                aspects=self.resting.aspects,
+                as_tried=self.as_tried,
+            )
         has_own_machine = has_machine({s.key.name for s in self.settings if s.is_own})
         return machines.machine(self.settings) if has_own_machine else None
 
@@ -215,10 +230,16 @@ def report(
     wanted = None if target is None else arguments.amount("target", target, "rate")
     rates.check_wanted(part, aspect, angle)
     aspect_shares = rates.shares(
-        part, chosen,
-        rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
-        progress=progress, before=before,
-    )  # fmt: skip
+        part,
+        chosen,
+        rule=rule,
+        launch=launch,
+        probabilities=probabilities,
+        fed=fed,
+        seed=seed,
+        progress=progress,
+        before=before,
+    )
     aspects = aspect_shares.aspects
     rule = aspects.ranking if rule == RECOMMENDED else rule  # a card has no such answer
     return ReportStudy(

@@ -22,7 +22,9 @@ PLAIN_TOP = 3.0  # G that every sliding map reaches
 MAX_RATIO = 1e6  # G of a hop that no bowl within the limits of its keys reaches: it is left off the map
 RATIO_MARGIN = 1.25  # how far past the hop, and past the bowl's own G, it reaches
 MIN_MAP_ROWS = 32  # of a map, computed at a time: some dozen arrays are made of each
-FINE_STEP, MOST_STEPS = 0.05, 200  # of G, in a map that is printed
+# of a map that is printed
+FINE_STEP = 0.05  # of G
+MOST_STEPS = 200
 MAX_ANGLE = np.radians(89.9)  # of a surface: at 90 deg [4.27] is 0/0 on the hop line
 MAP_COLUMNS = 61  # points of a surface in either direction
 RATIO_DECIMALS = 12  # decimals of a limit; cos(90 deg) leaves 6e-17

@@ -280,11 +280,14 @@ def tooling(
     )
     may_use = DesignConstraints(
         outcome=check.choice("outcome", outcome, OutcomeKind),
-        without=may_be_left_out(without), up=may_be_up(part, aspects, up),
-        vary=bool(looked.vary), turn=looked.turn, air=air,
+        without=may_be_left_out(without),
+        up=may_be_up(part, aspects, up),
+        vary=bool(looked.vary),
+        turn=looked.turn,
+        air=air,
         step=arguments.amount("step", looked.step, "length", SHOP_ROUNDING_M),
         cutter=arguments.amount("cutter", looked.cutter, "length", 0.0),
-    )  # fmt: skip
+    )
     for kind in leaning():  # the stretch that makes gaps in this bowl, where it may be used and makes some
         steeper = kind.parting(DESIGN_KEY) if may_use.allows(kind.kind) else None
         if steeper is None:
@@ -316,9 +319,20 @@ def tooling(
         if is_stopped:
             break
     study = ToolingStudy(
-        part, bowl, aspects, rule, clear, coming, shares, tuple(designs), wanted,
-        up=may_use.up, play=play, tolerance=tolerance, partial=is_stopped,
-    )  # fmt: skip
+        part,
+        bowl,
+        aspects,
+        rule,
+        clear,
+        coming,
+        shares,
+        tuple(designs),
+        wanted,
+        up=may_use.up,
+        play=play,
+        tolerance=tolerance,
+        partial=is_stopped,
+    )
     return study if wanted is None else study.on_its_width(wanted)
 
 

@@ -33,7 +33,8 @@ from feederscrew.trial.shape import solid_of
 
 ENGINE = "feeder's own kernel"
 QUEUE_SECONDS = 10.0  # [s] for which a queue is followed
-PARTS, FEW = 200, 60  # parts one at a time; fewer where they only tell what a queue meets
+PARTS = 200  # parts one at a time
+FEW = 60  # ... where they only tell what a queue meets
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,9 +206,15 @@ def trial(
         sent = course.SentParts(tried, max(count, len(tried)))
         try:
             single_parts = course.course(
-                part, bowl, lying, sent, bowl.devices,
-                poses=oriented.states, may_leave=course.leaves_by_rule(oriented.leaving), run=here,
-            )  # fmt: skip
+                part,
+                bowl,
+                lying,
+                sent,
+                bowl.devices,
+                poses=oriented.states,
+                may_leave=course.leaves_by_rule(oriented.leaving),
+                run=here,
+            )
         except KeyboardInterrupt:
             if not runs:
                 raise

@@ -143,10 +143,14 @@ def tune(
     well_oriented.parts_per_metre(along(None), wanted, **own)  # raises where none ever leaves so
     well_oriented.holds(along(bowl), wanted)
     found = knobs.solutions(
-        bowl, wanted_rate, lambda driven: well_oriented.leaving_per_metre(along(driven), wanted, **own),
+        bowl,
+        wanted_rate,
+        lambda driven: well_oriented.leaving_per_metre(along(driven), wanted, **own),
         rough=lambda driven: well_oriented.leaving_per_metre(as_here(driven), wanted, **own),
-        sampled=here.fed, worst=worst, progress=progress,
-    )  # fmt: skip
+        sampled=here.fed,
+        worst=worst,
+        progress=progress,
+    )
     tuned = []
     for solution in found.solutions:  # with what it gives if friction is a fifth lower or higher
         there, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)

@@ -22,9 +22,11 @@ from feederscrew.thesis.motion import Quantity
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, table
 
 GRAVITY_OF_CHAPTER_5 = 9.8  # [m/s2]
-AMPLITUDE_OF_5_6_M, FREQUENCY_OF_5_6_HZ = 0.5e-3, 60.0
+AMPLITUDE_OF_5_6_M = 0.5e-3
+FREQUENCY_OF_5_6_HZ = 60.0
 RATIO_OF_5_6 = limits.acceleration_ratio(AMPLITUDE_OF_5_6_M, FREQUENCY_OF_5_6_HZ, GRAVITY_OF_CHAPTER_5)
-BETA_OF_5_7, FRICTION_OF_5_7 = np.radians(20.0), 0.5
+BETA_OF_5_7 = np.radians(20.0)  # [rad]
+FRICTION_OF_5_7 = 0.5  # [1]
 BETAS_OF_5_1 = (10.0, 20.0, 30.0, 40.0)  # [deg]
 BETA_OF = {"5-2": 10.0, "5-3": 20.0, "5-4": 40.0, "5-5": 10.0}  # [deg]
 DRIVE_RATIOS = np.linspace(0.0, 1.0, 51)  # G; the printed axis is lost, and nothing hops up to here
@@ -38,8 +40,12 @@ COMPARED: dict[str, tuple[str, str, tuple[str, ...]]] = {  # caption, part, and 
     "3-13": ("Magnet, PMI and experiment at three amplitudes", "magnet", MEASURED),
 }
 ASPECT_LINES = (  # of the T shape, A to E: colour and dashes
-    ("#0072b2", "-"), ("#e69f00", "-"), ("#009e73", "-"), ("#cc79a7", "--"), ("#545f6b", "-"),
-)  # fmt: skip
+    ("#0072b2", "-"),
+    ("#e69f00", "-"),
+    ("#009e73", "-"),
+    ("#cc79a7", "--"),
+    ("#545f6b", "-"),
+)
 LABEL_BOX = {"facecolor": "white", "edgecolor": "none", "boxstyle": "round,pad=0.25"}
 ACCELERATION_AXIS = "acceleration V'z [m/s²]"
 
@@ -149,10 +155,11 @@ def by_ratio(rule: str) -> ByRatio:
         return ByRatio(ratios, "PMI", lines, {"Table 3-9": (ratios, dict(zip(table("3-9").names, rows)))})
     points = {
         f"{name}, Table 3-1": (
-            np.array([0.6]), dict(zip(table("3-1").names, table("3-1").numbers(column)[:, None] / 100.0)),
+            np.array([0.6]),
+            dict(zip(table("3-1").names, table("3-1").numbers(column)[:, None] / 100.0)),
         )
         for name, column in (("CSA", "csa"), ("experiment", "experiment"))
-    }  # fmt: skip
+    }
     return ByRatio(ratios, "CSA", lines, points)
 
 
@@ -220,9 +227,14 @@ def _grid(x: Floats, y: Floats, values: Floats, throw: Floats, *names: Any) -> F
 
 
 def _claim(
-    statement: str, value: float, bound: float, finding: str = "", is_explained: bool = False, *,
+    statement: str,
+    value: float,
+    bound: float,
+    finding: str = "",
+    is_explained: bool = False,
+    *,
     is_above: bool = False,
-) -> Claim:  # fmt: skip
+) -> Claim:
     """The claim that a value is below a bound, or above it."""
     published, holds = (f"> {bound:.3f}", value > bound) if is_above else (f"< {bound:.3f}", value < bound)
     return Claim(statement, published, value, holds, finding, is_explained)
@@ -435,14 +447,22 @@ def _draw_acceleration(title: str, data: FigureGrid) -> "style.Figure":
 
 
 def _add_surface(
-    figure: "style.Figure", place: Sequence[Any], title: str, labels: Iterable[str], data: FigureGrid,
+    figure: "style.Figure",
+    place: Sequence[Any],
+    title: str,
+    labels: Iterable[str],
+    data: FigureGrid,
     **look: Any,
-) -> Any:  # fmt: skip
+) -> Any:
     axes: Any = figure.add_subplot(*place, projection="3d", computed_zorder=False)
     axes.plot_surface(
-        *np.meshgrid(*data.ticks), data.values, cmap=slide.LEVEL_COLOURS, edgecolor="white", linewidth=0.2,
+        *np.meshgrid(*data.ticks),
+        data.values,
+        cmap=slide.LEVEL_COLOURS,
+        edgecolor="white",
+        linewidth=0.2,
         **look,
-    )  # fmt: skip
+    )
     axes.set_title(title, loc="left", fontsize=10, color=style.INK, fontweight="bold")
     for set_label, text in zip((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), labels):
         set_label(text, fontsize=9, color=style.INK)
@@ -456,8 +476,10 @@ THESIS_FIGURES = (
     Figure("3-6", "Probability comparison for the T shape, aspect ratio 0.6", _draw_bars, _t_shape_profiles),
     Figure("3-7", "Probability by aspect ratio, PMI method, T shape", _draw_lines, partial(by_ratio, "pmi")),
     Figure(
-        "3-8", "Probability by aspect ratio, CSA method and experiment, T shape",
-        _draw_lines, partial(by_ratio, "csa"),
+        "3-8",
+        "Probability by aspect ratio, CSA method and experiment, T shape",
+        _draw_lines,
+        partial(by_ratio, "csa"),
     ),
     *(Figure(number, COMPARED[number][0], _draw_bars, partial(_profiles, number)) for number in COMPARED),
     Figure("5-1", "Limiting condition for sliding along Z, α = θ", _draw_curves, figure_5_1),
@@ -469,5 +491,5 @@ THESIS_FIGURES = (
     Figure("5-5", "Contour lines of Figure 5-2, β = 10°", _draw_contours, partial(limit_surface, "5-5")),
     Figure("5-6", "Acceleration along Z over β and μ, f = 60 Hz, A = 0.5 mm", _draw_acceleration, figure_5_6),
     Figure("5-7", "Acceleration along Z over f and A, β = 20°, μ = 0.5", _draw_acceleration, figure_5_7),
-)  # fmt: skip
+)
 FIGURE_OF = {figure.number: figure for figure in THESIS_FIGURES}

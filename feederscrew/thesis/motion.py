@@ -176,10 +176,17 @@ def levers_of(seat: Seat, offset: float, axes: str = "tilted") -> Levers:
     """
     side, level = float(-seat.walls[:, 1].mean()), float(seat.walls[:, 2].mean())
     return Levers(
-        mass=seat.mass, height=seat.height, offset=offset, wall=float(np.hypot(side, level)),
-        wall_angle=float(np.arctan2(level, side)), behind=float(-seat.walls[0, 0]),
-        ahead=float(seat.walls[1, 0]), side=side, friction_side=side, axes=axes,
-    )  # fmt: skip
+        mass=seat.mass,
+        height=seat.height,
+        offset=offset,
+        wall=float(np.hypot(side, level)),
+        wall_angle=float(np.arctan2(level, side)),
+        behind=float(-seat.walls[0, 0]),
+        ahead=float(seat.walls[1, 0]),
+        side=side,
+        friction_side=side,
+        axes=axes,
+    )
 
 
 def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0.5 * np.pi) -> PrintedTrack:

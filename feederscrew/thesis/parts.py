@@ -24,19 +24,28 @@ TABLES_OF = {  # of each part that is known by its tables only
     "arc_chute": {"csa": "3-2", "stability": "3-3", "experiment": "3-4", "pmi": "3-10", "deviation": "3-12"},
     "magnet": {"csa": "3-5", "stability": "3-6", "experiment": "3-7", "pmi": "3-11", "deviation": "3-13"},
 }
-G_MM2, MM2, G = factor("g mm2", "inertia"), factor("mm2", "area"), factor("g", "mass")
+G_MM2 = factor("g mm2", "inertia")  # [kg m2]
+MM2 = factor("mm2", "area")  # [m2]
+G = factor("g", "mass")  # [kg]
 
-T_WIDTH, T_HEIGHT, T_HEAD_HEIGHT, T_STEM_WIDTH = 25.0e-3, 25.0e-3, 13.0e-3, 11.0e-3  # [m] width over the head
+T_WIDTH = 25.0e-3  # [m] over the head
+T_HEIGHT = 25.0e-3  # [m]
+T_HEAD_HEIGHT = 13.0e-3  # [m]
+T_STEM_WIDTH = 11.0e-3  # [m]
 T_DENSITY = 1000.0  # [kg/m3] 1.000e-3 g/mm3: gives Table 3-8
 T_DENSITY_IN_TEXT = 999.0  # [kg/m3] "9.99 E-4 grams per cubic meter", read as g/mm3: does not give it
 T_RATIOS = ("0.4", "0.6", "0.8", "1.0", "1.2", "1.4")  # thickness / width, as printed
-T_NORMALS = np.array([  # (5, 3) of the side that aspects A to E lie on, outward; of two equal sides, one
-    (0.0, -1.0, 0.0),  # A: on the end of the stem
-    (1.0, 0.0, 0.0),  # B: on a side of the head
-    (0.0, 1.0, 0.0),  # C: upside down, on the head
-    vectors.unit(np.array([T_HEIGHT - T_HEAD_HEIGHT, -0.5 * (T_WIDTH - T_STEM_WIDTH), 0.0])),  # D: leaning
-    (0.0, 0.0, 1.0),  # E: flat, on the T
-])  # fmt: skip
+T_NORMALS = np.array(
+    [  # (5, 3) of the side that aspects A to E lie on, outward; of two equal sides, one
+        (0.0, -1.0, 0.0),  # A: on the end of the stem
+        (1.0, 0.0, 0.0),  # B: on a side of the head
+        (0.0, 1.0, 0.0),  # C: upside down, on the head
+        vectors.unit(
+            np.array([T_HEIGHT - T_HEAD_HEIGHT, -0.5 * (T_WIDTH - T_STEM_WIDTH), 0.0])
+        ),  # D: leaning
+        (0.0, 0.0, 1.0),  # E: flat, on the T
+    ]
+)
 THINNER_RATIO = 0.4  # aspect ratio whose CSA profile Table 3-1 prints under 0.6
 INPUT_DECIMALS = 2  # the thesis rounds I [g mm2] and h [mm] before it divides them
 IMPLIED_ROW = "sum, not printed"
@@ -70,11 +79,19 @@ def t_part(ratio: float) -> Part:
     vertices, faces = t_solid(ratio)
     solid = mass.integrate_solid(vertices[faces])
     return Part(
-        name=f"t_shape_{ratio}", source="Table 3-8", sha256="", units="mm", material="as printed",
-        density=T_DENSITY, volume=solid.volume, mass=T_DENSITY * solid.volume,
-        centre_of_mass=check.frozen(solid.centre), inertia=check.frozen(T_DENSITY * solid.inertia),
-        vertices=check.frozen(vertices), faces=check.frozen(faces),
-    )  # fmt: skip
+        name=f"t_shape_{ratio}",
+        source="Table 3-8",
+        sha256="",
+        units="mm",
+        material="as printed",
+        density=T_DENSITY,
+        volume=solid.volume,
+        mass=T_DENSITY * solid.volume,
+        centre_of_mass=check.frozen(solid.centre),
+        inertia=check.frozen(T_DENSITY * solid.inertia),
+        vertices=check.frozen(vertices),
+        faces=check.frozen(faces),
+    )
 
 
 def t_solid(ratio: float) -> tuple[Floats, Ints]:
@@ -101,10 +118,13 @@ def card(name: str) -> Part:
     numbers, value = TABLES_OF[name], chapter_4(name)
     pmi, csa, stability = (table(numbers[key]) for key in ("pmi", "csa", "stability"))
     columns = {
-        "height": pmi.numbers("h") * MM, "polar_inertia": pmi.numbers("I") * G_MM2,
-        "contact_area": stability.numbers("A") * MM2, "solid_angle": csa.numbers("Q"),
-        "csa_height": csa.numbers("h") * MM, "stability_height": stability.numbers("h") * MM,
-    }  # fmt: skip
+        "height": pmi.numbers("h") * MM,
+        "polar_inertia": pmi.numbers("I") * G_MM2,
+        "contact_area": stability.numbers("A") * MM2,
+        "solid_angle": csa.numbers("Q"),
+        "csa_height": csa.numbers("h") * MM,
+        "stability_height": stability.numbers("h") * MM,
+    }
     rows = (dict(zip(columns, cells)) for cells in zip(*columns.values(), strict=True))
     aspects = tuple(
         CardAspect(aspect, solid_angle_in_sr=False, **row) for aspect, row in zip(pmi.names, rows)
@@ -121,12 +141,19 @@ def card(name: str) -> Part:
         "wall_x": (value["wall_x_1"] * MM, value["wall_x_2"] * MM),
     }
     return Part(
-        name=name, source=f"Tables {', '.join(numbers.values())}", sha256="", units="mm",
-        material="as printed", density=None, volume=None, mass=value["mass"] * G,
+        name=name,
+        source=f"Tables {', '.join(numbers.values())}",
+        sha256="",
+        units="mm",
+        material="as printed",
+        density=None,
+        volume=None,
+        mass=value["mass"] * G,
         centre_of_mass=check.frozen(np.array([value[a] for a in "xyz"]) * MM),
         inertia=check.frozen(np.array([[value[f"I_{a}{b}"] for b in "xyz"] for a in "xyz"]) * G_MM2),
-        aspects=aspects, printed={"floor": floor, "track": floor | wall},
-    )  # fmt: skip
+        aspects=aspects,
+        printed={"floor": floor, "track": floor | wall},
+    )
 
 
 def _rule(name: str, key: str) -> Floats:
@@ -286,8 +313,12 @@ def _total(table: PrintedTable, column: str, total: float, finding: str) -> Cell
 
 
 RECIPES: dict[str, Callable[[PrintedTable], Iterator[Cell]]] = {
-    "3-1": _table_3_1, "3-4": _column_sums, "3-7": _column_sums, "3-8": _table_3_8, "3-9": _table_3_9,
-}  # fmt: skip
+    "3-1": _table_3_1,
+    "3-4": _column_sums,
+    "3-7": _column_sums,
+    "3-8": _table_3_8,
+    "3-9": _table_3_9,
+}
 for _part, _numbers in TABLES_OF.items():
     for _weight, _key in (("Q", "csa"), ("A", "stability"), ("I", "pmi")):
         RECIPES[_numbers[_key]] = functools.partial(_quotients, _weight, _part, _key)

@@ -191,15 +191,21 @@ def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[
     """Return the items as one JSON document; ``files`` are those written, by the item's stem."""
     return {
         "items": [
-            {"id": item.id, "kind": item.kind, "caption": item.caption, **item.counts,
-             "findings": item.findings, "files": files.get(item.stem, [])}
+            {
+                "id": item.id,
+                "kind": item.kind,
+                "caption": item.caption,
+                **item.counts,
+                "findings": item.findings,
+                "files": files.get(item.stem, []),
+            }
             for item in items
         ],
         "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST_DRAWINGS.items()],
         "conclusions": [{"id": f"conclusion {n}", "findings": ids} for n, ids in CONCLUSIONS.items()],
         "recommendations": table_of(recommendations(), "number title what met lacks"),
         "findings": _findings(),
-    }  # fmt: skip
+    }
 
 
 def _findings() -> Frame:
@@ -238,10 +244,13 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
         f"{counts[DIFFERS]} differ; {counts[NOT_CHECKED]} are given."
     )
     summary = tuple(
-        (MarkedCell(item.name.capitalize()), MarkedCell(item.caption),
-         *[MarkedCell(str(item.counts[name]), "number") for name in COUNTS])
+        (
+            MarkedCell(item.name.capitalize()),
+            MarkedCell(item.caption),
+            *[MarkedCell(str(item.counts[name]), "number") for name in COUNTS],
+        )
         for item in items
-    )  # fmt: skip
+    )
     chapters = {n: [name for name in ORDER_OF_THESIS if f" {n}-" in name] for n in "35"}
     third, fifth = (
         tuple(block for name in names for block in _blocks(item_of[name], pictures))
@@ -271,16 +280,30 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
     sections = (
         ("summary", "Summary", (Text(totals), Matrix(("item", "caption", *COUNTS), summary))),
         ("chapter-3", "Chapter 3: natural resting aspects", third),
-        ("chapter-4", "Chapters 2 and 4: screws, inertial data, levers and equations",
-         (Text("Chapters 2 and 4 have no tables, but their equations and data feed chapter 5. What checking "
-               "them showed:"), Links(fourth))),
+        (
+            "chapter-4",
+            "Chapters 2 and 4: screws, inertial data, levers and equations",
+            (
+                Text(
+                    "Chapters 2 and 4 have no tables, but their equations and data feed chapter 5. "
+                    "What checking them showed:"
+                ),
+                Links(fourth),
+            ),
+        ),
         ("chapter-5", "Chapter 5: simulation results", fifth),
-        ("chapter-6", "Chapter 6.1: conclusions",
-         (Matrix(("conclusion", "what checking it showed"), conclusions),)),
-        ("chapter-6-2", "Chapter 6.2: recommendations",
-         (Matrix(("recommendation", "where it is met", "what is not"), advice),)),
+        (
+            "chapter-6",
+            "Chapter 6.1: conclusions",
+            (Matrix(("conclusion", "what checking it showed"), conclusions),),
+        ),
+        (
+            "chapter-6-2",
+            "Chapter 6.2: recommendations",
+            (Matrix(("recommendation", "where it is met", "what is not"), advice),),
+        ),
         ("findings", "Findings and errata", tuple(errata)),
-    )  # fmt: skip
+    )
     return Page(
         "The thesis, number by number",
         "",
@@ -312,11 +335,15 @@ def _blocks(item: Item, pictures: Mapping[str, bytes]) -> list:
     blocks: list = [Heading(f"{item.name.capitalize()}. {item.caption}", item.stem)]
     if item.kind == "figure":
         statements = tuple(
-            (MarkedCell(claim.statement), MarkedCell(claim.published), MarkedCell(f"{claim.recomputed:.4g}"),
-             MarkedCell(claim.verdict, MARK_OF[claim.verdict]))
+            (
+                MarkedCell(claim.statement),
+                MarkedCell(claim.published),
+                MarkedCell(f"{claim.recomputed:.4g}"),
+                MarkedCell(claim.verdict, MARK_OF[claim.verdict]),
+            )
             for claim in item.entries
             if isinstance(claim, Claim) and not math.isnan(claim.recomputed)
-        )  # fmt: skip
+        )
         file = f"{item.stem}.png"
         matrix = Matrix(("what print states", "in print", "ours", "verdict"), statements)
         blocks += [Picture(file, pictures[file], item.caption), matrix]
@@ -324,12 +351,15 @@ def _blocks(item: Item, pictures: Mapping[str, bytes]) -> list:
         printed = table(item.id)
         cell_at = {(cell.row, cell.column): cell for cell in item.entries if isinstance(cell, Cell)}
         rows = tuple(
-            (MarkedCell(name), *(
-                MarkedCell(print_and_ours(cell), MARK_OF[cell.verdict]) if cell else MarkedCell("")
-                for cell in (cell_at.get((name, column)) for column in printed.columns)
-            ))
+            (
+                MarkedCell(name),
+                *(
+                    MarkedCell(print_and_ours(cell), MARK_OF[cell.verdict]) if cell else MarkedCell("")
+                    for cell in (cell_at.get((name, column)) for column in printed.columns)
+                ),
+            )
             for name in dict.fromkeys(row for row, _ in cell_at)
-        )  # fmt: skip
+        )
         source = Text(f"Source: {printed.source}. Units: {printed.units}.")
         blocks += [source, Matrix(("", *printed.columns), rows)]
     if item.findings:

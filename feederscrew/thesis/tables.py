@@ -14,7 +14,9 @@ from feederscrew.arrays import Floats
 TABLES = tuple(f"3-{n}" for n in range(1, 14))
 ROW_NAME_COLUMNS = ("aspect", "quantity", "first", "second")
 TOTAL = "total"
-EXACT_TO_PRINT, EXPLAINED, DIFFERS = "exact to print", "explained", "differs"
+EXACT_TO_PRINT = "exact to print"
+EXPLAINED = "explained"
+DIFFERS = "differs"
 NOT_CHECKED = "given"  # measured, or read off a drawing that is lost: nothing to compute it from
 PRINT_SLACK = 1e-9  # of the last digit: a half of it is not exact in binary
 

@@ -182,15 +182,25 @@ def course(
     right = (oriented[-1] >= 0) & may_leave[entries, np.maximum(oriented[-1], 0)]
     fates[(fates == PASSED) & ~right] = TURNED
     arrays = {
-        "entry_rows": entries, "orientations": oriented, "fates": fates, "end_stations": end_stations,
-        "velocities": speeds, "seconds": seconds, "depths": depths, "gains": gains,
-        "end_places": ends, "principal": principal,
-    }  # fmt: skip
+        "entry_rows": entries,
+        "orientations": oriented,
+        "fates": fates,
+        "end_stations": end_stations,
+        "velocities": speeds,
+        "seconds": seconds,
+        "depths": depths,
+        "gains": gains,
+        "end_places": ends,
+        "principal": principal,
+    }
     return Course(
         **{name: check.frozen(array) for name, array in arrays.items()},
-        rides=tuple(rides), riders=tuple(check.frozen(rows) for rows in riders),
-        stations=tuple(chain), length=length, partial=stopped,
-    )  # fmt: skip
+        rides=tuple(rides),
+        riders=tuple(check.frozen(rows) for rows in riders),
+        stations=tuple(chain),
+        length=length,
+        partial=stopped,
+    )
 
 
 def lead_on(states: States, station: Stage, begin: float, part_in_bowl: runs.BowlOfPart) -> States:

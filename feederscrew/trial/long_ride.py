@@ -98,9 +98,17 @@ def ride_of_track(
     run.begin()
     entry_rows = np.repeat(np.asarray(rows, int), repeats)
     states, times = part_poses.lay_down(
-        bowl, orientations, entry_rows, solid, principal, length, run.seed,
-        play=OFF_WALL_M, turn=OFF_HEADING, tilt=OFF_LEVEL,
-    )  # fmt: skip
+        bowl,
+        orientations,
+        entry_rows,
+        solid,
+        principal,
+        length,
+        run.seed,
+        play=OFF_WALL_M,
+        turn=OFF_HEADING,
+        tilt=OFF_LEVEL,
+    )
     count = max(round(distance / SEGMENT_M), 1)
     # what follows parts along a segment of bare track
     slopes = staging.entry_slopes(bowl.devices, bowl.track, orientations)

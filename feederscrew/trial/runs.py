@@ -28,12 +28,18 @@ from feederscrew.trial.kernel.workspace import Limits, QueueSteps, Rows, Solo, S
 from feederscrew.trial.part_poses import States
 from feederscrew.trial.staging import Stage
 
-RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
-    travel.RUNNING, travel.PASSED, travel.RETURNED, travel.STANDS, travel.ROLLED,
-)  # fmt: skip
+RUNNING = travel.RUNNING
+PASSED = travel.PASSED
+RETURNED = travel.RETURNED
+STANDS = travel.STANDS
+ROLLED = travel.ROLLED
 OVER_EDGE_SHARE = 0.1  # of its size: with its centre of mass so far over the free edge a part does not return
-STEPS_OF_PERIOD, STEPS_OF_HOPPING = 48, 96  # steps of a period of the drive, and where parts hop
-SWEEPS, SWEEP_TOLERANCE = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
+# steps of a period of the drive
+STEPS_OF_PERIOD = 48
+STEPS_OF_HOPPING = 96  # where parts hop
+# of the contact solver
+SWEEPS = 60  # at most
+SWEEP_TOLERANCE = 1e-4  # what a sweep may still change
 BORDER_EXTENSION = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
 PARTS_PER_TASK = 5  # parts a core takes at a time
 STANDING_SPEED_M_S = 1e-3  # below which a part stands
@@ -44,9 +50,13 @@ MEAN_BORDERS_PER_CORNER = 12  # borders near a corner, in the mean
 NO_CROWD = QueueSteps(active=np.zeros(0, bool), time=0.0, steps=0, journals=zero_rows(1, workspace.JOURNAL))
 NO_PARTS_SENT = Solo(
     limits=Limits(*(0.0 for _ in Limits._fields)),
-    states=np.zeros((0, body.STATE)), times=np.zeros(0), stride=1, paths=np.zeros((0, 0, 8)),
-    journals=zero_rows(0, workspace.JOURNAL), outcomes=np.zeros(0, np.int64),
-)  # fmt: skip
+    states=np.zeros((0, body.STATE)),
+    times=np.zeros(0),
+    stride=1,
+    paths=np.zeros((0, 0, 8)),
+    journals=zero_rows(0, workspace.JOURNAL),
+    outcomes=np.zeros(0, np.int64),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,9 +188,15 @@ def make_plain_follower(part_in_bowl: BowlOfPart, station: Stage, limits: RideLi
         travel.ride(surface, part_in_bowl.solid, part_in_bowl.floor, work, solo, NO_CROWD)
         paths *= np.array([unit, length, length, length, 1.0, 1.0, 1.0, 1.0])
         return Runs(
-            outcomes=outcomes, states=ends, seconds=journals.time * unit, distances=journals.way * length,
-            depths=journals.depth * length, gains=journals.gain * length, paths=paths, partial=False,
-        )  # fmt: skip
+            outcomes=outcomes,
+            states=ends,
+            seconds=journals.time * unit,
+            distances=journals.way * length,
+            depths=journals.depth * length,
+            gains=journals.gain * length,
+            paths=paths,
+            partial=False,
+        )
 
     return follow
 
@@ -236,33 +252,57 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
         return zero_rows((count, *shape), kind)
 
     work = Workspace(
-        states=numbers(body.STATE), starts=numbers(body.STATE), push=numbers(body.STATE), turns=numbers(9),
-        tangents=numbers(2), leans=numbers(7), changes=numbers(6), free_rates=numbers(3),
-        jet_loads=numbers(6), jets_until=numbers(),
-        contacts=records(workspace.CONTACT, MAX_TRACK_CONTACTS), counts=places(),
-        last_impulses=records(workspace.IMPULSES, MAX_TRACK_CONTACTS), last_counts=places(),
+        states=numbers(body.STATE),
+        starts=numbers(body.STATE),
+        push=numbers(body.STATE),
+        turns=numbers(9),
+        tangents=numbers(2),
+        leans=numbers(7),
+        changes=numbers(6),
+        free_rates=numbers(3),
+        jet_loads=numbers(6),
+        jets_until=numbers(),
+        contacts=records(workspace.CONTACT, MAX_TRACK_CONTACTS),
+        counts=places(),
+        last_impulses=records(workspace.IMPULSES, MAX_TRACK_CONTACTS),
+        last_counts=places(),
         last_steps=numbers(),
-        list_states=records(workspace.LIST_STATE), ends=records(workspace.LIST_COUNTS, plates + 1),
+        list_states=records(workspace.LIST_STATE),
+        ends=records(workspace.LIST_COUNTS, plates + 1),
         list_counts=zero_rows(1, workspace.LIST_COUNTS),
         near_corners=records(workspace.NEAR_CORNER, 2 * corners),
-        groups=numbers(2 * corners // BLOCK + 1, 6), sides=places(MEAN_BORDERS_PER_CORNER * corners + 100),
+        groups=numbers(2 * corners // BLOCK + 1, 6),
+        sides=places(MEAN_BORDERS_PER_CORNER * corners + 100),
         near_edges=records(workspace.NEAR_EDGE, MAX_NEAR_EDGES),
         near_posts=records(workspace.NEAR_POST, MAX_NEAR_EDGES),
         near_faces=records(workspace.NEAR_FACE, MAX_NEAR_EDGES),
-        near_circles=records(workspace.NEAR_CIRCLE, plates * circles), rounds=places(borders),
-        wall_corners=records(workspace.NEAR_WALL, corners), wall_circles=places(circles),
-        frame=np.zeros(12), views=np.zeros((corners, 3)), view_corners=np.zeros(corners, np.int64),
-        blocks=np.zeros(edges, np.int64), indices=np.zeros(max(corners, MAX_TRACK_CONTACTS), np.int64),
+        near_circles=records(workspace.NEAR_CIRCLE, plates * circles),
+        rounds=places(borders),
+        wall_corners=records(workspace.NEAR_WALL, corners),
+        wall_circles=places(circles),
+        frame=np.zeros(12),
+        views=np.zeros((corners, 3)),
+        view_corners=np.zeros(corners, np.int64),
+        blocks=np.zeros(edges, np.int64),
+        indices=np.zeros(max(corners, MAX_TRACK_CONTACTS), np.int64),
         supports=zero_rows(corners + 8 * circles + 2 * MAX_TRACK_CONTACTS, workspace.SUPPORT),
-        best=np.zeros((WAYS + 1, 2)), borders_near=np.zeros(max(borders, 1), np.int64),
-        borders_close=np.zeros(max(borders, 1), np.int64), dips=np.zeros(borders), box=np.zeros(6),
-        pairs=zero_rows(pairs, workspace.CONTACT), owners=np.zeros(pairs, np.int64),
-        pair_rows=np.zeros(1, np.int64), strains=numbers(2), order=places(),
+        best=np.zeros((WAYS + 1, 2)),
+        borders_near=np.zeros(max(borders, 1), np.int64),
+        borders_close=np.zeros(max(borders, 1), np.int64),
+        dips=np.zeros(borders),
+        box=np.zeros(6),
+        pairs=zero_rows(pairs, workspace.CONTACT),
+        owners=np.zeros(pairs, np.int64),
+        pair_rows=np.zeros(1, np.int64),
+        strains=numbers(2),
+        order=places(),
         islands=np.zeros(count + 1, np.int64),
-        least=np.array(solid.vertices.min(axis=0)), most=np.array(solid.vertices.max(axis=0)),
-        first_edges=np.zeros(edges, np.int64), second_blocks=np.zeros(edges, np.int64),
+        least=np.array(solid.vertices.min(axis=0)),
+        most=np.array(solid.vertices.max(axis=0)),
+        first_edges=np.zeros(edges, np.int64),
+        second_blocks=np.zeros(edges, np.int64),
         face_blocks=np.zeros(len(solid.triangles), np.int64),
-    )  # fmt: skip
+    )
     forget(work, slice(None))
     return work
 

@@ -26,11 +26,15 @@ MAX_SAGITTA_M = 5e-6  # by which an arc may be seen too flat
 SMOOTHING_M = 2e-6  # corners of a border that stand out by less are left out
 CORNER_ANGLE = 1e-4  # [rad] a border that turns by less has no corner
 SPARE_WAY = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
-DRAWN_BEFORE, DRAWN_AFTER = 1.2, 0.8  # of the part's size: track before where they begin, behind their end
+# of the part's size
+DRAWN_BEFORE = 1.2  # track before where they begin
+DRAWN_AFTER = 0.8  # track behind their end
 BEYOND_OPENINGS_M = 10.0  # beyond any opening
 TRACK_DEPTH_M = 4e-3  # of the track: deeper down its sides hold nothing
 TRACK_FRICTION = np.nan  # friction of a plate that has that of the track
-BLEND, OPENS = 0.25, 1.0  # of the part's size: way over which a lean of track, or of wall, becomes the next
+# of the part's size
+BLEND = 0.25  # way over which a lean of track becomes the next
+OPENS = 1.0  # way over which a lean of wall becomes the next
 
 # A slope where it begins: [m] place, [rad] climb, bank and lean of the wall from there.
 PlacedSlope = tuple[float, float | None, float | None, float | None]
@@ -128,11 +132,18 @@ def stage_device(
     begin, beyond = start - (0.5 + SPARE_WAY) * size, exit_place(standing, start, size)
     ends = begin - DRAWN_BEFORE * size, beyond + DRAWN_AFTER * size
     return Stage(
-        device, *build_track([(standing, start, ends[1])], track, size, ends, slot), begin=begin, exit=beyond,
-        cut=(start, start + standing.length), drop=standing.drop, aside=standing.aside,
+        device,
+        *build_track([(standing, start, ends[1])], track, size, ends, slot),
+        begin=begin,
+        exit=beyond,
+        cut=(start, start + standing.length),
+        drop=standing.drop,
+        aside=standing.aside,
         leaves_hanging=standing.hangs or bool(slot),
-        air=blows, size=size, width=track.extent,
-    )  # fmt: skip
+        air=blows,
+        size=size,
+        width=track.extent,
+    )
 
 
 def stage_bare_track(

@@ -1,7 +1,7 @@
 """Fuzzing by hand: for so many seconds, every kind of file in turn, each input another than all before.
 
-Example: PYTHONPATH=tests python -m fuzz 600
-         PYTHONPATH=tests python -m fuzz stl 123456   (one case again, told in full)
+Example: PYTHONPATH=tests:tests/support python -m fuzz 600
+         PYTHONPATH=tests:tests/support python -m fuzz stl 123456   (one case again, told in full)
 
 What was tried is kept in ``runs.csv``: of each run and kind the first seed, how many, and the seeds that were
 at fault. The next run goes on behind the last seed of each kind.

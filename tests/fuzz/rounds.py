@@ -1,7 +1,7 @@
 """Round bodies by the thousand: none may crash, and every answer must hold its invariants.
 
-Example: PYTHONPATH=tests python -m fuzz.rounds 2000        (bodies, from a seed of the clock's)
-         PYTHONPATH=tests python -m fuzz.rounds 2000 17     (from seed 17)
+Example: PYTHONPATH=tests:tests/support python -m fuzz.rounds 2000        (bodies, from a seed of the clock's)
+         PYTHONPATH=tests:tests/support python -m fuzz.rounds 2000 17     (from seed 17)
 """
 
 import sys

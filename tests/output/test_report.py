@@ -96,15 +96,18 @@ def test_html_loads_nothing_from_outside_and_has_the_cells_of_the_csv(light, cas
     text = html(light)
     assert not re.search(r"""(src|href)\s*=\s*["']?(https?:)?//""", text)
     assert "default-src 'none'" in text
-    assert len(re.findall(r"https?://", text)) == 1  # the XHTML namespace, a name and no address
+    named = set(re.findall(r"https?://[\w./-]+", text))  # a name of XML, and a paper in a comment of three.js
+    assert named == {"http://www.w3.org/1999/xhtml", "https://jcgt.org/published/0007/04/01/"}
     assert "The MIT License" in text and "three.js authors" in text
     sheet = next(b for s in light.sections for b in s.blocks if isinstance(b, blocks.CsvSheet))
     inside = re.search(r'id="aspects.csv">(.*?)</table>', text, re.S).group(1)
     rows = [re.findall(r"<t[hd]>(.*?)</t[hd]>", row) for row in re.findall(r"<tr>(.*?)</tr>", inside)]
     assert "".join(",".join(row) + "\n" for row in rows) == sheet.csv
-    folder = Path(blocks.__file__).parent
-    digest = hashlib.sha256((folder / "three.js").read_bytes()).hexdigest()
-    assert digest in (folder / "three.README.md").read_text()
+    folder = Path(blocks.__file__).parent / "vendor/three"
+    digests = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.glob("*.js")}
+    listed = dict(re.findall(r"`(three\S+js)` \| `(\w{64})`", (folder / "README.md").read_text()))
+    assert len(digests) == 2 and digests == listed
+    assert (folder / "LICENSE").read_text() in text
     # Markdown has every chapter and no script.
     text = markdown(light, BESIDE)
     heads = [line[3:] for line in text.splitlines() if line.startswith("## ")]

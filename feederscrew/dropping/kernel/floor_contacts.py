@@ -29,9 +29,11 @@ LEVEL_RIM_SINE = 1e-9  # [1] sine of the tilt below which a rim has no lowest po
 FLOOR_AXES = ("ahead", "aside", "up")
 FLOOR_CONTACT = record_type(
     *(f"{axis}_{what}_{e}" for what in ("lever", "rate") for axis in FLOOR_AXES for e in "xyz"),
-    "floor_mass", "up_mass", "wanted",
+    "floor_mass",
+    "up_mass",
+    "wanted",
     *(f"{axis}_{what}" for what in ("impulse", "last", "change") for axis in FLOOR_AXES),
-)  # fmt: skip
+)
 MAX_DIRECTION_CHANGES = 6  # after which the sweeps take over
 SWEEPS_PER_LEAP = 6  # sweeps from one leap to the next
 STRAIGHT_COSINE2 = 0.95**2  # squared cosine between two changes that lead the same way

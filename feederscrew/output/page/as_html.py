@@ -2,6 +2,7 @@
 
 import base64
 import csv
+import functools
 import io
 import json
 import re
@@ -26,7 +27,6 @@ ALONE = 1.4  # times the size of a picture that has the whole width
 TALL = 1.5  # times its width: the height from which a picture has a page of paper to itself
 BROAD = 1000  # [px] width from which a picture that is high as well takes half a page of paper
 LINE, HEADING = 29, 70  # [px] about the height of a row of a table, and of its head
-SCRIPTS = ("three.js", "viewer.js")
 HINT = (
     "Drag a view to turn it, or use the arrow keys; double-click sets it back. "
     "Orange is the face it rests on, the dot its centre of mass."
@@ -40,6 +40,8 @@ PLAYER = (
     '<input type="range" min="0" max="1" step="any" value="0" aria-label="moment of the trial"> '
     "<output>0.00 s</output></span>"
 )
+THREE = "vendor/three"  # the folder of three.js
+RENAMED = r"([\w$]+) as ([\w$]+)"  # in the imports and exports of a module
 SHORT = 3  # significant digits of a percentage, and of a number at the head of a page
 LONG_LETTERS = 36  # of a cell that needs a wide column
 NOTHING = "–"  # in an empty cell
@@ -57,8 +59,8 @@ def html(page: kinds.Page) -> str:
     linked = any(cell.picture and cell.picture.link for cell in cells)
     scripts = []
     if any(isinstance(block, kinds.Views) for block in all_blocks):
-        licence = f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset('three.LICENSE.txt')}-->"
-        scripts = [licence, *map(_script, SCRIPTS)]
+        licence = f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(f'{THREE}/LICENSE')}-->"
+        scripts = [licence, f"<script>\n{_three()}\n</script>", _script("viewer.js")]
     scripts += [_script("sorting.js")] * any(block.sortable for block in matrices)
     scripts += [_script("knobs.js")] * any(isinstance(block, kinds.Knobs) for block in all_blocks)
     policy = POLICY + " 'self' file:" * linked  # for pictures that lie beside the page
@@ -106,6 +108,35 @@ def _asset(name: str) -> str:
 
 def _script(name: str) -> str:
     return f"<script>\n{_asset(name)}</script>"
+
+
+@functools.cache
+def _three() -> str:
+    """Return three.js as a plain script that defines ``THREE``.
+
+    Its release is two modules, and a page that is opened from a file may load none. Each becomes a function
+    that takes what it imports and returns what it exports.
+    """
+    core, module = (_as_function(_asset(f"{THREE}/three.{name}.min.js")) for name in ("core", "module"))
+    return f"const THREE = (() => {{ const core = ({core})(); return {{...core, ...({module})(core)}}; }})();"
+
+
+def _as_function(module: str) -> str:
+    """Return a module of JavaScript as a function of an object that holds all that it imports."""
+    module = re.sub(r'export\{[^}]*\}from"[^"]*";', "", module)  # what it hands on stands in that object
+    module = re.sub(r'import\{([^}]*)\}from"[^"]*";', _constants, module)
+    module = re.sub(r"export\{([^}]*)\}", _returned, module)
+    return f'given => {{ "use strict";\n{module}\n}}'
+
+
+def _constants(found: re.Match[str]) -> str:
+    """Return ``import{a as b}from"...";`` as constants that are taken from an object."""
+    return "const{" + re.sub(RENAMED, r"\1:\2", found[1]) + "}=given;"
+
+
+def _returned(found: re.Match[str]) -> str:
+    """Return ``export{a as b}`` as the return of an object."""
+    return "return{" + re.sub(RENAMED, r"\2:\1", found[1]) + "}"
 
 
 def _may_share_row(block: kinds.Block) -> bool:

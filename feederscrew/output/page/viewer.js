@@ -27,11 +27,34 @@
     return new Kind(bytes.buffer);
   }
 
+  // The same facets with a normal for each corner: the mean of those facets around it that meet under less than CREASE.
+  function withNormals(geometry) {
+    const index = geometry.index.array, flat = geometry.toNonIndexed(), place = flat.attributes.position;
+    const normals = [], around = new Map();
+    for (let k = 0; k < index.length; k += 3) {
+      const [a, b, c] = [0, 1, 2].map((j) => new THREE.Vector3().fromBufferAttribute(place, k + j));
+      const normal = b.sub(a).cross(c.sub(a)).normalize();
+      normals.push(normal);
+      for (const corner of index.subarray(k, k + 3)) {
+        if (!around.has(corner)) around.set(corner, []);
+        around.get(corner).push(normal);
+      }
+    }
+    const least = Math.cos((CREASE * Math.PI) / 180), mean = new THREE.Vector3(), values = new Float32Array(3 * index.length);
+    index.forEach((corner, k) => {
+      const own = normals[Math.floor(k / 3)];
+      mean.set(0, 0, 0);
+      for (const normal of around.get(corner)) if (normal.dot(own) > least) mean.add(normal);
+      mean.normalize().toArray(values, 3 * k);
+    });
+    return flat.setAttribute("normal", new THREE.BufferAttribute(values, 3));
+  }
+
   function surfaceOf(given, colour) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(decoded(given.positions, Float32Array), 3));
     geometry.setIndex(new THREE.BufferAttribute(decoded(given.index, Uint32Array), 1));
-    const creased = THREE.toCreasedNormals(geometry, (CREASE * Math.PI) / 180);
+    const creased = withNormals(geometry);
     const surface = new THREE.MeshStandardMaterial({
       color: colour, metalness: 0.0, roughness: 0.62, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });

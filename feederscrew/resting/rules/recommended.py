@@ -20,12 +20,17 @@ drop tests of made bodies, and for drop and feed with measured sets in view: doc
 ROLLING_RULES = {"drop": "csa"}  # the closed form nearest to drop tests of parts with a rolling class
 ROLL = "quasistatic"  # ... under the other launches
 SHARE_WIDTHS = {
-    ("place", False): 0.15, ("place", True): 0.14,
-    ("drop", False): 0.12, ("drop", True): 0.26,
-    ("flip", False): 0.09, ("flip", True): 0.26,
-    ("roll", False): 0.10, ("roll", True): 0.54,
-    ("feed", False): 0.10, ("feed", True): 0.21,
-}  # fmt: skip
+    ("place", False): 0.15,
+    ("place", True): 0.14,
+    ("drop", False): 0.12,
+    ("drop", True): 0.26,
+    ("flip", False): 0.09,
+    ("flip", True): 0.26,
+    ("roll", False): 0.10,
+    ("roll", True): 0.54,
+    ("feed", False): 0.10,
+    ("feed", True): 0.21,
+}
 """[1] Half the 95 % interval of the closed form on a share of a half, by launch and whether the part has a
 rolling class: such that it holds 95 % of the shares in drop tests of made bodies and real parts
 (``benchmarks/accuracy.py`` prints it, with its coverage of bodies and sets left out)."""

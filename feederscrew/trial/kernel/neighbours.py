@@ -30,7 +30,9 @@ from feederscrew.trial.kernel.plate_views import (
 from feederscrew.trial.kernel.workspace import Surface, TrueSolid, Workspace
 
 FREE_WAY = 0.25  # in units of the part's length: so far along a bare track its lists hold
-LEAST_MARGIN, MARGIN_SHARE = 0.02, 3.0  # how far around a part is looked, at least, and times the reach
+# how far around a part is looked
+LEAST_MARGIN = 0.02  # at least
+MARGIN_SHARE = 3.0  # times the reach
 NO_BEND = 1e-9  # [1] of the product of squares: two lines are parallel
 
 

@@ -20,11 +20,15 @@ from feederscrew.trial.kernel.workspace import Island, Surface, TrueSolid, Works
 LEAST_REACH = 2e-3  # how far ahead contacts are looked for, more than the way of two steps
 FREE_WORK = 1e-9  # work against gravity and the drive that is rounding, of one part alone, and ...
 FREE_PAIR_WORK = 2e-6  # ... of parts that push each other, by impulses that are not wholly converged
-DEPTH_LEFT, DEEP_CONTACT = 3e-4, 6e-4  # depth that is left, and from which on it is made less
-LIFT_SHARE, MAX_LIFT = 0.1, 0.01  # of a greater depth, taken back in a step; of so much at most
+DEPTH_LEFT = 3e-4  # depth that is left
+DEEP_CONTACT = 6e-4  # depth from which on it is made less
+LIFT_SHARE = 0.1  # of a greater depth, taken back in a step
+MAX_LIFT = 0.01  # of so much at most
 AT_ONCE = 0.02  # of a step: what happens sooner happens at its start
 UPWARD = 0.5  # [1] of the normal: a part that is held so by another is carried
-BEHIND, BELOW = 0, 1  # columns of the strains
+# columns of the strains
+BEHIND = 0
+BELOW = 1
 STILL_SLIP = 1e-5  # speed along a contact below which it sticks while static friction holds
 IMPACT_GAP = 2e-5  # [1] of the unit of length: what is further off takes no part in an impact
 SPEED_ROUNDING = 1e-9  # speed that is rounding

@@ -48,7 +48,8 @@ PLACE_ROUNDING = 1e-9  # more than rounding moves a point
 SHADOW_DEPTHS = 4.0  # times its depth: a deeper contact is none where so near to it another is shallower
 UPRIGHT_WALL = 1e-9  # [1] a wall that leans by more from the bowl's axis is the other face of a groove
 
-WAYS, FALL = 6, 100.0  # supports are kept in so many directions, a lower one rather than one further out
+WAYS = 6  # directions in which supports are kept
+FALL = 100.0  # a lower support counts so much more than one further out
 HALF_TURN = tuple(2.0 * math.pi * m / WAYS for m in range(WAYS // 2))
 COSINES = (*map(math.cos, HALF_TURN), *(-math.cos(angle) for angle in HALF_TURN), 0.0)  # of none at last
 SINES = (*map(math.sin, HALF_TURN), *(-math.sin(angle) for angle in HALF_TURN), 0.0)
@@ -63,7 +64,9 @@ PLATE_KEYS = 1e6  # and of each plate, or border, from so much more
 STEEP_EDGE_NORMAL = 0.7  # [1] against a plate's front: one that lies flatter stops a part
 LIST_DEPTH = 0.01  # in units of the part's length: what is deeper in something as the lists are made is left
 STRAIGHT_BORDERS = 0.9  # [1] cosine between borders of which one goes on from the other nearly straight
-EDGE_SPACING, SAME_NORMAL = 1e-2, 0.995  # edges that touch so near, with normals so alike, are one contact
+# edges that touch so near, with normals so alike, are one contact
+EDGE_SPACING = 1e-2
+SAME_NORMAL = 0.995
 
 
 @outlined

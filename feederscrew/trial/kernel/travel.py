@@ -11,7 +11,11 @@ from feederscrew.trial.kernel import pairs, steps
 from feederscrew.trial.kernel.track_contacts import find_contacts
 from feederscrew.trial.kernel.workspace import Island, Limits, QueueSteps, Solo, Surface, TrueSolid, Workspace
 
-RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
+RUNNING = 0
+PASSED = 1
+RETURNED = 2
+STANDS = 3  # gets on no more
+ROLLED = 4  # went back
 BACKWARDS = 5.0  # times as far as a part must get on: so far back in that time it rolls back
 LEAST_STEP_SHARE = 1e-6  # [1] of a step: less is nothing
 LEAST_FRICTION = 1e-6  # [1] below which a part slides on for good

@@ -27,20 +27,35 @@ PLATE_RECORD = record_type(
     *_spread("origin", "first", "second", "front"),  # its own axes: two along it, one out of it
     "depth",
     "rounding",  # of its borders
-    "begin", "end",  # of its borders among all
+    # of its borders among all
+    "begin",
+    "end",
     "friction",  # its own, NaN for that of the track
-    "least_x", "most_x", "least_y", "most_y",  # box around its borders
+    # box around its borders
+    "least_x",
+    "most_x",
+    "least_y",
+    "most_y",
     whole=("begin", "end"),
-)  # fmt: skip
+)
 BORDER = record_type(
-    "start_x", "start_y", "end_x", "end_y",
-    "normal_x", "normal_y",  # away from what is solid
+    "start_x",
+    "start_y",
+    "end_x",
+    "end_y",
+    # away from what is solid
+    "normal_x",
+    "normal_y",
     "convex",  # corner at its start
     "drawn_end",  # not what is solid ends there
-    "previous_x", "previous_y",  # normal of the border before
-    "extension_start", "extension_end",  # [1] how far it goes on in the solid before start, behind end
+    # normal of the border before
+    "previous_x",
+    "previous_y",
+    # [1] how far it goes on in the solid before start, behind end
+    "extension_start",
+    "extension_end",
     flags=("convex", "drawn_end"),
-)  # fmt: skip
+)
 JET = record_type(
     *_spread("mouth", "towards"), "radius", "spread", "thrust", "reach", "begin", "end"
 )  # spread: growth of the radius by the way; begin and end in time
@@ -50,46 +65,72 @@ CONTACT = record_type(
     *_spread("along", "aside", "normal"),
     *_spread("along_lever", "aside_lever", "normal_lever"),  # in body axes
     *_spread("along_rate", "aside_rate", "normal_rate"),  # that one unit of impulse gives, in body axes
-    "along_mass", "aside_mass", "normal_mass",  # effective
+    # effective
+    "along_mass",
+    "aside_mass",
+    "normal_mass",
     "target_speed",  # speed along the normal after the impulse
-    "along_impulse", "aside_impulse", "normal_impulse",
-    "friction_ahead", "friction_back",  # against sliding ahead and back
+    # given to the part in this step
+    "along_impulse",
+    "aside_impulse",
+    "normal_impulse",
+    # against sliding ahead and back
+    "friction_ahead",
+    "friction_back",
     "friction",  # of what is touched, NaN for that of the track
     "gap",
     "key",  # which contact it is: its kind, then what touches
     *_spread("spot"),  # in body axes
-)  # fmt: skip
+)
 IMPULSES = record_type("key", "along", "aside", "normal")  # of a contact in the step before
 SUPPORT = record_type("place_x", "place_y", "gap", *_spread("spot"), "key")  # one of many that push one way
 CIRCLE = record_type("x", "y", "z", *_spread("axis"), "radius")  # of a part, in its own axes
 NEAR_CORNER = record_type(
     "corner",
-    "first_side", "last_side",  # the borders near it, among `sides`
+    # the borders near it, among `sides`
+    "first_side",
+    "last_side",
     "off",  # over the plate, or from it along the plate where that is more, as the lists were made
     whole=("corner", "first_side", "last_side"),
-)  # fmt: skip
+)
 NEAR_EDGE = record_type("edge", "border", "gap", "back", whole=("edge", "border"), flags=("back",))
 NEAR_POST = record_type("edge", "border", whole=("edge", "border"))  # runs straight back from a border
 NEAR_FACE = record_type("face", "border", "back", whole=("face", "border"), flags=("back",))
 NEAR_CIRCLE = record_type("circle", "clear", whole=("circle",), flags=("clear",))  # clear: no border is near
 NEAR_WALL = record_type("corner", "gap", whole=("corner",))
 LIST_STATE = record_type(
-    "x", "y", "z", "qw", "qx", "qy", "qz",  # pose in which the lists were made, ...
-    "tangent_x", "tangent_y",  # ... tangent of the wall there, and ...
+    # pose in which the lists were made, ...
+    "x",
+    "y",
+    "z",
+    "qw",
+    "qx",
+    "qy",
+    "qz",
+    # ... tangent of the wall there, and ...
+    "tangent_x",
+    "tangent_y",
     "from_axis",  # ... how far from the bowl's axis
     "reach",  # how far off they look
     "shift",  # how far the part has moved since
     "free",  # how far along the track it may go
-    "wall_corners", "wall_circles",  # how many are near the wall
+    # how many are near the wall
+    "wall_corners",
+    "wall_circles",
     whole=("wall_corners", "wall_circles"),
-)  # fmt: skip
+)
 LISTS = ("corners", "sides", "edges", "posts", "faces", "circles", "rounds")
 LIST_COUNTS = record_type(*LISTS, whole=LISTS)  # how many of each list are near the plates so far
 JOURNAL = record_type(
-    "time", "way", "depth",  # taken, along the wall, the greatest
+    # taken, along the wall, the greatest
+    "time",
+    "way",
+    "depth",
     "gain",  # greatest rise of the energy over what gravity and the drive gave
-    "energy", "least_energy",  # what the last is reckoned with
-)  # fmt: skip
+    # what the last is reckoned with
+    "energy",
+    "least_energy",
+)
 
 
 class TrueSolid(NamedTuple):

@@ -1,7 +1,7 @@
 """What the tests need compiled, made once for all their processes.
 
-Run: python tests/compile_first.py            (all)
-     python tests/compile_first.py trial ...  (only those)
+Run: python tests/support/compile_first.py            (all)
+     python tests/support/compile_first.py trial ...  (only those)
 
 The suite begins while the trial is still compiled: tests that need it wait for it. Each kernel is called as
 a command calls it, with as little to do as it takes.
@@ -15,7 +15,7 @@ import tempfile
 import time
 from pathlib import Path
 
-PARTS = Path(__file__).parents[1] / "parts"
+PARTS = Path(__file__).parents[2] / "parts"
 BOWL = """\
 devices:
   - gap: 2 mm

@@ -27,7 +27,7 @@ def box(size, turn=None):
 
 def cuboids():
     """Measured tosses of square cuboids: x over y, share on the two square faces, tosses."""
-    text = (Path(__file__).parent / "data/square_cuboids.csv").read_text()
+    text = (Path(__file__).parents[1] / "data/square_cuboids.csv").read_text()
     rows = csv.DictReader(line for line in text.splitlines() if line[0] != "#")
     return [(float(r["x_over_y"]), float(r["p_square"]), int(r["n"])) for r in rows]
 

@@ -7,7 +7,7 @@ from click.testing import CliRunner
 
 from feederscrew_cli.main import feeder
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "parts"
 BRACKET, NUT, CARD = PARTS / "lbracket_30x20x15.stl", PARTS / "squarenut_m5.stl", PARTS / "arc_chute.yaml"
 

@@ -11,7 +11,7 @@ import sys
 import click
 import pytest
 from click.testing import CliRunner
-from command_lines import ROOT
+from command_lines import NUT, ROOT
 
 from feederscrew import __version__
 from feederscrew.errors import Faults, FeederError, MeshError
@@ -105,9 +105,17 @@ def python(code, *arguments, **streams):
 
 
 @pytest.mark.parametrize(
-    ("words", "heavy"), [(["--help"], HEAVY), (["convey"], {"numba"})], ids=["help", "convey"]
+    ("words", "heavy"),
+    [
+        (["--help"], HEAVY),
+        (["convey"], {"numba"}),
+        (["slide", "-o", "FOLDER"], {"pandas"}),  # tables, documents and pictures of it
+        (["aspects", str(NUT), "--rule", "closed", "-o", "FOLDER"], {"pandas"}),
+    ],
+    ids=["help", "convey", "slide", "aspects"],
 )
-def test_help_imports_no_heavy_library_and_one_point_no_compiler(words, heavy):
+def test_help_imports_no_heavy_library_and_one_point_no_compiler(words, heavy, tmp_path):
+    words = [str(tmp_path) if word == "FOLDER" else word for word in words]
     code = "import sys; from click.testing import CliRunner; from feederscrew_cli.main import feeder\n"
     code += f"assert CliRunner().invoke(feeder, {words!r}).exit_code == 0\n"
     code += f"print(*sorted({heavy!r} & set(sys.modules)))"
