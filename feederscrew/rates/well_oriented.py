@@ -1,5 +1,6 @@
 """From velocity to well-oriented parts: pitch, probability of the orientation, devices, fill."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,10 +12,12 @@ from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.headings import headings, stable_row
 from feederscrew.part.record import Part
+from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import Orientation
 
 RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
@@ -121,17 +124,57 @@ class Rate(ReadableRecord):
 
 
 def wanted(
-    part: Part, aspects: Aspects, track: Track, name: str, heading: float | None = None
+    part: Part,
+    aspects: Aspects,
+    track: Track,
+    name: str,
+    heading: float | None = None,
+    devices: Sequence[Device] = (),
 ) -> tuple[str, float]:
     """Return aspect and heading [rad] that a part shall leave the bowl in.
 
-    Without a heading [rad] it is the most frequent one that stays on the track.
+    Without a heading it is the one of the aspect that most of its parts leave the devices in. Where none
+    leaves, or there are no devices, it is the most frequent one that stays on the track.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh, or a card without devices that are placed.
+    aspects : Aspects
+        Of the part.
+    track : Track
+        On which the part lies.
+    name : str
+        Of an aspect; upper or lower case.
+    heading : float, optional
+        [rad], of a stable orientation.
+    devices : sequence of Device
+        Along the track, in the order parts meet them.
+
+    Returns
+    -------
+    str
+        Name of the aspect, as the part has it.
+    float
+        Heading [rad].
+
+    Raises
+    ------
+    FeederError
+        If there is no such aspect, or none of its headings is stable.
 
     Source: docs/mechanics.md, "Headings".
     """
     lying = posture(part, aspects, name)
-    queue = headings(lying, track)
-    return lying.name, float(queue.headings[stable_row(queue, heading)])
+    stable = headings(lying, track)
+    if heading is None and devices:
+        queue = stream.follow_orientations(part, aspects, track, devices)
+        own = np.array([aspect == lying.name for aspect in queue.aspects])
+        leaving = (queue.heading_shares * own) @ queue.leaving
+        leaves_so = np.where(own, leaving[queue.leaves_as], 0.0)
+        if leaves_so.any():
+            return lying.name, float(queue.headings[int(np.argmax(leaves_so))])
+    return lying.name, float(stable.headings[stable_row(stable, heading)])
 
 
 def velocity(bowl: Bowl) -> Range:

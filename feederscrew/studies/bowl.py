@@ -183,7 +183,9 @@ def size_machine(
     check_wanted(part, aspect, heading)
     aspects = arriving(part, plain, rule) if aspects is None else aspects
     straight = replace(sizing.STRAIGHT_TRACK, climb=plain.track.climb)
-    wanted = None if aspect is None else well_oriented.wanted(part, aspects, straight, aspect, heading)
+    wanted = None
+    if aspect is not None:
+        wanted = well_oriented.wanted(part, aspects, straight, aspect, heading, plain.devices)
     lying = sizing.find_lying(part, aspects, wanted)
     counted: dict[str, Any] = {"rule": arguments.a_rule(rule, aspects), "gap": gap, "fill": fill}
     # the size: what the file says of the track is kept; a device that leads down may need a steeper one

@@ -304,7 +304,7 @@ def rate(
     if any(device.placed for device in chain):
         refuse_many_facets(part)
     aspects = aspect_shares.aspects
-    target = None if aspect is None else well_oriented.wanted(part, aspects, bowl.track, aspect, angle)
+    target = None if aspect is None else well_oriented.wanted(part, aspects, bowl.track, aspect, angle, chain)
     followed = stream.follow_orientations(part, aspects, bowl.track, chain, sigma, bowl)
     lying = stream.oriented(followed, aspect_shares.measured)
     speed = well_oriented.velocity(stream.queueing(bowl, lying.lying))

@@ -138,7 +138,7 @@ def tune(
             return coming
         return stream.oriented(stream.with_shares(coming, there.aspects), there.measured)
 
-    wanted = well_oriented.wanted(part, here.aspects, bowl.track, aspect, angle)
+    wanted = well_oriented.wanted(part, here.aspects, bowl.track, aspect, angle, chain)
     own: dict[str, Any] = {"rule": rule, "gap": space, "fill": fill}
     well_oriented.parts_per_metre(along(None), wanted, **own)  # raises where none ever leaves so
     well_oriented.holds(along(bowl), wanted)

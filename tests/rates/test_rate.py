@@ -134,6 +134,24 @@ def test_what_never_leaves_and_rules_and_aspects_that_do_not_exist_give_no_rate(
         well_oriented.wanted(part, found, STRAIGHT, "Z")
 
 
+@pytest.mark.parametrize("of", ["A@352", "A@90"])
+def test_of_an_aspect_the_heading_is_wanted_that_the_devices_let_leave(of, tmp_path):
+    """A camera that keeps another way up of a bolt than its most frequent: what `feeder tooling` may write."""
+    part = load(PARTS / "hexbolt_m8x25.stl")
+    found = find(part)
+    devices = tmp_path / "devices.yaml"
+    devices.write_text(f"devices:\n  - sorter: {{of: {of}, play: 3 mm}}\n")
+    chain = bowls.read(devices).devices
+    target = well_oriented.wanted(part, found, STRAIGHT, "A", devices=chain)
+    assert np.degrees(target[1]) == pytest.approx(float(of[2:]), abs=1.0)
+    queue = follow_orientations(part, found, STRAIGHT, chain)
+    assert well_oriented.parts_per_metre(queue, target, "csa") > 0.0
+    given_heading = well_oriented.wanted(part, found, STRAIGHT, "A", np.radians(188.0), chain)
+    assert np.degrees(given_heading[1]) == pytest.approx(188.0, abs=1.0)
+    none_so = well_oriented.wanted(part, found, STRAIGHT, "B", devices=chain)
+    assert none_so == well_oriented.wanted(part, found, STRAIGHT, "B")
+
+
 def bouncing(restitution):
     """A bowl whose parts hop: throw number 1.84, where a harder bounce is a slower travel."""
     drive = replace(BOWL.drive, amplitude=0.3e-3, frequency=60.0, vibration_angle=np.radians(25.0))
