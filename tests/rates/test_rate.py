@@ -136,7 +136,7 @@ def test_what_never_leaves_and_rules_and_aspects_that_do_not_exist_give_no_rate(
 
 @pytest.mark.parametrize("of", ["A@352", "A@90"])
 def test_of_an_aspect_the_heading_is_wanted_that_the_devices_let_leave(of, tmp_path):
-    """A camera that keeps another way up of a bolt than its most frequent: what `feeder tooling` may write."""
+    """A camera keeps another way up than the most frequent, as `feeder tooling` may write."""
     part = load(PARTS / "hexbolt_m8x25.stl")
     found = find(part)
     devices = tmp_path / "devices.yaml"
