@@ -139,15 +139,15 @@ def wanted(
     Parameters
     ----------
     part : Part
-        From a mesh, or a card without devices that are placed.
+        From a mesh, or a card if there are no devices.
     aspects : Aspects
         Of the part.
     track : Track
         On which the part lies.
     name : str
         Of an aspect; upper or lower case.
-    heading : float, optional
-        [rad], of a stable orientation.
+    heading : float [rad], optional
+        Of a stable orientation.
     devices : sequence of Device
         Along the track, in the order parts meet them.
 
@@ -155,8 +155,8 @@ def wanted(
     -------
     str
         Name of the aspect, as the part has it.
-    float
-        Heading [rad].
+    float [rad]
+        The heading.
 
     Raises
     ------
@@ -170,7 +170,7 @@ def wanted(
     if heading is None and devices:
         queue = stream.follow_orientations(part, aspects, track, devices)
         own = np.array([aspect == lying.name for aspect in queue.aspects])
-        leaving = (queue.heading_shares * own) @ queue.leaving
+        leaving = ((queue.heading_shares * own)[:, None] * queue.leaving).sum(axis=0)
         leaves_so = np.where(own, leaving[queue.leaves_as], 0.0)
         if leaves_so.any():
             return lying.name, float(queue.headings[int(np.argmax(leaves_so))])
