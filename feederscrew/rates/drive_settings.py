@@ -106,7 +106,7 @@ def solutions(
         as ``well_oriented.velocity``.
     density : callable
         Of a bowl: the well-oriented parts on a length of its track [1/m], with what arrives at its drive and
-        without what that turns over; of None: at the bowl's own drive as if it turned over none.
+        without what that turns over. For None: at the bowl's own drive as if it turned over none.
     rough : callable, optional
         The same with what arrives at the bowl's own drive, sooner: it leads to a setting that ``density``
         then decides on.
