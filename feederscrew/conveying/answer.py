@@ -81,7 +81,7 @@ class Answer(ReadableRecord):
 
     @property
     def unsteady(self) -> UnsteadyMotion | None:
-        """Why there is no steady velocity; None where there is one."""
+        """Return why there is no steady velocity; None where there is one."""
         if self.status is not MotionStatus.NO_STEADY_STATE:
             return None
         keeps = steady.keeps_speed(operating_point.law(self.setting))
@@ -89,9 +89,21 @@ class Answer(ReadableRecord):
 
 
 def answer(bowl: Bowl) -> Answer:
-    """Compute how a part travels in a bowl, without compiling anything; the same bits if compiled before.
+    """Return how a part travels in a bowl, without compiling anything; the same bits if compiled before.
 
-    Raises ConfigError if nothing moves, or the drive does not point along the track.
+    Parameters
+    ----------
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    Answer
+
+    Raises
+    ------
+    ConfigError
+        If nothing moves, or the drive does not point along the track.
     """
     conveying(bowl)
     setting = OperatingPoint(*settings(bowl).tolist())
@@ -138,7 +150,7 @@ def _surveyed(setting: OperatingPoint) -> Floats:
 
 
 def conveying(bowl: Bowl) -> Bowl:
-    """Return the bowl itself, once it can convey; raise ConfigError otherwise."""
+    """Return the bowl itself if it can convey; raise ConfigError otherwise."""
     if not np.all(bowl.gravity > 0.0):
         raise ConfigError("gravity", "is not above 0", "give m/s2, 9.81 on earth")
     if np.any(bowl.drive.direction != 0.0):
@@ -155,16 +167,16 @@ def conveying(bowl: Bowl) -> Bowl:
 
 
 def settings(bowl: Bowl) -> Floats:
-    """Return what the kernel needs of a bowl: an ``OperatingPoint`` (..., 12) [1 and rad], the last axis.
+    """Return the ``OperatingPoint`` (..., 12) [1 and rad] of a bowl, its fields along the last axis.
 
     The bowl's fields may be arrays that broadcast together. The bank is reckoned as friction
-    (``limits.level``); the acceleration ratio is ``LEAST_ACCELERATION_RATIO`` of a bowl at rest.
-    Source: docs/conveying.md, "The model".
+    (``limits.level``). A bowl at rest gets the acceleration ratio ``LEAST_ACCELERATION_RATIO``. Source:
+    docs/conveying.md, "The model".
     """
     here = limits.level(bowl)
     drive, friction = here.drive, here.friction
     ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
-    rows = np.broadcast_arrays(
+    rows = np.broadcast_arrays(  # in the order of ``OperatingPoint``
         np.maximum(ratio, LEAST_ACCELERATION_RATIO),
         drive.vibration_angle,
         here.track.climb,
@@ -181,10 +193,11 @@ def settings(bowl: Bowl) -> Floats:
 
 
 def limits_of_slip(setting: OperatingPoint) -> tuple[float, float]:
-    """Return the least static friction [1] against slip up and down the track; its own does not matter.
+    """Return the least static friction [1] against slip up and down the track, whatever the setting's own.
 
-    Zero or less where no slip comes on any surface; NaN past the hop where it comes on every one. Of an
-    elliptical drive the ratio of pull to normal force where their difference is greatest is the next guess.
+    Zero or less where the part slips on no surface; NaN past the hop, where it slips on every one. Under an
+    elliptical drive pull and normal force are greatest at different phases. Then the ratio of both is taken
+    where their difference is greatest, that ratio is the next guess, and so on until it does not change.
     Source: W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7), 492-498, 1967.
     """
     if setting.lead == 0.0 and setting.second == 0.0:
@@ -213,22 +226,35 @@ def throw_number(bowl: Bowl) -> float:
 def throw_of_flight(periods: float) -> float:
     """Return the throw number [1] at which a part that does not rebound flies for a time [periods], above 0.
 
+        k = sqrt(1 + q^2),   q = (x^2 / 2 - 1 + cos x) / (x - sin x),   x = 2 pi times the periods
+
     Source: Sloot and Kruyt 1996, by the parabola between two impacts: sqrt(1 + pi^2) for one period.
     """
     turn = 2.0 * math.pi * check.positive("periods", periods)
     return math.hypot(1.0, (0.5 * turn * turn - 1.0 + math.cos(turn)) / (turn - math.sin(turn)))
 
 
-def greatest_speed(bowl: Bowl) -> Values:
+def greatest_speed(bowl: Bowl) -> float:
     """Return A w [m/s], of the first harmonic.
 
-    Source: the derivative of the motion.
+    Source: the derivative of the motion A sin(w t).
     """
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
 
 def validity(run: Answer, bowl: Bowl) -> str:
-    """Say what an answer leaves out, in one sentence."""
+    """Return a sentence that says what an answer leaves out.
+
+    Parameters
+    ----------
+    run : Answer
+    bowl : Bowl
+        Of that answer.
+
+    Returns
+    -------
+    str
+    """
     remarks = "point mass: tipping and turning are left out"
     if run.throw_number > 1.0:
         remarks = "point mass: fairly good where the part slides, larger deviations where it is thrown"
@@ -239,9 +265,9 @@ def validity(run: Answer, bowl: Bowl) -> str:
 
 
 def cells(bowl: Bowl) -> dict[str, Array]:
-    """Compute how a part travels over a map: the bowl's fields are arrays that broadcast together.
+    """Return how a part travels over a map: the bowl's fields are arrays that broadcast together.
 
-    Returned are velocity, low, high [m/s] over the starts; several, whether they differ by more than
+    The columns are velocity, low, high [m/s] over the starts; several, whether these differ by more than
     ``COEXISTING_VELOCITY_GAP``; regime, a place in ``SWEEP_REGIMES``; throw_number [1]; status, a place in
     ``steady.STATUSES``. Raises ConfigError as ``answer`` does.
     """
@@ -261,12 +287,30 @@ def cells(bowl: Bowl) -> dict[str, Array]:
 
 
 def sweep(rows: Floats, workers: int | None = None) -> Floats:
-    """Compute the steady motion of many settings, (N, 17), compiled, as ``steady.survey`` does for one.
+    """Return the steady motion of many settings, compiled, as ``steady.survey`` fills it in for one.
 
-    Each of the ``rows`` (N, 12) [1 and rad] is an ``OperatingPoint``; there are as many threads as cores, or
-    ``workers``. The first call on a machine compiles for some seconds and keeps the result on disk:
-    ``sweep_compiled``. Raises ValueError if a shape is wrong, an entry is not finite, or a row is not a
-    track. Source: docs/conveying.md, "How it is computed".
+    The first call on a machine compiles for some seconds and keeps the result on disk: ``sweep_compiled``.
+
+    Parameters
+    ----------
+    rows : (N, 12) float [1 and rad]
+        An ``OperatingPoint`` each.
+    workers : int or None
+        Threads; None takes as many as there are cores.
+
+    Returns
+    -------
+    (N, 17) float [1, periods, A w]
+        Columns of ``steady``.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry is not finite, or a row is not a track.
+
+    References
+    ----------
+    docs/conveying.md, "How it is computed".
     """
     rows = check.shaped("settings", rows, (-1, len(OperatingPoint._fields)))
     operating_point.checked(OperatingPoint(*rows.T))
@@ -281,13 +325,17 @@ def sweep(rows: Floats, workers: int | None = None) -> Floats:
 
 
 def sweep_compiled() -> bool:
-    """Tell whether the compiled functions are already on disk, or numba is set not to compile."""
+    """Return whether the compiled functions are already on disk, or numba is set not to compile."""
     return on_disk(_compiled_loop())
 
 
 @functools.cache
 def _compiled_loop() -> Callable[..., None]:
-    """The loop over settings, with every function it reaches; those of a period compiled into one piece."""
+    """Return the loop over settings, compiled, with every function it reaches.
+
+    The functions of a period are compiled into one piece; the others stay functions of their own, which keeps
+    the compiled code small.
+    """
     a_period = {
         *(waves.value, waves.after, waves.above, waves.onward, waves.reached, waves.gain),
         *(waves._beyond_sine, waves._beyond_cosine, operating_point.contact),
@@ -302,7 +350,7 @@ def _compiled_loop() -> Callable[..., None]:
 
 @functools.cache
 def _loaded_loop() -> Callable[..., None]:
-    """The same loop once it has run, of no setting: what is loaded then is taken for single settings too."""
+    """Return the same loop once it has run over no setting; once loaded it serves single settings too."""
     run = _compiled_loop()
     run(np.empty((0, len(OperatingPoint._fields))), np.empty((0, steady.COLUMNS)), steady.memory())
     return run
@@ -317,7 +365,22 @@ def _loop(rows: Floats, out: Floats, arrays: steady.Memory) -> None:
 
 
 def scaled(bowl: Bowl, *, amplitude: Values = 1.0, friction: Values = 1.0, angle: Values = 1.0) -> Bowl:
-    """Return the bowl with its stroke, every coefficient of friction or its vibration angle multiplied."""
+    """Return the bowl with its stroke, every coefficient of friction or its vibration angle multiplied.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    amplitude : float or (...) float [1]
+        Factor of the stroke.
+    friction : float or (...) float [1]
+        Factor of every coefficient.
+    angle : float or (...) float [1]
+        Factor of the vibration angle, which stays at most a right angle.
+
+    Returns
+    -------
+    Bowl
+    """
     steep, mu = np.minimum(bowl.drive.vibration_angle * angle, np.pi / 2), bowl.friction
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * amplitude, vibration_angle=steep)
     surfaces = Friction(*(value * friction for value in (mu.static, mu.kinetic, mu.wall, *mu.backward)))
@@ -358,9 +421,23 @@ def restitution_doubt(bowl: Bowl) -> Neighbours:
 def surfaces(bowl: Bowl, hops: bool) -> list[Bowl]:
     """Return the bowl on the surfaces that may be there, its own first.
 
-    As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` [1] where parts
-    may leave the track, as ``hops`` says, for else restitution decides nothing. Fields may be arrays.
-    Source: docs/validation.md, "Restitution is a spread".
+    They are the bowl as it is, with friction ``FRICTION_DOUBT`` [1] lower and higher, and with both ends of
+    ``even_range``.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Fields may be arrays.
+    hops : bool
+        Parts may leave the track. Otherwise restitution decides nothing, and its two ends are left out.
+
+    Returns
+    -------
+    list of Bowl
+
+    References
+    ----------
+    docs/validation.md, "Restitution is a spread".
     """
     bowls = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
     return bowls + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
@@ -374,7 +451,8 @@ def rebounds(bowl: Bowl) -> tuple[float, ...]:
 def even_range(restitution: float) -> tuple[float, float]:
     """Return both ends of the even range round a restitution [1] with ``RESTITUTION_DOUBT`` as deviation.
 
-    Source: a uniform range has 1 / sqrt(12) of its width as its standard deviation. It ends at 0 and 1.
+    The half width of a uniform range is sqrt(3) times its standard deviation. The range ends at 0 and 1.
+    Source: a uniform range has 1 / sqrt(12) of its width as its standard deviation.
     """
     half = min(math.sqrt(3.0) * RESTITUTION_DOUBT * restitution, 1.0 - restitution)
     return restitution - half, restitution + half
@@ -386,11 +464,29 @@ def inwards(bowl: Bowl) -> Bowl:
 
 
 def at_radius(bowl: Bowl, radius: Values) -> Bowl:
-    """Return the bowl as a part feels it nearer to its axis, at a radius [m], one or many.
+    """Return the bowl as a part feels it nearer to its axis.
 
-    All points rise by the same amplitude and turn by the same angle, so the tangent of the angle to the
-    horizontal, vibration angle plus climb, is inversely proportional to the radius. Raises ConfigError if the
-    drive is elliptical. Source: a bowl that moves as a screw; docs/bowl.md, "How it is computed".
+    All points rise by the same amplitude and turn by the same angle. So the tangent of the angle to the
+    horizontal, vibration angle plus climb, is inversely proportional to the radius.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    radius : float or (...) float [m]
+
+    Returns
+    -------
+    Bowl
+        Its fields are arrays where the radius is one.
+
+    Raises
+    ------
+    ConfigError
+        If the drive is elliptical.
+
+    References
+    ----------
+    A bowl that moves as a screw; docs/bowl.md, "How it is computed".
     """
     if np.any(bowl.drive.phase != 0.0):
         what = "is not 0 deg, an elliptical drive is not a screw motion to follow inwards"
@@ -464,5 +560,15 @@ def best_phase(bowl: Bowl) -> BestPhase:
 
 
 def with_phase(bowl: Bowl, phase: Values) -> Bowl:
-    """Return the bowl with another phase of its drive [rad], one or many."""
+    """Return the bowl with another phase of its drive.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    phase : float or (...) float [rad]
+
+    Returns
+    -------
+    Bowl
+    """
     return replace(bowl, drive=replace(bowl.drive, phase=phase))

@@ -27,20 +27,32 @@ class Hop:
 
     @property
     def text(self) -> str:
-        """Height and length in words."""
+        """Return height and length in words."""
         return f"{1e3 * self.height:.2g} mm high and {1e3 * self.flight:.2g} mm far"
 
 
 def hop(bowl: Bowl) -> Hop:
     """Return how high and how far a point mass that does not rebound hops in the steady motion of a bowl.
 
-    No field of ``bowl`` is an array; its devices and its restitution are not used. Heights [m] are 0 up to
-    the throw number of 1. At the throw number k the part leaves the track at the angle asin(1 / k) of the
-    drive. From there the gap grows by g (k sin(w t) - 1), integrated twice. Its height in units of g / w^2
-    and its duration in periods depend on k alone: 1.77 and 0.68 at 1.8, 3.79 and 0.81 at 2.3. So the height
-    falls with the square of the frequency.
-    Source: Sloot and Kruyt, Powder Technology 87, 203-210, 1996: the flight between two plastic impacts, as
-    in ``answer.throw_of_flight``.
+    At the throw number k the part leaves the track at the angle asin(1 / k) of the drive. From there the gap
+    grows by g (k sin(w t) - 1), integrated twice. Its height in units of g / w^2 and its duration in periods
+    depend on k alone: 1.77 and 0.68 at 1.8, 3.79 and 0.81 at 2.3. So the height falls with the square of the
+    frequency.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Single values; its devices and its restitution are not used.
+
+    Returns
+    -------
+    Hop
+        Heights [m] are 0 up to the throw number of 1.
+
+    References
+    ----------
+    Sloot and Kruyt, Powder Technology 87, 203-210, 1996: the flight between two plastic impacts, as in
+    ``answer.throw_of_flight``.
     """
     setting = OperatingPoint(*settings(replace(bowl, devices=())).tolist())
     if setting.ratio <= LEAST_ACCELERATION_RATIO:
@@ -51,7 +63,7 @@ def hop(bowl: Bowl) -> Hop:
 
 
 def remark(bowl: Bowl) -> tuple[str, ...]:
-    """Say that a bowl's drive throws parts higher than ``HOP_MARGIN_M``: a sentence, or none."""
+    """Return a sentence if a bowl's drive throws parts higher than ``HOP_MARGIN_M``."""
     own = hop(bowl)
     text = (
         f"parts hop {own.text}: an edge, rail or blade that a part passes by less, and a hole that is "
@@ -62,7 +74,7 @@ def remark(bowl: Bowl) -> tuple[str, ...]:
 
 @functools.lru_cache(maxsize=4096)
 def _hop(setting: OperatingPoint) -> tuple[float, float, float]:
-    """Greatest gap [A], longest flight relative to the track [A] and in periods."""
+    """Return the greatest gap [A], the longest flight relative to the track [A] and in periods."""
     rules = law(setting)
     if throw_number(rules) <= 1.0:
         return 0.0, 0.0, 0.0

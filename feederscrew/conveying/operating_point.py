@@ -13,11 +13,11 @@ import numpy as np
 from feederscrew import check
 from feederscrew.conveying.waves import Harmonic, Wave, above, harmonic, peak, value
 
+PHASES = ("stick", "forward", "backward", "flight")  # a phase code is a place in this list
 STICK = 0
 FORWARD = 1
 BACKWARD = 2
 FLIGHT = 3
-PHASES = ("stick", "forward", "backward", "flight")
 OVERTONE_RATIO = 4.0  # accelerations of the second harmonic over those of the first, for equal ways
 
 
@@ -46,12 +46,31 @@ class OperatingPoint(NamedTuple):
 def plain(
     ratio: float, angle: float, climb: float, friction: float, restitution: float = 0.0
 ) -> OperatingPoint:
-    """Return a track with one coefficient of friction, as most closed forms assume; [1] and [rad]."""
+    """Return a track with one coefficient of friction, as most closed forms assume.
+
+    Parameters
+    ----------
+    ratio : float [1]
+        A w^2 / g.
+    angle : float [rad]
+        Vibration angle.
+    climb : float [rad]
+    friction : float [1]
+    restitution : float [1]
+
+    Returns
+    -------
+    OperatingPoint
+
+    References
+    ----------
+    docs/conveying.md, "The model".
+    """
     return OperatingPoint(ratio, angle, climb, friction, friction, friction, friction, restitution)
 
 
 def checked(setting: OperatingPoint) -> OperatingPoint:
-    """Return the setting itself, its fields maybe arrays, once it is a track; else raise ValueError."""
+    """Return the setting itself, its fields maybe arrays, if it is a track; else raise ValueError."""
     angle, kinetic = setting.angle, np.minimum(setting.kinetic, setting.kinetic_back)
     reasons = (
         (np.isfinite(np.stack(np.broadcast_arrays(*setting))), "an entry of the setting is not finite"),
@@ -98,7 +117,10 @@ def law(setting: OperatingPoint) -> Law:
 
 
 def lift_wave(setting: OperatingPoint) -> Wave:
-    """Return the acceleration [A w2] along the normal of a part in flight; pressed on, what it lacks."""
+    """Return the acceleration [A w2] along the normal of a part in flight, relative to the plate.
+
+    While it is negative the part is pressed on. Source: docs/conveying.md, "The model".
+    """
     weight = math.cos(setting.climb) / setting.ratio
     normal, phase = math.sin(setting.angle), setting.second_phase
     second = math.sin(setting.angle + setting.second_turn) * OVERTONE_RATIO * setting.second
@@ -106,10 +128,27 @@ def lift_wave(setting: OperatingPoint) -> Wave:
 
 
 def pull_wave(setting: OperatingPoint, direction: float, friction: float) -> Wave:
-    """Return the acceleration [A w2] left after friction of a part about to slip.
+    """Return the acceleration left after friction of a part that slips or is about to slip.
 
-    ``direction`` [1] of the slip and of the acceleration is +1 up the track, -1 down it.
-    Source: Newton's law along the track less Coulomb's friction; docs/conveying.md, "The model".
+    The normal force is the negative of ``lift_wave``. Friction is a multiple of it, so pull and friction
+    together are one wave again: cos(angle) of the drive along the track plus friction times sin(angle).
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+    direction : float [1]
+        Of the slip and of the acceleration, +1 up the track, -1 down it.
+    friction : float [1]
+        Coefficient.
+
+    Returns
+    -------
+    Wave
+        In units of A w^2.
+
+    References
+    ----------
+    Newton's law along the track less Coulomb's friction; docs/conveying.md, "The model".
     """
     along, normal = direction * math.cos(setting.angle), friction * math.sin(setting.angle)
     resist = friction * math.cos(setting.climb) / setting.ratio
@@ -128,7 +167,7 @@ def pull_wave(setting: OperatingPoint, direction: float, friction: float) -> Wav
 
 
 def throw_number(rules: Law) -> float:
-    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1.
+    """Return the plate's greatest downward acceleration over a part's own [1]; the part hops above 1.
 
     Source: docs/conveying.md, "The model".
     """
@@ -136,7 +175,21 @@ def throw_number(rules: Law) -> float:
 
 
 def contact(rules: Law, angle: float, speed: float) -> int:
-    """Return the phase of a part that touches the plate at ``angle`` [rad], relative ``speed`` [A w]."""
+    """Return the phase of a part that touches the plate.
+
+    Parameters
+    ----------
+    rules : Law
+    angle : float [rad]
+        Of the drive.
+    speed : float [A w]
+        Along the track, relative to the plate.
+
+    Returns
+    -------
+    int
+        Place in ``PHASES``.
+    """
     if above(rules.lift, angle):
         return FLIGHT
     if speed > 0.0 or (speed == 0.0 and value(rules.onset, angle) > 0.0):
@@ -147,7 +200,7 @@ def contact(rules: Law, angle: float, speed: float) -> int:
 
 
 class Numbers(NamedTuple):
-    """What v / (A w cos(beta)) depends on, and on nothing else, with one coefficient of friction."""
+    """The five numbers that fix v / (A w cos(beta)) where there is one coefficient of friction."""
 
     coupling: float  # mu tan(beta)
     steepness: float  # tan(climb) / mu
@@ -164,10 +217,28 @@ def numbers(setting: OperatingPoint) -> Numbers:
 
 
 def with_numbers(five: Numbers, friction: float) -> OperatingPoint:
-    """Return one of the many settings with given numbers, that of a friction [1].
+    """Return one of the many settings that have the five numbers.
 
-    Raises ValueError if the friction, the coupling or the throw number is not above 0.
-    Source: own; the five numbers of docs/conveying.md, "The model".
+        tan(beta) = coupling / mu,   tan(climb) = steepness mu,   ratio = throw cos(climb) / sin(beta)
+
+    Parameters
+    ----------
+    five : Numbers
+    friction : float [1]
+        mu.
+
+    Returns
+    -------
+    OperatingPoint
+
+    Raises
+    ------
+    ValueError
+        If the friction, the coupling or the throw number is not above 0.
+
+    References
+    ----------
+    Own; the five numbers of docs/conveying.md, "The model".
     """
     check.positive("coupling", five.coupling)
     check.positive("throw", five.throw)

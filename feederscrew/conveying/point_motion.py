@@ -28,32 +28,60 @@ LATE_NEWTON_STEPS = 10
 LAST_BOUNCE_RAD = 1e-6  # a bounce that would last twice this ends endless bouncing: an error of second order
 MAX_EVENTS_A_PERIOD = 100_000
 # places in a tally
-TRAVEL = 0
-TIMES = 1  # one per phase
-LONGEST = 5
-HARDEST = 6
-FLIGHTS = 7
-# how often the point ...
-STOPS = 8  # came to rest on the plate
-UPWARD = 9  # slid or landed upward
-DOWNWARD = 10  # slid or landed downward
-TALLY = 11
+TRAVEL = 0  # [A] way made
+TIMES = 1  # [rad] time in each of the four phases
+LONGEST = 5  # [rad] longest flight
+HARDEST = 6  # [A w] hardest impact
+FLIGHTS = 7  # number of flights
+STOPS = 8  # how often the part came to rest on the plate
+UPWARD = 9  # how often it slid or landed up the track
+DOWNWARD = 10  # the same down the track
+TALLY = 11  # numbers in a tally
 
 
 def later(zeros: Sequence[float], now: float) -> float:
-    """Return the first of two angles [rad], ascending, still to come in this period; inf otherwise."""
+    """Return the first of two angles that is still to come in this period.
+
+    Parameters
+    ----------
+    zeros : (2,) float [rad]
+        Ascending.
+    now : float [rad]
+
+    Returns
+    -------
+    float [rad]
+        ``now`` for an angle that rounding has put a little into the past; inf if none is to come.
+    """
     if zeros[0] >= now - EVENT_TIE_RAD:
         return max(zeros[0], now)
     return max(zeros[1], now) if zeros[1] >= now - EVENT_TIE_RAD else math.inf
 
 
 def slip_end(a: Harmonic, angle: float, speed: float) -> float:
-    """Return the first angle [rad] of this period at which a slip ends; inf where it lasts beyond it.
+    """Return the first angle of this period at which a slip ends.
 
-    The speed [A w] grows by ``a`` from ``angle`` on; a slip from rest grows first, and ends only after that.
-    Where it falls steepest its curvature changes sign: from there Newton approaches from one side. With a
-    second harmonic it may change sign again, so late steps that are not half the last give way to halving.
-    Source: own; docs/conveying.md, "How it is computed".
+    A slip from rest gets faster first, and ends only after that. Where the speed falls steepest its curvature
+    changes sign: from there Newton's method approaches from one side. With a second harmonic it may change
+    sign again, so late steps that are not half the last give way to halving.
+
+    Parameters
+    ----------
+    a : Harmonic
+        Growth of the speed [A w^2].
+    angle : float [rad]
+        Where the slip is now.
+    speed : float [A w]
+        There; not negative.
+
+    Returns
+    -------
+    float [rad]
+        inf where the slip lasts beyond the period.
+
+    References
+    ----------
+    Own; docs/conveying.md, "How it is computed".
     """
     closing = speed > 0.0 and value(a, angle) < 0.0
     start, arc = angle if closing else later(a.falls, angle), onward(a, angle)
@@ -81,11 +109,30 @@ def slip_end(a: Harmonic, angle: float, speed: float) -> float:
 
 
 def landing(lift: Harmonic, angle: float, height: float, speed: float) -> float:
-    """Return the first angle [rad] of this period at which a flight ends; inf where it lasts beyond it.
+    """Return the first angle of this period at which a flight ends.
 
-    ``height`` [A] is over the plate, zero at a take-off; ``speed`` [A w] along the normal, not negative then.
-    Newton never passes the landing: from beyond it on a stretch curved downwards, from before it upwards.
-    Source: own; docs/conveying.md, "How it is computed".
+    Newton's method never passes the landing: it comes from beyond it on a stretch curved downwards, from
+    before it on one curved upwards.
+
+    Parameters
+    ----------
+    lift : Harmonic
+        Acceleration along the normal, relative to the plate [A w^2].
+    angle : float [rad]
+        Where the flight is now.
+    height : float [A]
+        Over the plate, zero at a take-off.
+    speed : float [A w]
+        Along the normal, not negative at a take-off.
+
+    Returns
+    -------
+    float [rad]
+        inf where the flight lasts beyond the period.
+
+    References
+    ----------
+    Own; docs/conveying.md, "How it is computed".
     """
     start, arc = angle, onward(lift, angle)
     while start < PERIOD_RAD:
@@ -136,11 +183,23 @@ def at_rest(rules: Law) -> State:
 
 
 def turn(rules: Law, state: State, tally: Floats) -> State:
-    """Follow the part to the end of this period of the drive; return its State, the clock set back by one.
+    """Follow the part to the end of this period of the drive.
 
-    Added to in place, for the compiled loops, is ``tally`` (11,): way made [A], time in each phase [rad],
-    longest flight [rad], hardest impact [A w], number of flights, of times at rest on the plate, of slips and
-    landings up the track and of those down.
+    Parameters
+    ----------
+    rules : Law
+    state : State
+    tally : (11,) float [A, rad, A w, 1]
+        Added to in place, for the compiled loops: places ``TRAVEL`` to ``DOWNWARD``.
+
+    Returns
+    -------
+    State
+        The clock set back by one period.
+
+    References
+    ----------
+    docs/conveying.md, "How it is computed".
     """
     for _ in range(MAX_EVENTS_A_PERIOD):
         if state.angle >= PERIOD_RAD:
@@ -150,8 +209,25 @@ def turn(rules: Law, state: State, tally: Floats) -> State:
 
 
 def step(rules: Law, state: State, tally: Floats) -> State:
-    """Follow the part to its next event, or to the end of this period; adds to ``tally`` (11,)."""
+    """Follow the part to its next event, or to the end of this period.
+
+    Parameters
+    ----------
+    rules : Law
+    state : State
+    tally : (11,) float [A, rad, A w, 1]
+        Added to in place.
+
+    Returns
+    -------
+    State
+
+    References
+    ----------
+    docs/conveying.md, "How it is computed".
+    """
     now = state.angle
+    # It sticks until the plate falls away, or the drive pulls it loose up or down the track.
     if state.phase == STICK:
         lift, ahead = later(rules.lift.rises, now), later(rules.onset.rises, now)
         onset = later(rules.onset_back.rises, now)
@@ -166,6 +242,7 @@ def step(rules: Law, state: State, tally: Floats) -> State:
         tally[TIMES + STICK] += end - now
         tally[STOPS] += 1.0
         return State(end, phase, 0.0, 0.0, 0.0, 0.0)
+    # It slips until the plate falls away, or its speed is zero.
     if state.phase != FLIGHT:
         sign = 1.0 if state.phase == FORWARD else -1.0
         growth = rules.slip if state.phase == FORWARD else rules.slip_back
@@ -182,6 +259,7 @@ def step(rules: Law, state: State, tally: Floats) -> State:
             tally[STOPS] += 1.0
             return State(end, contact(rules, end, 0.0), 0.0, 0.0, 0.0, 0.0)
         return State(end, state.phase, speed, 0.0, 0.0, 0.0)
+    # It flies until it lands.
     down = landing(rules.lift, now, state.height, state.rising)
     end = min(down, PERIOD_RAD)
     span, along, normal = end - now, onward(rules.free, now), onward(rules.lift, now)
@@ -203,7 +281,23 @@ def step(rules: Law, state: State, tally: Floats) -> State:
 def land(rules: Law, angle: float, speed: float, impact: float) -> State:
     """Return the state after an impact: restitution (Newton) across the track, Coulomb's bound along it.
 
-    ``speed`` and ``impact`` [A w] are along the track and towards the plate, just before. Source:
+        v_n+ = e v_n-,   |change of v_t| <= mu (1 + e) v_n-
+
+    Parameters
+    ----------
+    rules : Law
+    angle : float [rad]
+    speed : float [A w]
+        Along the track, just before.
+    impact : float [A w]
+        v_n-, towards the plate, just before.
+
+    Returns
+    -------
+    State
+
+    References
+    ----------
     docs/conveying.md, "The model".
     """
     friction = rules.kinetic if speed > 0.0 else rules.kinetic_back

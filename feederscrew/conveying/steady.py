@@ -50,19 +50,30 @@ RUNS = -1  # in place of a period: the part slides on without stopping and does 
 LEAPS = 200  # of a motion that closes in slowly
 SPEED_BRACKET = 1e-13  # [A w] width of the bracket of its speed at which it is found
 MAX_RUNAWAY_SPEED = 1e6  # [A w] no bracket is sought beyond
-STATUSES = tuple(MotionStatus)  # a status code is a place in it
+STATUSES = tuple(MotionStatus)  # a status code is a place in this list
 PERIODIC = STATUSES.index(MotionStatus.PERIODIC)
 AVERAGED = STATUSES.index(MotionStatus.AVERAGED)
 NO_STEADY_STATE = STATUSES.index(MotionStatus.NO_STEADY_STATE)
-STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
-FLIGHT_TIME, IMPACT, HOPS, SLOWEST, FASTEST = range(FRACTIONS + 4, FRACTIONS + 9)
-THROW, REGIME, RUNAWAY, COLUMNS = range(FASTEST + 1, FASTEST + 5)
-# where there is no period
-AVERAGED_PERIODS = 32  # of a lot
+# places in a row of results
+STATUS = 0
+PERIOD = 1
+VELOCITY = 2  # [A w]
+LOW = 3  # [A w] least velocity over the starts
+HIGH = 4  # [A w]
+FRACTIONS = 5  # of the time, in each of the four phases
+FLIGHT_TIME = 9  # [periods] longest flight
+IMPACT = 10  # [A w] hardest impact
+HOPS = 11  # flights a period
+SLOWEST = 12  # [A w] velocity in the slowest period of the drive
+FASTEST = 13  # [A w]
+THROW = 14  # throw number
+REGIME = 15  # place in ``limits.POINT_REGIMES``
+RUNAWAY = 16  # 1 where a part that slides fast enough runs away
+COLUMNS = 17  # numbers in a row
+AVERAGED_PERIODS = 32  # periods of a lot, where there is no period
 AVERAGED_LOTS = 8  # lots averaged
-# where the first start has no period
-BRIEF_PERIODS = 64  # periods followed
-BRIEF_LOTS = 4  # lots averaged
+BRIEF_PERIODS = 64  # periods followed where the first start has no period
+BRIEF_LOTS = 4  # lots averaged then
 MAX_NOTED_STATES = 64  # states of steady motions that are noted, for further starts to join
 RUNAWAY_LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
 ALTERNATING_STATES_GAP = 1e-8  # of two states: what closes in from alternate sides repeats doubly first
@@ -98,19 +109,51 @@ def memory() -> Memory:
 def settle(rules: Law, state: State) -> tuple[State, int]:
     """Follow a part until its state repeats every q periods of the drive, twice in a row.
 
-    Returns the State at the start of a period; and q, ``RUNS``, or 0 where none up to 32 was found. What
-    a part does along the normal does not depend on its speed along the track. Once the former repeats every q
-    periods, and the part has slid through q periods without stopping or turning round and is no slower after
-    them, the next q periods add as much: it slides on and never settles.
+    The motion along the normal does not depend on the speed along the track. If it repeats every q periods,
+    and the part has slid through q periods without stopping or turning round and is no slower after them, the
+    next q periods add as much: the part slides on and never settles.
+
+    Parameters
+    ----------
+    rules : Law
+    state : State
+
+    Returns
+    -------
+    State
+        At the start of a period.
+    int
+        q, ``RUNS``, or 0 where none up to ``LONGEST_PERIOD`` was found.
+
+    References
+    ----------
+    Own; docs/conveying.md, "How it is computed".
     """
     return follow(rules, state, memory(), 0, TRANSIENT)
 
 
 def follow(rules: Law, state: State, arrays: Memory, noticed: int, patience: int) -> tuple[State, int]:
-    """Follow a part as ``settle`` does, or to where it joins a known motion: ``JOINS`` is the number then.
+    """Follow a part as ``settle`` does, or to where it joins a known motion.
 
-    ``arrays`` is a Memory, of whose states so many are ``noticed``; ``patience`` the periods followed before
-    the motion is hastened, or counts as not periodic.
+    Parameters
+    ----------
+    rules : Law
+    state : State
+    arrays : Memory
+    noticed : int
+        Number of states of known motions in ``arrays``.
+    patience : int
+        Periods followed before the motion is hastened, or counts as not periodic.
+
+    Returns
+    -------
+    State
+    int
+        As in ``settle``, or ``JOINS``.
+
+    References
+    ----------
+    Own; docs/conveying.md, "How it is computed".
     """
     tally, history, streak = arrays.tally, arrays.history, arrays.streak
     _clear(tally)
@@ -175,10 +218,10 @@ def _clear(numbers: Floats) -> None:
 
 
 def _leap(rules: Law, history: Floats, count: int, state: State, tally: Floats) -> State:
-    """The state, or where its speed tends to while the motion along the normal repeats every period.
+    """Return the state, or where its speed tends to while the motion along the normal repeats every period.
 
-    Three speeds in a row tell (Aitken). The leap is kept where the speed then changes less than before it:
-    a period is followed to see.
+    Three speeds in a row tell (Aitken). The leap is kept where the speed then changes less than before it: a
+    period is followed to see.
     """
     newest, before = (count - 1) % (LONGEST_PERIOD + 1), (count - 2) % (LONGEST_PERIOD + 1)
     if (
@@ -198,7 +241,7 @@ def _leap(rules: Law, history: Floats, count: int, state: State, tally: Floats) 
 
 
 def _normal_apart(history: Floats, row: int, state: State) -> float:
-    """How far the motion along the normal is from what it was."""
+    """Return how far the motion along the normal is from a former one [A and A w]."""
     return max(abs(state.height - history[row, 1]), abs(state.rising - history[row, 2]))
 
 
@@ -248,13 +291,13 @@ def _hasten(rules: Law, state: State, history: Floats, count: int, tally: Floats
 
 
 def _at_speed(rules: Law, state: State, speed: float) -> State:
-    """The state at another speed along the track."""
+    """Return the state at another speed along the track."""
     phase = FLIGHT if state.phase == FLIGHT else contact(rules, state.angle, speed)
     return State(state.angle, phase, speed, state.height, state.rising, state.aloft)
 
 
 def _on(rules: Law, state: State, periods: int, tally: Floats) -> State:
-    """The state after some periods, stops and contacts counted."""
+    """Return the state after some periods, stops and contacts counted."""
     tally[motion.STOPS], tally[motion.UPWARD], tally[motion.DOWNWARD] = 0.0, 0.0, 0.0
     for _ in range(periods):
         state = turn(rules, state, tally)
@@ -262,17 +305,34 @@ def _on(rules: Law, state: State, periods: int, tally: Floats) -> State:
 
 
 def _runs(tally: Floats) -> bool:
-    """Whether a part slid one way whenever it touched the plate."""
+    """Return whether a part slid one way whenever it touched the plate."""
     return tally[motion.STOPS] == 0.0 and (tally[motion.UPWARD] > 0.0) != (tally[motion.DOWNWARD] > 0.0)
 
 
 def steady(rules: Law, state: State, out: Floats, arrays: Memory, count: int, patience: int) -> int:
-    """Fill in the steady motion reached from one start; return how many states of motions are noted now.
+    """Fill in the steady motion reached from one start.
 
-    ``out`` (17,) has status, period, velocity and its spread [A w], fraction of the time in each phase,
-    longest flight [periods], hardest impact [A w], flights a period, velocity in the slowest and in the
-    fastest period of the drive [A w]; nothing is filled in where the motion is known. ``arrays`` is a Memory,
-    of whose states ``count`` are noted; ``patience`` is as for ``follow``.
+    Parameters
+    ----------
+    rules : Law
+    state : State
+        The start.
+    out : (17,) float [1, periods, A w]
+        Filled up to ``FASTEST``, but not where the motion is known already.
+    arrays : Memory
+    count : int
+        Number of states of known motions in ``arrays``.
+    patience : int
+        As in ``follow``.
+
+    Returns
+    -------
+    int
+        Number of states of known motions now.
+
+    References
+    ----------
+    Own; docs/conveying.md, "How it is computed".
     """
     tally, states = arrays.tally, arrays.states
     state, repeat = follow(rules, state, arrays, count, patience)
@@ -319,7 +379,7 @@ def steady(rules: Law, state: State, out: Floats, arrays: Memory, count: int, pa
 
 
 def _noted_turn(rules: Law, state: State, tally: Floats, out: Floats) -> State:
-    """The state a period of the drive on; the range of the velocities in single periods grows by its own."""
+    """Return the state a period later; the range of velocities in single periods grows by its own."""
     travelled = tally[motion.TRAVEL]
     state = turn(rules, state, tally)
     velocity = (tally[motion.TRAVEL] - travelled) / PERIOD_RAD
@@ -328,7 +388,7 @@ def _noted_turn(rules: Law, state: State, tally: Floats, out: Floats) -> State:
 
 
 def _escape(rules: Law) -> float:
-    """Greatest growth of the speed [A w a radian] of a part that slides all the time, up or down the track.
+    """Return how fast a part that slides all the time gains speed [A w a radian], the greater of both ways.
 
     Positive where a part that once slides fast enough gets faster without end, 0 where it keeps its speed.
     Impacts pass on what the weight would have in the time of the flight, so flight does not matter.
@@ -359,11 +419,26 @@ def _nothing(out: Floats) -> None:
 
 
 def survey(setting: OperatingPoint, out: Floats, arrays: Memory) -> None:
-    """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
+    """Fill a row: the steady motion from rest, and the range of velocity over further starts.
 
-    ``out`` (17,) is as ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady
-    state. Then the throw number, the regime (what a part held by static friction does within a cycle, a
-    place in ``limits.POINT_REGIMES``), and whether a part that slides fast enough runs away: 1 or 0.
+    Where impacts rebound, several steady motions may exist at one setting. Parts are then thrown near regular
+    bounces and dropped as well, and what they settle into widens the range.
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+    out : (17,) float [1, periods, A w]
+        Filled: as in ``steady`` from rest, NaN without a steady state; the throw number; the regime of a part
+        held by static friction within a cycle; whether a part that slides fast enough runs away, 1 or 0.
+    arrays : Memory
+
+    Returns
+    -------
+    None
+
+    References
+    ----------
+    Own; docs/conveying.md, "How it is computed".
     """
     rules = law(setting)
     out[THROW] = throw_number(rules)
@@ -401,9 +476,24 @@ def survey(setting: OperatingPoint, out: Floats, arrays: Memory) -> None:
 def thrown(rules: Law, start: int) -> State:
     """Return start number ``start``: near a regular bounce, or dropped onto the plate at mid stroke.
 
-    0 and 1 are a bounce of one period, at either place where the plate slows down through the speed that
-    keeps it up (a plain drive has one); 2 to 5 of two and three periods; 6 the drop. In flight; ``rising`` is
-    zero where there is no such bounce.
+    A regular bounce of n periods keeps its speed at impact if the plate then moves up
+    with pi n (g / w) (1 - e) / (1 + e).
+
+    Parameters
+    ----------
+    rules : Law
+    start : int
+        0 and 1 are a bounce of one period, at either place where the plate slows down through that speed (a
+        plain drive has one); 2 to 5 are bounces of two and three periods; 6 is the drop.
+
+    Returns
+    -------
+    State
+        In flight; ``rising`` [A w] is zero where there is no such bounce.
+
+    References
+    ----------
+    Own; docs/conveying.md, "How it is computed".
     """
     weight = -rules.lift.level
     if start < 2 * MAX_BOUNCE_PERIODS:
@@ -420,7 +510,7 @@ def thrown(rules: Law, start: int) -> State:
 
 
 def _plate_speed(lift: Harmonic, less: float) -> Harmonic:
-    """The velocity of the plate along its normal, less a constant [A w], as a harmonic."""
+    """Return the velocity of the plate along its normal, less a constant [A w], as a harmonic."""
     once, twice, half = lift.phase, lift.second_phase, 0.5 * lift.second
     sine, cosine = -lift.swing * math.sin(once), lift.swing * math.cos(once)
     return harmonic(Wave(-less, sine, cosine, -half * math.sin(twice), half * math.cos(twice)))

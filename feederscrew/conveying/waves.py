@@ -30,9 +30,20 @@ class Wave(NamedTuple):
 
 
 def height(wave: Wave, angle: float) -> float:
-    """Return the wave at an angle [rad], in its own unit.
+    """Return the wave at an angle, in its own unit.
 
-    Source: the double angles of sine and cosine.
+    Parameters
+    ----------
+    wave : Wave
+    angle : float [rad]
+
+    Returns
+    -------
+    float [any]
+
+    References
+    ----------
+    The double angles of sine and cosine.
     """
     s, c = math.sin(angle), math.cos(angle)
     once = wave.sine * s + wave.cosine * c
@@ -40,12 +51,26 @@ def height(wave: Wave, angle: float) -> float:
 
 
 def size(a: float, b: float) -> float:
-    """Return sqrt(a^2 + b^2) [unit of both]: ``math.hypot`` has other last bits where it is compiled."""
+    """Return sqrt(a^2 + b^2); ``math.hypot`` has other last bits where it is compiled.
+
+    Parameters
+    ----------
+    a : float [any]
+    b : float [any]
+
+    Returns
+    -------
+    float [any]
+
+    References
+    ----------
+    Its definition.
+    """
     return math.sqrt(a * a + b * b)
 
 
 def slope(wave: Wave) -> Wave:
-    """Return its derivative, a wave again, in its own unit over [rad]."""
+    """Return the derivative of a wave, a wave again, in its own unit over [rad]."""
     return Wave(0.0, -wave.cosine, wave.sine, -2.0 * wave.cosine_2, 2.0 * wave.sine_2)
 
 
@@ -67,7 +92,7 @@ def find_bends(wave: Wave) -> Zeros:
 
 
 def _knots(first: float, spacing: float, count: int) -> Zeros:
-    """So many angles [rad], this far apart, then inf."""
+    """Return so many angles [rad], this far apart, then inf."""
     return (
         first if count > 0 else INF,
         first + spacing if count > 1 else INF,
@@ -77,7 +102,7 @@ def _knots(first: float, spacing: float, count: int) -> Zeros:
 
 
 def crest(wave: Wave) -> float:
-    """Return the angle [rad] of its greatest value; the wave has a harmonic."""
+    """Return the angle [rad] of the greatest value of a wave that has a harmonic."""
     best, angle, angles = -math.inf, 0.0, find_bends(wave)
     for k in range(MAX_ZEROS):
         if angles[k] < math.inf and height(wave, angles[k]) > best:
@@ -86,13 +111,26 @@ def crest(wave: Wave) -> float:
 
 
 def crossings(wave: Wave, knots: Zeros, sense: int) -> Zeros:
-    """Find the zeros [rad] of a wave that has at most one between neighbouring knots.
+    """Return the zeros of a wave that has at most one between neighbouring knots.
 
-    From 0 to 2 pi, ascending, then inf.
+    A wave that only touches zero from below neither rises nor falls through it.
 
-    ``knots`` (4,) [rad] ascend within one period, then are inf; ``sense`` is +1 for the zeros where it rises,
-    -1 where it falls, 0 for both. A wave that only touches zero from below does neither.
-    Source: own; docs/conveying.md, "How it is computed".
+    Parameters
+    ----------
+    wave : Wave
+    knots : (4,) float [rad]
+        Ascending within one period, then inf.
+    sense : int
+        +1 for the zeros where it rises, -1 where it falls, 0 for both.
+
+    Returns
+    -------
+    (4,) float [rad]
+        From 0 to 2 pi, ascending, then inf.
+
+    References
+    ----------
+    Own; docs/conveying.md, "How it is computed".
     """
     zeros, rate = _knots(0.0, 0.0, 0), slope(wave)
     for k in range(MAX_ZEROS):
@@ -172,23 +210,58 @@ def peak(a: Harmonic) -> float:
 
 
 def value(a: Harmonic, angle: float) -> float:
-    """Return the harmonic at an angle [rad], in its own unit.
+    """Return the harmonic at an angle, in its own unit.
 
-    Source: docs/conveying.md, "The model".
+    Parameters
+    ----------
+    a : Harmonic
+    angle : float [rad]
+
+    Returns
+    -------
+    float [any]
+
+    References
+    ----------
+    docs/conveying.md, "The model".
     """
     once = a.level + a.swing * math.sin(angle + a.phase)
     return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
 
 
 def after(zeros: Sequence[float], angle: float) -> float:
-    """Return the first of two angles [rad], ascending, beyond another; inf where neither is."""
+    """Return the first of two angles beyond another.
+
+    Parameters
+    ----------
+    zeros : (2,) float [rad]
+        Ascending.
+    angle : float [rad]
+
+    Returns
+    -------
+    float [rad]
+        inf where neither is beyond.
+    """
     if zeros[0] > angle:
         return zeros[0]
     return zeros[1] if zeros[1] > angle else INF
 
 
 def above(a: Harmonic, angle: float) -> bool:
-    """Tell by its zeros whether it is positive from an angle [rad] on: at one, its value is only rounding."""
+    """Return whether the harmonic is positive from an angle on.
+
+    Its zeros decide: at a zero the value itself is only rounding.
+
+    Parameters
+    ----------
+    a : Harmonic
+    angle : float [rad]
+
+    Returns
+    -------
+    bool
+    """
     rise, fall = after(a.rises, angle), after(a.falls, angle)
     if rise == fall:  # neither is to come in this period
         rise, fall = a.rises[0], a.falls[0]
@@ -207,7 +280,21 @@ class Arc(NamedTuple):
 
 
 def onward(a: Harmonic, start: float) -> Arc:
-    """Return the harmonic from ``start`` [rad] on."""
+    """Return the harmonic from an angle on, as a function of the span from there.
+
+    Parameters
+    ----------
+    a : Harmonic
+    start : float [rad]
+
+    Returns
+    -------
+    Arc
+
+    References
+    ----------
+    The addition theorems of sine and cosine.
+    """
     sine, cosine = a.swing * math.sin(start + a.phase), a.swing * math.cos(start + a.phase)
     if a.second == 0.0:
         return Arc(a.level, sine, cosine, 0.0, 0.0, 0.0)
@@ -216,9 +303,21 @@ def onward(a: Harmonic, start: float) -> Arc:
 
 
 def reached(arc: Arc, span: float) -> float:
-    """Return the harmonic after a span [rad].
+    """Return the harmonic after a span.
 
-    Source: the addition theorems, as products of the half span.
+    Parameters
+    ----------
+    arc : Arc
+    span : float [rad]
+
+    Returns
+    -------
+    float [any]
+        In the unit of the harmonic.
+
+    References
+    ----------
+    The addition theorems, as products of the half span.
     """
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level + arc.sine + 2.0 * s * (arc.cosine * c - arc.sine * s)
@@ -229,9 +328,21 @@ def reached(arc: Arc, span: float) -> float:
 
 
 def gain(arc: Arc, span: float) -> float:
-    """Integrate over a span [rad]: the velocity gained [A w].
+    """Return the velocity gained over a span: the integral of the acceleration.
 
-    Source: the integral of ``value``.
+    Parameters
+    ----------
+    arc : Arc
+        Acceleration [A w^2].
+    span : float [rad]
+
+    Returns
+    -------
+    float [A w]
+
+    References
+    ----------
+    The integral of ``value``.
     """
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)  # as a product, short spans keep their digits
     once = arc.level * span + 2.0 * s * (arc.sine * c + arc.cosine * s)
@@ -242,9 +353,21 @@ def gain(arc: Arc, span: float) -> float:
 
 
 def travel(arc: Arc, span: float) -> float:
-    """Integrate twice over a span [rad]: the way made from rest [A].
+    """Return the way made from rest over a span: the integral of the velocity gained.
 
-    Source: the integral of ``gain``.
+    Parameters
+    ----------
+    arc : Arc
+        Acceleration [A w^2].
+    span : float [rad]
+
+    Returns
+    -------
+    float [A]
+
+    References
+    ----------
+    The integral of ``gain``.
     """
     curved = arc.cosine * _beyond_sine(span) - arc.sine * _beyond_cosine(span)
     once = 0.5 * (arc.level + arc.sine) * span * span + curved
@@ -256,7 +379,7 @@ def travel(arc: Arc, span: float) -> float:
 
 
 def _beyond_sine(x: float) -> float:
-    """x - sin x."""
+    """Return x - sin x; by its series where the difference would lose digits."""
     if abs(x) > SERIES:
         return x - 2.0 * math.sin(0.5 * x) * math.cos(0.5 * x)
     y = x * x
@@ -265,7 +388,7 @@ def _beyond_sine(x: float) -> float:
 
 
 def _beyond_cosine(x: float) -> float:
-    """x^2 / 2 - 1 + cos x."""
+    """Return x^2 / 2 - 1 + cos x; by its series where the difference would lose digits."""
     if abs(x) > SERIES:
         half = math.sin(0.5 * x)
         return 0.5 * x * x - 2.0 * half * half  # a power of 2 has other last bits where it is compiled

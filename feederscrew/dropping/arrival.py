@@ -67,10 +67,34 @@ def arrival(
 ) -> Arrival:
     """Feed parts from a hopper onto the bowl's moving floor until time or rates settle their shares.
 
-    ``drops``: parts to follow; without it as many as make every share known to ARRIVAL_HALF_WIDTH, at most
-    MAX_ARRIVALS, or LONGER_TIME_PARTS where the longer time decides nothing; ``progress``: as in
-    ``plate_test.test``; it starts again for a longer time. Raises FeederError if the part has no shape;
-    KeyboardInterrupt if the user stops it before anything is known.
+    First ``FIRST_PARTS`` are followed for the shorter of ``FLOOR_TIMES_S``; where that settles nothing,
+    others for the longer one. Then more parts follow until every share is known.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+    bowl : Bowl
+    drops : int, optional
+        Parts to follow. Without it as many as make every share known to ``ARRIVAL_HALF_WIDTH``, at most
+        ``MAX_ARRIVALS``, or ``LONGER_TIME_PARTS`` where the longer time decides nothing.
+    seed : int
+        Of the launches.
+    jobs : int
+        Threads.
+    progress : callable, optional
+        As in ``plate_test.test``; it starts again for a longer time.
+
+    Returns
+    -------
+    Arrival
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape.
+    KeyboardInterrupt
+        If the user stops it before anything is known; later, the result is partial.
     """
     thrown = plate_test.throw_number(bowl) >= 1.0
     pace = replace(ARRIVAL_PACE, settling=THROWN_SETTLING) if thrown else ARRIVAL_PACE
@@ -119,11 +143,11 @@ def arrival(
 
 
 def judge(shaken: plate_test.PlateResult) -> Arrival:
-    """Say whether one run on the floor settles the shares.
+    """Return the arrival that one run on the floor shows: shares, their ends, and whether they are settled.
 
-    They are settled where no share still changes and, once so many transitions were seen that they tell where
-    the shares lead and that more than ARRIVAL_HALF_WIDTH of the parts change in the longer time, all shares
-    have come ARRIVED_SHARE_GAP to it.
+    Shares are settled where none still changes. They also have to come within ``ARRIVED_SHARE_GAP`` of where
+    the rates lead, once two things are known: so many transitions were seen that they tell where that is, and
+    more than ``ARRIVAL_HALF_WIDTH`` of the parts change in the longer time.
     """
     occupancy = shaken.occupancy
     lying = occupancy.plate.sum()
@@ -155,10 +179,29 @@ def to_arrays(arrived: Arrival) -> dict[str, Array]:
 def from_arrays(
     part: Part, aspects: Aspects, bowl: Bowl, drops: int | None, arrays: Mapping[str, Array]
 ) -> Arrival:
-    """Return an arrival from the arrays of ``to_arrays``, once each number is one that such parts can have.
+    """Return an arrival from the arrays of ``to_arrays``, if each number is one that such parts can have.
 
-    What follows from other numbers, such as the intervals, is computed again. Raises ValueError if a number
-    or a shape cannot be of such parts; KeyError if an array is missing.
+    What follows from other numbers, such as the intervals, is computed again.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+    bowl : Bowl
+    drops : int or None
+        Parts that were asked for.
+    arrays : mapping of str to array
+
+    Returns
+    -------
+    Arrival
+
+    Raises
+    ------
+    ValueError
+        If a number or a shape cannot be of such parts.
+    KeyError
+        If an array is missing.
     """
     most = MAX_ARRIVALS if drops is None else drops
     parts, lost = (int(check.ranged(k, arrays[k], (), 0, most, whole=True)) for k in ("parts", "lost"))
@@ -172,10 +215,22 @@ def from_arrays(
 
 
 def steps_needed(hull: Hull, bowl: Bowl) -> float:
-    """Return how many steps one part takes on the floor of a bowl, were it followed to the end [1].
+    """Return how many steps one part takes on the floor of a bowl if it is followed to the end.
 
     Beyond ``MAX_ARRIVAL_STEPS`` a part is not fed: it is far smaller, or the drive quicker, than in any bowl.
-    Source: own; docs/resting.md, "What arrives from the bowl's floor".
+
+    Parameters
+    ----------
+    hull : Hull
+    bowl : Bowl
+
+    Returns
+    -------
+    float [1]
+
+    References
+    ----------
+    Own; docs/resting.md, "What arrives from the bowl's floor".
     """
     length = float(np.cbrt(hull.volume))
     unit = np.sqrt(length / bowl.gravity)

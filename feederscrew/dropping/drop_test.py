@@ -62,7 +62,7 @@ class DropTrace:
         return Rotation.from_quat(np.roll(self.attitudes, -1, axis=1))
 
     def tumbled(self) -> bool:
-        """Tell whether the underside of the first impact later turns by more than a quarter of a circle."""
+        """Return whether the underside of the first impact later turns by more than a quarter of a circle."""
         down = self.turns.inv().apply([0.0, 0.0, -1.0])[np.argmax(self.impacts) :]
         across = np.linalg.norm(np.cross(down, down[0]), axis=1)
         return bool((np.arctan2(across, vectors.product(down, down[0])) > TUMBLED_RAD).any())
@@ -97,13 +97,37 @@ def test(
 ) -> Result:
     """Drop a part and count the aspects it rests on.
 
-    ``preset``: a key of ``launch_conditions.PRESETS``; ``own``: ranges that replace the preset's, as typed:
-    see ``launch_conditions.launch_of``; ``drops``: how many; with ``until`` at most so many; ``until``: go on
-    until every class's 95 % interval is this narrow to either side, '1%'; ``traced``: of how many drops, from
-    the first, the motion is kept as well; ``dropped``: of a run of the same arguments: nothing is dropped
-    then. The progress of ``run`` is as in ``ensemble.drop``. Raises FeederError if the part has no shape, or
-    an option is no such quantity or out of range; ValueError if ``dropped`` is of another part;
-    KeyboardInterrupt if the user stops it before there is anything to count; later, the result is partial.
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+    preset : str
+        A key of ``launch_conditions.PRESETS``.
+    own : mapping of str to str or None
+        Ranges that replace the preset's, as typed: ``launch_conditions.launch_of``.
+    drops : int, optional
+        How many; with ``until`` at most so many.
+    until : str, optional
+        Go on until every class's 95 % interval is this narrow to either side, '1%'.
+    traced : int
+        Of how many drops, from the first, the motion is kept as well.
+    dropped : Drops, optional
+        Of a run of the same arguments: nothing is dropped then.
+    run : RunSettings
+        Its progress is as in ``ensemble.drop``.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or an option is no such quantity or out of range.
+    ValueError
+        If ``dropped`` is of another part.
+    KeyboardInterrupt
+        If the user stops it before there is anything to count; later, the result is partial.
     """
     width = None if until is None else launch_conditions.share(until, "until")
     faces, count = require_ground(part, aspects), len(aspects.names)
@@ -136,7 +160,7 @@ def test(
 
 
 def compiled() -> bool:
-    """Tell whether the drop kernel is on disk already; else the first drop on a machine compiles it."""
+    """Return whether the drop kernel is on disk already; else the first drop on a machine compiles it."""
     return on_disk(one_drop.settle_all)
 
 
@@ -148,14 +172,33 @@ def follow(
     drops: Drops,
     rows: Ints,
 ) -> tuple[DropTrace, ...]:
-    """Follow the first drops of a test once more, those of ``starts``.
+    """Follow the first drops of a test once more.
 
     A drop is counted once its face is certain, while the part still moves. The trace goes on until it lies
     still. Should that be on another face, balanced on an edge, or never, as with a part that rolls on and on,
-    it ends where the drop was counted. ``length`` [m] is the shape's; the columns of ``principal`` (3, 3) [1]
-    are its axes along the file's: ``rounded_hull.principal_axes``; ``drops``: their outcome, in the same
-    order; there may be more; ``rows`` (F,) int: class of each face.
-    Source: docs/resting.md, "The drop test".
+    it ends where the drop was counted.
+
+    Parameters
+    ----------
+    shape : Shape
+    length : float [m]
+        Of the shape.
+    principal : (3, 3) float [1]
+        Columns are the shape's axes along the file's: ``rounded_hull.principal_axes``.
+    starts : Starts
+        Of the drops that are followed.
+    drops : Drops
+        Their outcome, in the same order; there may be more.
+    rows : (F,) int
+        Class of each face.
+
+    Returns
+    -------
+    tuple of DropTrace
+
+    References
+    ----------
+    docs/resting.md, "The drop test".
     """
     to_body = Rotation.from_matrix(np.array(principal.T))
     second = np.sqrt(length / GRAVITY)
@@ -212,7 +255,7 @@ def follow(
 def _path(
     shape: Shape, start: Floats, restitution: float, friction: float, steps: falling.Steps
 ) -> tuple[int, Floats]:
-    """Face, and (N, 14) time and state at the start of every step and at the end."""
+    """Return the face, and (N, 14) time and state at the start of every step and at the end."""
     rows = FIRST_TRACE_ROWS
     while True:
         work = falling.scratch(shape, rows=rows)
@@ -226,12 +269,12 @@ def _path(
 
 
 def _turns(states: Floats) -> Rotation:
-    """Rotations from the principal axes to the plane's, of rows (N, 14)."""
+    """Return the rotations from the principal axes to the plane's, of rows (N, 14)."""
     return Rotation.from_quat(states[:, 1 + body.Q + np.array([1, 2, 3, 0])])
 
 
 def _impacts(shape: Shape, states: Floats) -> Bools:
-    """(N,) bool, rows where a corner on the plane comes down fast enough to rebound."""
+    """Return the rows (N,) at which a corner on the plane comes down fast enough to rebound."""
     steps = falling.Steps()
     up = _turns(states).inv().apply([0.0, 0.0, 1.0])
     speeds = np.cross(up, states[:, 1 + body.W : 1 + body.W + 3])
@@ -247,22 +290,32 @@ def _impacts(shape: Shape, states: Floats) -> Bools:
 
 
 def _energies(shape: Shape, states: Floats) -> Floats:
-    """(N,) total energy at mass 1 and gravity 1."""
+    """Return the total energy (N,) at mass 1 and gravity 1: (v^2 + w I w) / 2 + z."""
     velocities, rates = states[:, 1 + body.VX : 1 + body.Q], states[:, 1 + body.W :]
     turning = 0.5 * vectors.product(rates**2, shape.solid.inertia)
     return 0.5 * (velocities**2).sum(axis=1) + turning + states[:, 1 + body.Z]
 
 
 def telling(traces: Sequence[DropTrace]) -> DropTrace:
-    """Choose the drop to show: the first that tumbled and lies still, else that tumbled, else the first."""
+    """Return the drop to show: the first that tumbled and lies still, else that tumbled, else the first."""
     return min(traces, key=lambda trace: (not trace.tumbled(), not trace.still, trace.number))
 
 
 def chosen(trace: DropTrace, count: int) -> Ints:
-    """Return the rows (count,) of the stills: first impact, end, others at equal shares of what goes on.
+    """Return the rows of the stills: first impact, end, others at equal shares of what goes on.
 
-    That is, half by half, how far the part turns and how much energy it loses (in powers), and by a quarter
-    how long it takes.
+    What goes on is, half by half, how far the part turns and how much energy it loses (in powers), and by a
+    quarter how long it takes.
+
+    Parameters
+    ----------
+    trace : DropTrace
+    count : int
+        Stills.
+
+    Returns
+    -------
+    (count,) int
     """
     first = int(np.argmax(trace.impacts))
     turned = (trace.turns[first + 1 :] * trace.turns[first:-1].inv()).magnitude()

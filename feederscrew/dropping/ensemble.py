@@ -40,9 +40,24 @@ class Drops:
 
 
 def drops_of(arrays: Mapping[str, Array], most: int) -> Drops:
-    """Return the drops of a finished run of ``most`` from the fields of ``Drops`` as plain arrays.
+    """Return the drops of a finished run from the fields of ``Drops`` as plain arrays.
 
-    Raises ValueError if a number or a shape is of no drop; KeyError if a field is missing.
+    Parameters
+    ----------
+    arrays : mapping of str to array
+    most : int
+        Drops that were asked for.
+
+    Returns
+    -------
+    Drops
+
+    Raises
+    ------
+    ValueError
+        If a number or a shape cannot be of a drop.
+    KeyError
+        If a field is missing.
     """
     faces = check.ranged("faces", arrays["faces"], (-1,), one_drop.UNSETTLED, np.inf, whole=True)
     if not 1 <= len(faces) <= most:
@@ -106,12 +121,35 @@ def drop(
 ) -> Drops:
     """Drop a part again and again.
 
-    Drop n gets the n-th set of numbers of ``rng``: the outcome does not depend on ``jobs``. ``count``: how
-    many drops, above 0; with ``aim``, at most so many. The aim is looked at after every DROPS_A_LOOK drops;
-    once it is reached the run ends. ``progress`` is told after every batch how many drops are done, about how
-    many there will be, and half the longest interval so far: None without an ``aim`` and in its first round.
-    After an interrupt from the keyboard, noted as ``partial``, come the batches that were finished: a run of
-    so many drops gives the same. Raises KeyboardInterrupt if no batch was finished.
+    Drop n gets the n-th set of numbers of ``rng``: the outcome does not depend on ``jobs``. The aim is looked
+    at after every ``DROPS_A_LOOK`` drops; once it is reached the run ends. After an interrupt from the
+    keyboard come the batches that were finished, noted as ``partial``: a run of so many drops gives the same.
+
+    Parameters
+    ----------
+    shape : Shape
+    launch : Launch
+    rng : Generator
+    count : int, optional
+        How many drops, above 0; with ``aim``, at most so many. None takes ``MAX_DROPS_UNTIL_WIDTH``.
+    aim : Aim, optional
+        How narrow the intervals shall become.
+    jobs : int
+        Threads.
+    steps : Steps, optional
+        None takes the usual ones.
+    progress : callable, optional
+        Called after every batch with how many drops are done, about how many there will be, and half the
+        longest interval so far: None without an ``aim`` and in its first round.
+
+    Returns
+    -------
+    Drops
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
     """
     precise, most = steps or falling.Steps(), MAX_DROPS_UNTIL_WIDTH if count is None else int(count)
 
@@ -146,10 +184,26 @@ def drop(
 
 
 def tally(drops: Drops, rows: Ints, count: int, *, surface: bool = False) -> Tally:
-    """Count drops by class, of ``count``; ``rows`` (F,) is the class of each face.
+    """Return the drops counted by class, with intervals.
 
-    With ``surface`` restitution is the user's own: what its spread does is in the interval. That of a
-    launch's name has it already, in what the name leaves open.
+    The interval holds the sampling (``wilson``), the numerical error ``NUMERICAL_SHARE_ERROR`` and what a
+    launch's name leaves open. Restitution spreads from drop to drop; what that does by itself follows from
+    the variance between groups of like restitution, less that of sampling.
+
+    Parameters
+    ----------
+    drops : Drops
+    rows : (F,) int
+        Class of each face.
+    count : int
+        Classes, A.
+    surface : bool
+        Restitution is the user's own, so what its spread does is added to the interval. That of a launch's
+        name has it already, in what the name leaves open.
+
+    Returns
+    -------
+    Tally
     """
     total, counts = len(drops.faces), _count_classes(drops.faces, rows, count)
     settled = int(counts.sum())
@@ -196,7 +250,7 @@ def tally(drops: Drops, rows: Ints, count: int, *, surface: bool = False) -> Tal
 
 
 def _count_classes(faces: Ints, rows: Ints, count: int) -> Ints:
-    """Count drops by class, (A,) [1], from the faces (N,) they rest on."""
+    """Return the number of drops of each class (A,) [1], from the faces (N,) they rest on."""
     return np.bincount(rows[faces[faces != one_drop.UNSETTLED]], minlength=count)
 
 
@@ -207,11 +261,29 @@ def _shares(counts: Ints) -> Floats:
 
 
 def wilson(counts: Any, total: float) -> tuple[Floats, Floats]:
-    """Return the ends (A,) [1] of the 95 % interval of a share, from counts (A,) of a total.
+    """Return the ends of the 95 % interval of a share.
 
-    They hold counts / total, and are not empty where a count is 0 or ``total``.
-    Source: E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Amer.
-    Statist. Assoc. 22, 209-212, 1927.
+        (p + z^2 / (2 n) -+ z sqrt(p (1 - p) / n + z^2 / (4 n^2))) / (1 + z^2 / n)
+
+    at the share p = counts / n and z = ``NORMAL_95``. The ends hold p, and differ where a count is 0 or n.
+
+    Parameters
+    ----------
+    counts : (A,) float [1]
+    total : float [1]
+        n, of which the counts are; 0 gives the whole range.
+
+    Returns
+    -------
+    (A,) float [1]
+        Lower ends.
+    (A,) float [1]
+        Upper ends.
+
+    References
+    ----------
+    E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Amer. Statist.
+    Assoc. 22, 209-212, 1927.
     """
     if not total:
         return np.zeros(len(counts)), np.ones(len(counts))

@@ -92,10 +92,29 @@ class Starts:
 
 
 def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -> Starts:
-    """Draw the starting conditions of some drops, states (N, 13) [L, sqrt(g L), 1, sqrt(g/L)].
+    """Return the starting conditions of some drops, drawn uniformly from the ranges of a launch.
 
-    Each takes DRAWS_A_DROP numbers of ``rng``, so that drops come out the same however they are batched.
-    Source: docs/resting.md, "The drop test".
+    Attitudes are uniform over all rotations; those of ``FLIP_AXIS`` have that axis within ``FLIP_LEAN_RAD``
+    of the level. Each drop takes ``DRAWS_A_DROP`` numbers of ``rng``, so that drops come out the same however
+    they are batched.
+
+    Parameters
+    ----------
+    launch : Launch
+    shape : Shape
+    count : int
+        Drops, N.
+    rng : Generator
+
+    Returns
+    -------
+    Starts
+        States (N, 13) [L, sqrt(g L), 1, sqrt(g / L)].
+
+    References
+    ----------
+    docs/resting.md, "The drop test"; K. Shoemake, "Uniform random rotations", Graphics Gems III, 124-132,
+    1992.
     """
     u = rng.random((count, DRAWS_A_DROP))
     states = np.zeros((count, body.STATE))
@@ -146,9 +165,22 @@ def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -
 
 
 def lowest_points(shape: Shape, attitudes: Floats) -> Floats:
-    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body.
+    """Return the height of the lowest point over the centre of mass.
 
-    Source: the support function of a body in the direction down.
+    Parameters
+    ----------
+    shape : Shape
+    attitudes : (N, 4) float [1]
+        Unit quaternions of the body.
+
+    Returns
+    -------
+    (N,) float [L]
+        Negative.
+
+    References
+    ----------
+    The support function of a body in the direction down.
     """
     up = _in_body(attitudes, np.array([[0.0, 0.0, 1.0]]))
     lowest = np.einsum("ni,vi->nv", up, shape.solid.vertices).min(axis=1)
@@ -157,7 +189,7 @@ def lowest_points(shape: Shape, attitudes: Floats) -> Floats:
 
 
 def _in_body(q: Floats, directions: Floats) -> Floats:
-    """(N, 3) directions along the floor's axes in body axes, for (N, 4) quaternions."""
+    """Return (N, 3) directions along the floor's axes in body axes, for (N, 4) quaternions."""
     turned = 2.0 * np.cross(q[:, 1:], directions)
     return directions - q[:, :1] * turned + np.cross(q[:, 1:], turned)
 
@@ -180,10 +212,28 @@ def launch_of(
 ) -> Launch:
     """Return a preset, by its name or a former one, with the user's own ranges in it.
 
-    ``length`` [m] of the part: cube root of its hull's volume; ``texts`` by key of CONDITION_KEYS: a
-    quantity, or two with a colon between; None keeps the preset's; ``gravity`` [m/s2]. Raises ArgumentError
-    if a text is no such quantity, or out of range.
-    Source: docs/resting.md, "The drop test".
+    Parameters
+    ----------
+    preset : str
+    length : float [m]
+        Of the part: cube root of its hull's volume.
+    texts : mapping of str to str or None
+        By key of ``CONDITION_KEYS``: a quantity, or two with a colon between; None keeps the preset's.
+    gravity : float [m/s2]
+
+    Returns
+    -------
+    Launch
+        Ranges in units of the part's length L, sqrt(g L) and sqrt(g / L).
+
+    Raises
+    ------
+    ArgumentError
+        If a text is no such quantity, or out of range.
+
+    References
+    ----------
+    docs/resting.md, "The drop test".
     """
     units = _units(length, gravity)
     ranges = {key: None if text is None else _range(key, text, units[key]) for key, text in texts.items()}
@@ -191,7 +241,7 @@ def launch_of(
 
 
 def _units(length: float, gravity: float) -> dict[str, float]:
-    """SI units in one of each range, for a part of a length [m]."""
+    """Return the SI units in one of each range, for a part of a length [m]."""
     rate, speed = float(np.sqrt(gravity / length)), float(np.sqrt(gravity * length))
     return {"fall": length, "spin": rate, "speed": speed, "restitution": 1.0, "friction": 1.0}
 
@@ -202,7 +252,20 @@ def single(text: str | None) -> float | None:
 
 
 def described(launch: Launch, length: float, gravity: float = GRAVITY) -> dict[str, Any]:
-    """Return the name and ranges of a launch of a part of a length [m] in the units of the shop."""
+    """Return the name and ranges of a launch in the units of the shop.
+
+    Parameters
+    ----------
+    launch : Launch
+    length : float [m]
+        Of the part.
+    gravity : float [m/s2]
+
+    Returns
+    -------
+    dict
+        Ranges [mm, rad/s, mm/s, 1], the name and the axis.
+    """
     units = _units(length, gravity)
     return {
         "name": launch.name,
@@ -216,7 +279,23 @@ def described(launch: Launch, length: float, gravity: float = GRAVITY) -> dict[s
 
 
 def share(text: str, where: str) -> float:
-    """Read a share [1] above 0 and below 1 as typed, '1%' or '0.01'."""
+    """Return a share above 0 and below 1 as typed, '1%' or '0.01'.
+
+    Parameters
+    ----------
+    text : str
+    where : str
+        Option that it was given to, for the fault.
+
+    Returns
+    -------
+    float [1]
+
+    Raises
+    ------
+    ArgumentError
+        If it is not a share from ``MIN_HALF_WIDTH`` to ``MAX_HALF_WIDTH``.
+    """
     value = _read(where, text, "number")
     if not MIN_HALF_WIDTH <= value <= MAX_HALF_WIDTH:
         limits = f"give {MIN_HALF_WIDTH:.2%} to {MAX_HALF_WIDTH:.0%}"
@@ -225,7 +304,7 @@ def share(text: str, where: str) -> float:
 
 
 def _range(key: str, text: str, size: float) -> tuple[float, float]:
-    """Read (lowest, highest) without dimensions from 'a' or 'a:b', in a unit of a size."""
+    """Return (lowest, highest) without dimensions from 'a' or 'a:b', in a unit of a size."""
     dimension, lowest, highest = CONDITION_KEYS[key]
     ends = [_read(key, end, dimension) / size for end in text.split(":")]
     if len(ends) > 2 or ends[0] > ends[-1]:

@@ -153,13 +153,36 @@ def test(
 ) -> list[PlateResult]:
     """Put parts on a vibrating plate, one at a time, and follow what they lie on; one result a bowl.
 
-    Of each bowl the drive, the restitution and the kinetic friction are used. ``preset``: a key of
-    ``launch_conditions.PRESETS``; ``own``: ranges that replace the preset's, and the bowl's restitution and
-    friction; ``drops``: parts on each plate, with the same launches on all; ``pace``: how long each is
-    followed, and how finely. The progress of ``run`` is told after every batch of the parts done, on all
-    plates together, and how many there will be. After an interrupt from the keyboard there are fewer results,
-    the last of them partial. Raises FeederError if the part has no shape, or an option is no such quantity or
-    out of range; KeyboardInterrupt if nothing was finished.
+    Of each bowl the drive, the restitution and the kinetic friction are used.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+    bowls : sequence of Bowl
+    preset : str
+        A key of ``launch_conditions.PRESETS``.
+    own : mapping of str to str or None
+        Ranges that replace the preset's, and the bowl's restitution and friction.
+    drops : int, optional
+        Parts on each plate, with the same launches on all; None takes ``DEFAULT_PLATE_PARTS``.
+    pace : PlatePace
+        How long each is followed, and how finely.
+    run : RunSettings
+        Its progress is called after every batch with the parts done, on all plates together, and how many
+        there will be.
+
+    Returns
+    -------
+    list of PlateResult
+        After an interrupt from the keyboard fewer than bowls, the last of them partial.
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or an option is no such quantity or out of range.
+    KeyboardInterrupt
+        If nothing was finished.
     """
     faces = require_ground(part, aspects)
     shape, length = shape_of_part(part, faces)
@@ -204,7 +227,23 @@ def test(
 def launch_on(
     bowl: Bowl, preset: str, length: float, own: Mapping[str, str | None], pace: PlatePace
 ) -> Launch:
-    """Return a launch of a part of a length [m], with the bowl's surface where the user gave none."""
+    """Return a launch with the bowl's restitution and friction where the user gave none.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    preset : str
+        A key of ``launch_conditions.PRESETS``.
+    length : float [m]
+        Of the part: cube root of its hull's volume.
+    own : mapping of str to str or None
+        The user's ranges.
+    pace : PlatePace
+
+    Returns
+    -------
+    Launch
+    """
     launch = launch_conditions.launch_of(preset, length, own, bowl.gravity)
     surface = {"restitution": bowl.restitution, "friction": bowl.friction.kinetic}
     ranges: Any = {key: (value, value) for key, value in surface.items() if own.get(key) is None}
@@ -222,7 +261,7 @@ def _follow_enough(
     before: int,
     total: int,
 ) -> Rides:
-    """Rides of all parts or, with a width, of as many as make no share's interval wider."""
+    """Return the rides of all parts or, with a width, of as many as make no share's interval wider."""
     count, done = len(starts.energies), [] if pace.done is None else [pace.done]
     size = count if pace.width is None else PARTS_A_LOOK
     first = sum(len(rides.faces) + rides.lost for rides in done)
@@ -257,9 +296,24 @@ def _follow_enough(
 def result_of(
     bowl: Bowl, launch: Launch, length: float, occupancy: Occupancy, parts: int, lost: int, seconds: float
 ) -> PlateResult:
-    """Return what parts of a ``length`` [m] did on one plate in a run that was not stopped.
+    """Return what parts did on one plate in a run that was not stopped.
 
-    So many ``parts``, those ``lost``, and the ``seconds`` [s] counted for each.
+    Parameters
+    ----------
+    bowl : Bowl
+    launch : Launch
+    length : float [m]
+        Of the part: cube root of its hull's volume.
+    occupancy : Occupancy
+    parts : int
+    lost : int
+        Further parts, left out.
+    seconds : float [s]
+        Counted for each.
+
+    Returns
+    -------
+    PlateResult
     """
     launched, number = launch_conditions.described(launch, length, bowl.gravity), throw_number(bowl)
     return PlateResult(bowl, launched, number, parts, seconds, occupancy, lost, partial=False)
@@ -276,14 +330,39 @@ def ride(
     jobs: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> Rides:
-    """Follow parts on a plate from their ``starts`` relative to it.
+    """Follow parts on a plate from their starts relative to it.
 
-    ``looks`` (K,) [sqrt(L/g)]: times, ascending; ``kick`` [m g L]: energy that the floor gives a part at
-    most: one whose face it does not tip it off is followed no further. Infinite, all parts are followed to
-    the end. The outcome does not depend on ``jobs``; ``progress`` is told after every batch how many parts
-    are done. After an interrupt from the keyboard come the batches that were finished, up to the first that
-    was not: a run of so many parts gives the same. Raises KeyboardInterrupt if no batch was finished.
-    Source: docs/resting.md, "On the vibrating plate".
+    The outcome does not depend on ``jobs``. After an interrupt from the keyboard come the batches that were
+    finished, up to the first that was not: a run of so many parts gives the same.
+
+    Parameters
+    ----------
+    shape : Shape
+    floor : Floor
+    starts : Starts
+    looks : (K,) float [sqrt(L/g)]
+        Times, ascending.
+    steps : Steps
+    kick : float [m g L]
+        Energy that the floor gives a part at most: one whose face it does not tip it off is followed no
+        further. Infinite, all parts are followed to the end.
+    jobs : int
+        Threads.
+    progress : callable, optional
+        Called after every batch with how many parts are done.
+
+    Returns
+    -------
+    Rides
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
+
+    References
+    ----------
+    docs/resting.md, "On the vibrating plate".
     """
 
     def batch(part: slice) -> tuple[Array, ...]:
@@ -299,15 +378,25 @@ def ride(
 
 
 def compiled() -> bool:
-    """Tell whether the kernel of the plate is on disk already."""
+    """Return whether the kernel of the plate is on disk already."""
     return on_disk(shaken.ride_all)
 
 
 def floor_of(bowl: Bowl, length: float, flight: float = 1.0) -> Floor:
     """Return the plate that moves as the bowl's floor does; level, its x axis along the drive.
 
-    ``length`` [m] is the part's, the cube root of its hull's volume; ``flight`` [1] by how much the longest
-    steps are longer than those that velocities need.
+    Parameters
+    ----------
+    bowl : Bowl
+    length : float [m]
+        Of the part: cube root of its hull's volume, the unit L.
+    flight : float [1]
+        By how much the longest steps are longer than those that velocities need.
+
+    Returns
+    -------
+    Floor
+        Lengths in L, rates in sqrt(g / L).
     """
     drive, time = bowl.drive, math.sqrt(length / bowl.gravity)
     rate = 2.0 * math.pi * drive.frequency * time
@@ -326,7 +415,18 @@ def floor_of(bowl: Bowl, length: float, flight: float = 1.0) -> Floor:
 
 
 def steps_of(floor: Floor, coarse: float = 1.0) -> Steps:
-    """Return steps for a plate: finer than a drop's unless ``coarse``, and rebounds as slow as its own."""
+    """Return steps for a plate: finer than a drop's unless coarse, and rebounds as slow as its own.
+
+    Parameters
+    ----------
+    floor : Floor
+    coarse : float [1]
+        By how much steps are longer than those that velocities need.
+
+    Returns
+    -------
+    Steps
+    """
     usual, once = Steps(), min(coarse, PLATE_STEP_REFINEMENT)
     contact = min(usual.contact / PLATE_STEP_REFINEMENT**2, 2.0 * math.pi / floor.rate / CONTACTS_A_PERIOD)
     slow = SLOW_CONTACT_SHARE * (floor.up + 2.0 * floor.second_up) * floor.rate
@@ -360,17 +460,36 @@ def occupancy(
 ) -> Occupancy:
     """Return shares, rates and velocities of N parts at K looks.
 
-    ``faces`` (N, K) int: face each part lies on at each look, UNSETTLED where that is open: such a part still
-    counts for the face it lay on before; ``places`` (N, K) [m]: how far it has come along the drive; ``rows``
-    (F,) int: class of each face, of ``count``; ``period`` [s]: between two looks; ``rng``: for ``limit`` and
-    its interval.
+    A rate is the number of transitions over the time spent; its interval is that of a Poisson count. The
+    interval of a share of time is Wilson's for so many parts, which is too wide where a part changes often:
+    ``error`` knows of that. ``limit`` is the mean over ``RATE_DRAWS`` of all rates, each from a Gamma
+    distribution of its count (with ``MISSED_TRANSITIONS``) and time, of where they lead from the last look
+    on; a class in which no time was spent is left out, as nothing is known of how it is left.
 
-    A rate is the number of transitions over the time spent; its interval is that of a Poisson count
-    (F. Garwood, Biometrika 28, 437-442, 1936). The interval of a share of time is Wilson's for so many
-    parts, which is too wide where a part changes often: ``error`` knows of that. ``limit`` is the mean over
-    RATE_DRAWS of all rates, each from a Gamma distribution of its count (with MISSED_TRANSITIONS) and time,
-    of where they lead from the last look on; a class in which no time was spent is left out, as nothing is
-    known of how it is left. Source: docs/resting.md, "On the vibrating plate".
+    Parameters
+    ----------
+    faces : (N, K) int
+        Face each part lies on at each look, ``UNSETTLED`` where that is open: such a part still counts for
+        the face it lay on before.
+    places : (N, K) float [m]
+        How far it has come along the drive.
+    rows : (F,) int
+        Class of each face.
+    count : int
+        Classes, A.
+    period : float [s]
+        Between two looks.
+    rng : Generator
+        For ``limit`` and its interval.
+
+    Returns
+    -------
+    Occupancy
+
+    References
+    ----------
+    F. Garwood, "Fiducial limits for the Poisson distribution", Biometrika 28, 437-442, 1936; docs/resting.md,
+    "On the vibrating plate".
     """
     held = lasting(faces)
     classes = np.where(held == UNSETTLED, count, np.asarray(rows)[held])  # one more for parts not yet down
@@ -433,6 +552,11 @@ def lasting(faces: Ints) -> Ints:
 
 
 def _rates(counts: Ints, times: Floats) -> dict[str, Floats]:
+    """Return the rates (A, A) [1/s] of transitions, counts over times, and both ends of their intervals.
+
+    The ends are those of a Poisson count (Garwood 1936): quantiles of chi-square with 2 n and 2 n + 2
+    degrees.
+    """
     spent = np.where(times > 0.0, times, np.nan)[:, None]
     with np.errstate(invalid="ignore"):
         low = np.where(counts > 0, gammaincinv(np.maximum(counts, 1), 0.025), 0.0)
@@ -441,11 +565,25 @@ def _rates(counts: Ints, times: Floats) -> dict[str, Floats]:
 
 
 def limit_of(rates: Floats, start: Floats) -> Floats:
-    """Return the shares (..., A) [1] to which transitions lead in the end from ``start`` (..., A) [1].
+    """Return the shares to which transitions lead in the end.
 
-    ``rates`` (..., A, A) [1/s] are from row to column; the diagonal does not matter. It is ``start`` where
-    there is no transition.
-    Source: the stationary distribution of a Markov chain.
+    The step I + Q / (2 q), Q the matrix of the rates and q the quickest way out, is squared
+    ``BALANCE_DOUBLINGS`` times.
+
+    Parameters
+    ----------
+    rates : (..., A, A) float [1/s]
+        From row to column; the diagonal does not matter.
+    start : (..., A) float [1]
+
+    Returns
+    -------
+    (..., A) float [1]
+        ``start`` where there is no transition.
+
+    References
+    ----------
+    The stationary distribution of a Markov chain.
     """
     rates = rates * (1.0 - np.eye(rates.shape[-1]))
     leaving = rates.sum(axis=-1)
@@ -459,7 +597,10 @@ def limit_of(rates: Floats, start: Floats) -> Floats:
 
 
 def _ratio(distances: Floats, times: Floats) -> Floats:
-    """(A, 3) sum of (N, A) ways over sum of (N, A) times, and its interval over the parts: NaN of one."""
+    """Return (A, 3) sum of (N, A) ways over sum of (N, A) times, and its interval over the parts: NaN of one.
+
+    The interval is that of a ratio estimate, whose error is that of way less mean times time.
+    """
     total = np.where(times.sum(axis=0) > 0.0, times.sum(axis=0), np.nan)
     mean = distances.sum(axis=0) / total
     parts = (times > 0.0).sum(axis=0)
@@ -469,10 +610,27 @@ def _ratio(distances: Floats, times: Floats) -> Floats:
 
 
 def occupancy_from(arrays: Mapping[str, Array], count: int, parts: int) -> Occupancy:
-    """Return an Occupancy of some classes and parts from plain arrays, once every number can be one of it.
+    """Return an Occupancy of some classes and parts from plain arrays, if every number can be one of it.
 
-    Intervals and rates, the DERIVED_FIELDS, follow from the other numbers, and are computed again. Raises
-    ValueError if a number or a shape cannot be of so many parts; KeyError if an array is missing.
+    Intervals and rates, the ``DERIVED_FIELDS``, follow from the other numbers, and are computed again.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array
+    count : int
+        Classes.
+    parts : int
+
+    Returns
+    -------
+    Occupancy
+
+    Raises
+    ------
+    ValueError
+        If a number or a shape cannot be of so many parts.
+    KeyError
+        If an array is missing.
     """
 
     def read(name: str, *bounds: Any, **kind: Any) -> Any:

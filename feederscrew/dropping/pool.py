@@ -13,10 +13,24 @@ from feederscrew.arrays import Array
 def gather(work: Callable[[Callable[..., Future]], None], jobs: int) -> tuple[list[Any], bool]:
     """Return the results of batches, in order, and whether an interrupt from the keyboard cut them short.
 
-    ``work`` is handed ``begin(function, *arguments)``, which queues a batch and gives its task; it queues
-    them in order, and returns once all it wants are done. ``jobs`` are threads; compiled batches run beside
-    each other. After an interrupt come the results up to the first batch that was not finished. Raises
-    KeyboardInterrupt if no batch was finished.
+    Parameters
+    ----------
+    work : callable
+        Called with ``begin(function, *arguments)``, which queues a batch and gives its task. It queues them
+        in order, and returns once all it wants are done.
+    jobs : int
+        Threads; compiled batches run beside each other.
+
+    Returns
+    -------
+    list
+        After an interrupt the results up to the first batch that was not finished.
+    bool
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
     """
     tasks: list[Future] = []
     partial, pool = False, ThreadPoolExecutor(jobs)
@@ -50,8 +64,30 @@ def in_batches(
 ) -> tuple[list[Array], bool]:
     """Return what a function makes of many items, a batch of them at a time.
 
-    ``batch`` is handed a slice of the ``count`` items, ``size`` of them, and gives arrays with a row for
-    each; ``progress`` is told after every batch how many items are done. Returns and raises as ``gather``.
+    Parameters
+    ----------
+    batch : callable
+        Called with a slice of the items; gives arrays with a row for each.
+    count : int
+        Items, N.
+    size : int
+        Items a batch.
+    jobs : int
+        Threads.
+    progress : callable, optional
+        Called after every batch with how many items are done.
+
+    Returns
+    -------
+    list of array
+        N rows each; fewer after an interrupt, as in ``gather``.
+    bool
+        Whether an interrupt cut them short.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
     """
 
     def work(begin: Callable[..., Future]) -> None:

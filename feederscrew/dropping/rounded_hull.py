@@ -43,11 +43,27 @@ class Rims(NamedTuple):
 
 
 def rims_of(edges: Edges, radius: float, axes: Sequence[Floats] = ()) -> Rims:
-    """Find the circles and arcs that corners of a hull of a radius [m] are points of.
+    """Return the circles and arcs that corners of a hull are points of.
 
-    A rim is a run of coplanar corners at equal distances and turns of less than SMOOTH_ANGLE, the limit
-    that parts a bar of flats from a round one elsewhere. A full turn is a circle. They are looked for along
-    the normals of flat facets and ``axes`` (3,) [1], those of rolling faces.
+    A rim is a run of coplanar corners at equal distances and turns of less than ``SMOOTH_ANGLE``, the limit
+    that parts a bar of flats from a round one elsewhere. A full turn is a circle. Rims are looked for along
+    the normals of flat facets and along ``axes``.
+
+    Parameters
+    ----------
+    edges : Edges
+    radius : float [m]
+        Of the hull.
+    axes : sequence of (3,) float [1]
+        Axes of rolling faces.
+
+    Returns
+    -------
+    Rims
+
+    References
+    ----------
+    Own; docs/resting.md, "The drop test".
     """
     vertices, tolerance = edges.vertices, RIM_PLANE_SHARE * radius
     # Unit axes worth looking along, one of each pair of opposite ones.
@@ -85,7 +101,7 @@ def rims_of(edges: Edges, radius: float, axes: Sequence[Floats] = ()) -> Rims:
 
 
 def _even_runs(vertices: Floats, corners: Ints, axis: Floats) -> list[tuple[Ints, bool]]:
-    """Runs of the corners in a plane, in order around it, between even edges; whether each is closed."""
+    """Return runs of corners in a plane between even edges, in order around it; whether each is closed."""
     if len(corners) <= MIN_ARC_EDGES:
         return []
     points = vectors.product(vertices[corners], np.column_stack(vectors.plane_axes(axis)))
@@ -120,14 +136,18 @@ def _even_runs(vertices: Floats, corners: Ints, axis: Floats) -> list[tuple[Ints
 
 
 def _turns(points: Floats) -> Floats:
-    """(K,) by how much a polygon turns at each of its (K, 2) corners."""
+    """Return by how much [rad] a polygon turns at each of its (K, 2) corners."""
     after = np.roll(points, -1, axis=0) - points
     before = np.roll(after, 1, axis=0)
     return np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1))
 
 
 def _circle_row(points: Floats, axis: Floats, closed: bool) -> Any:
-    """The row (RIM,) of the circle or arc through points (K, 3); None where they are on no circle."""
+    """Return the row (RIM,) of the circle or arc through points (K, 3); None where they are on no circle.
+
+    The centre is the circumcentre of three of them, u and v the sides from one: a + (u^2 v x n + v^2 n x u) /
+    (2 n^2), n = u x v.
+    """
     # Through three of them.
     third, half = len(points) // 3, len(points) // 2
     a, b, c = points[[0, third, 2 * third]] if closed else points[[0, half, -1]]
@@ -149,7 +169,10 @@ def _circle_row(points: Floats, axis: Floats, closed: bool) -> Any:
 
 
 def _round_heights(rims: Rims, edges: Edges, facets: Ints, heights: Floats, radius: float) -> Floats:
-    """(S,) [m] heights of the centre of mass on facets, strips between rims as the side they stand for."""
+    """Return the heights (S,) [m] of the centre of mass on facets.
+
+    A strip between two rims counts as the round side that it stands for.
+    """
     corrected = np.array(heights)
     triangles = np.split(np.argsort(edges.facets, kind="stable"), np.cumsum(np.bincount(edges.facets))[:-1])
     for k, facet in enumerate(facets if len(rims.table) else ()):
@@ -178,7 +201,7 @@ def _round_heights(rims: Rims, edges: Edges, facets: Ints, heights: Floats, radi
 
 
 def _round_tops(rims: Rims, edges: Edges, tops: Floats, radius: float) -> Floats:
-    """(E,) [m] heights of the centre of mass over saddles, chords of a rim as the circle they stand for."""
+    """Return the heights (E,) [m] of the centre of mass over saddles, chords of a rim as their circle."""
     corrected, half = np.array(tops), saddles(edges)
     for rim, members in zip(rims.table, rims.members):
         chords = members[edges.origins[half]] & members[edges.targets[half]]
@@ -194,16 +217,31 @@ def _size(vector: Floats) -> float:
 
 
 def _reaches(rim: Floats, direction: Floats, radius: float) -> bool:
-    """Whether an arc has a point in a direction from its axis; a direction of no length is any."""
+    """Return whether an arc has a point in a direction from its axis; True for a direction of no length."""
     size = _size(direction)
     return size < CENTRED_RIM_SHARE * radius or (direction * rim[MIDDLE]).sum() >= size * rim[OPENING]
 
 
 def lowest_on(shape: "Shape", up: Floats) -> Floats:
-    """Return the lowest point (N, R, 3) [L] of each rim, for unit directions up (N, 3) [1] in body axes.
+    """Return the lowest point of each rim.
 
-    Of an arc that does not reach so low, the point in its middle.
-    Source: a circle is lowest where the vertical, seen in its plane, points down.
+    It lies from the centre by the radius along the direction (axis . up) axis - up, the vertical seen in the
+    plane of the rim.
+
+    Parameters
+    ----------
+    shape : Shape
+    up : (N, 3) float [1]
+        Unit vectors in body axes.
+
+    Returns
+    -------
+    (N, R, 3) float [L]
+        Of an arc that does not reach so low, the point in its middle.
+
+    References
+    ----------
+    A circle is lowest where the vertical, seen in its plane, points down.
     """
     rims = shape.solid.rims
     along = np.einsum("ni,ri->nr", up, rims[:, AXIS])
@@ -253,11 +291,34 @@ def shape_of(
     inertia: Floats,
     axes: Floats | None = None,
 ) -> tuple[Shape, float]:
-    """Return the shape of a hull, and its unit of length [m], the cube root of its volume.
+    """Return the shape of a hull, and its unit of length, the cube root of its volume.
 
-    ``labels`` (T,) int: face of each hull triangle, -1 for none; ``mass`` [kg]; ``inertia`` (3, 3) [kg m2]:
-    about the centre of mass, in the hull's axes; ``axes`` (F, 3) [1]: unit axis of each rolling face, NaN for
-    flat ones; none rolls by default. Source: docs/resting.md, "The drop test".
+    Parameters
+    ----------
+    hull : Hull
+    labels : (T,) int
+        Face of each hull triangle, -1 for none.
+    mass : float [kg]
+    inertia : (3, 3) float [kg m2]
+        About the centre of mass, in the hull's axes.
+    axes : (F, 3) float [1], optional
+        Unit axis of each rolling face, NaN for flat ones; None if no face rolls.
+
+    Returns
+    -------
+    Shape
+        In principal axes and units of the length.
+    float [m]
+        The length L.
+
+    Raises
+    ------
+    ValueError
+        If the mass is not positive, or the inertia has another shape.
+
+    References
+    ----------
+    docs/resting.md, "The drop test".
     """
     length, mass = float(np.cbrt(hull.volume)), check.positive("mass", mass)
     moments, principal = principal_axes(check.shaped("inertia", inertia, (3, 3)))
@@ -329,15 +390,40 @@ def shape_of(
 
 
 def shape_of_part(part: Part, faces: Ground) -> tuple[Shape, float]:
-    """Return the shape of a part and its length [m], from its faces, as ``shape_of``."""
+    """Return the shape of a part and its length, from its faces.
+
+    Parameters
+    ----------
+    part : Part
+    faces : Ground
+
+    Returns
+    -------
+    Shape
+    float [m]
+        As in ``shape_of``.
+    """
     axes = np.array([face.axis for face in faces.faces])
     return shape_of(faces.hull, faces.labels, part.mass, part.inertia, axes)
 
 
 def principal_axes(inertia: Floats) -> tuple[Floats, Floats]:
-    """Return the principal moments (3,) [any], ascending, and their axes, columns of a rotation (3, 3).
+    """Return the principal moments, ascending, and their axes.
 
-    Source: the eigenvectors of the inertia matrix.
+    Parameters
+    ----------
+    inertia : (3, 3) float [any]
+
+    Returns
+    -------
+    (3,) float [any]
+        Moments.
+    (3, 3) float [1]
+        A rotation; its columns are the axes.
+
+    References
+    ----------
+    The eigenvectors of the inertia matrix.
     """
     moments, principal = vectors.eigen(inertia)
     return moments, principal * np.sign(vectors.determinant(principal))

@@ -67,12 +67,26 @@ class LaunchFile:
 
 
 def read_launches(path: str | Path) -> LaunchFile:
-    """Read a file of launches, CSV in SI units.
+    """Return a file of launches, CSV in SI units.
 
-    It has a column ``toss`` and those of STATE_COLUMNS; ``xe_m``, ``ye_m`` and ``face_up_end`` where the end
-    was measured; a column ``frames_148Hz`` says how many pictures a second the camera took. Lines that begin
-    with '#' and other columns are left out. Raises Faults with every fault of the file, one a line;
-    FeederError if it cannot be read, is empty, too large or lacks a column.
+    It has a column ``toss`` and those of ``STATE_COLUMNS``; ``xe_m``, ``ye_m`` and ``face_up_end`` where the
+    end was measured; a column ``frames_148Hz`` says how many pictures a second the camera took. Lines that
+    begin with '#' and other columns are left out.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    LaunchFile
+
+    Raises
+    ------
+    Faults
+        With every fault of the file, one a line.
+    FeederError
+        If it cannot be read, is empty, too large or lacks a column.
     """
     where = str(path)
     data = documents.content(path, MAX_LAUNCHES_BYTES, "a CSV file of launches", FeederError)
@@ -180,17 +194,40 @@ def follow(
 ) -> Tosses:
     """Follow each launch of a file until the part lies still, again and again with small changes.
 
-    A launch gets the same numbers of ``rng`` whatever the number of ``jobs``; ``runs`` are of each launch;
-    ``progress`` is told how many launches are done, and of how many. Raises FeederError if a launch begins
-    below the plane.
+    Two things are not known: the restitution and friction of this toss (``RESTITUTION_DOUBT``,
+    ``FRICTION_SPREAD``), and the state within one picture of the camera. In that time T gravity changes a
+    velocity by g T, and the spin w turns the part by w T. Velocities, those of a point at half the part's
+    length from the centre, and attitudes scatter as a value does that is anywhere in such an interval, by 1 /
+    sqrt(12) of it. Rigid corners and one coefficient are not what happens: ``MODEL_DOUBT`` times as much
+    makes the mean ``p`` of every other filmed toss the share that comes true.
 
-    What is not known: the restitution and friction of this toss (RESTITUTION_DOUBT, FRICTION_SPREAD), and the
-    state within one picture of the camera. In that time gravity changes a velocity by g times the time, and
-    spin turns the part by the spin times the time: velocities, those of a point at half the part's length
-    from the centre, and attitudes scatter as a value does that is anywhere in such an interval, by
-    1 / sqrt(12) of it. Rigid corners and one coefficient are not what happens: MODEL_DOUBT times as much
-    makes the mean ``p`` of every other filmed toss the share that comes true (source: docs/validation.md,
-    "Filmed tosses of a cube").
+    Parameters
+    ----------
+    part : Part
+    resting_faces : Ground
+    launches : LaunchFile
+    surface : SurfaceRanges
+    rng : Generator
+        A launch gets the same numbers whatever the number of ``jobs``.
+    runs : int
+        Of each launch.
+    jobs : int
+        Threads.
+    progress : callable, optional
+        Called with how many launches are done, and of how many.
+
+    Returns
+    -------
+    Tosses
+
+    Raises
+    ------
+    FeederError
+        If a launch begins below the plane.
+
+    References
+    ----------
+    docs/validation.md, "Filmed tosses of a cube".
     """
     shape, length = shape_of_part(part, resting_faces)
     principal = principal_axes(part.inertia)[1]
@@ -269,7 +306,7 @@ def follow(
 
 
 def _rotations(quaternions: Floats) -> Rotation:
-    """Rotations from the part's axes to the plane's, of (N, 4) quaternions w x y z."""
+    """Return the rotations from the part's axes to the plane's, of (N, 4) quaternions w x y z."""
     return Rotation.from_quat(np.roll(quaternions, -1, axis=-1))
 
 
@@ -279,7 +316,7 @@ def _varied(
     surface: SurfaceRanges,
     draws: Floats,
 ) -> tuple[Floats, Floats, Floats]:
-    """(K, 13) states, (K,) restitutions and (K,) frictions of the runs of one toss."""
+    """Return (K, 13) states, (K,) restitutions and (K,) frictions of the runs of one toss."""
     states = np.repeat(state[None], len(draws), axis=0)
     states[:, body.VX : body.Q] += uncertain[0] * draws[:, 0:3]
     states[:, body.W :] += uncertain[1] * draws[:, 3:6]
@@ -290,12 +327,26 @@ def _varied(
 
 
 def scattered(ends: tuple[float, float], relative: float, draws: Floats) -> Floats:
-    """Return values (K,) [its unit] of what is known as one value or as a range.
+    """Return values of what is known as one value or as a range.
 
-    About one value, of equal ``ends``, normal with the standard deviation ``relative`` of it, not below a
-    tenth of it; in a range as good as uniform. ``draws`` (K,) are normal numbers: 0 gives the value, or the
-    middle of the range.
-    Source: docs/validation.md, "Restitution is a spread".
+    About one value, of equal ends, they are normal with the standard deviation ``relative`` of it, and not
+    below a tenth of it. In a range they are as good as uniform: the logistic function 1 / (1 + exp(-1.702 x))
+    is the normal distribution to 0.01.
+
+    Parameters
+    ----------
+    ends : (float, float) [its unit]
+    relative : float [1]
+    draws : (K,) float [1]
+        Normal numbers: 0 gives the value, or the middle of the range.
+
+    Returns
+    -------
+    (K,) float [its unit]
+
+    References
+    ----------
+    docs/validation.md, "Restitution is a spread".
     """
     low, high = ends
     if low == high:
@@ -304,7 +355,10 @@ def scattered(ends: tuple[float, float], relative: float, draws: Floats) -> Floa
 
 
 def _upward(quaternions: Floats, principal: Floats) -> Any:
-    """Index into FACE_NAMES of the side that points up most, for (..., 4) attitudes along principal axes."""
+    """Return the side that points up most, for (..., 4) attitudes along principal axes.
+
+    The entries index ``FACE_NAMES``.
+    """
     w, x, y, z = np.moveaxis(quaternions, -1, 0)
     up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=-1)
     along = np.einsum("...j,ij->...i", up, principal)

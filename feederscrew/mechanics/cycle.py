@@ -37,9 +37,20 @@ class Cycle:
 
 
 def phases(samples: int = PERIOD_SAMPLES) -> Floats:
-    """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
+    """Return the phases w t of one period; the upper reversal is at a quarter of it.
 
-    Source: docs/mechanics.md, "Frames and signs".
+    Parameters
+    ----------
+    samples : int
+
+    Returns
+    -------
+    (samples,) float [rad]
+        From 0, without 2 pi.
+
+    References
+    ----------
+    docs/mechanics.md, "Frames and signs".
     """
     return PERIOD_PHASE * np.arange(samples) / samples
 
@@ -49,14 +60,30 @@ def settle(
 ) -> Cycle:
     """Follow a part from rest until its velocity repeats every period.
 
-    ``acceleration`` of phase [rad], velocity [m/s] and sense of sliding, +1 or -1, is relative to the surface
-    [m/s2]; ``windows`` are phases [rad] from which and to which a part at rest breaks loose, from 0 to 2 pi,
-    ascending, and its sense. The Cycle, of ``samples`` in a ``period`` [s], is not settled where the part
-    gets faster with every period.
+    The velocity after a period is a function of the velocity before it, and this function keeps their order.
+    So from rest the velocity tends to the first one that a period leaves as it is. A few periods are
+    followed; if the velocity has not settled by then, that fixed point is found as a root.
 
-    The velocity after a period is a function of that before it which keeps their order, so from rest it tends
-    to the first velocity that it leaves as it is.
-    Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of docs/conveying.md.
+    Parameters
+    ----------
+    acceleration : function of phase [rad], velocity [m/s] and sense of sliding
+        Acceleration relative to the surface [m/s2]; the sense is +1 or -1.
+    windows : sequence of (float, float, float) [rad, rad, 1]
+        Phases [rad] from which and to which a part at rest breaks loose, from 0 to 2 pi, ascending, and the
+        sense in which it then slides.
+    period : float [s]
+    samples : int
+        Samples in the period.
+
+    Returns
+    -------
+    Cycle
+        Velocity at the samples [m/s] and the mean of the whole period; not settled where the part gets faster
+        with every period.
+
+    References
+    ----------
+    docs/mechanics.md, "The floor". The mean agrees with the two-burst velocity of docs/conveying.md.
     """
     ride = _Ride(acceleration, tuple(windows), period / PERIOD_PHASE, samples)
     speed, scale = 0.0, 0.0
@@ -68,9 +95,11 @@ def settle(
         speed = float(velocity[-1])
 
     def gained(before: float) -> float:
+        """Return the change of velocity [m/s] in one period."""
         return float(ride.over(before)[0][-1]) - before
 
-    # the velocity that a period does not change, bracketed by a step that doubles
+    # The settled velocity is the root of ``gained``. A step that doubles brackets it; if none does, the part
+    # gets faster with every period.
     near, rise = speed, gained(speed)
     step, far, fall = rise, near, rise
     for _ in range(MAX_STEP_DOUBLINGS):
@@ -81,7 +110,9 @@ def settle(
         fall = gained(far)
     settled, side = fall * rise <= 0.0, 0
     far = far if settled else speed
-    for _ in range(MAX_BRACKETING_STEPS if settled else 0):  # the secant rule in its Illinois form
+    # The secant rule in its Illinois form: the value at an end that stays twice is halved, or the bracket
+    # would shrink from one side only.
+    for _ in range(MAX_BRACKETING_STEPS if settled else 0):
         if abs(far - near) <= VELOCITY_TOLERANCE * scale or fall == 0.0:
             break
         middle = far - fall * (far - near) / (fall - rise)
@@ -97,8 +128,23 @@ def settle(
 def swing(acceleration: Floats, period: float) -> Cycle:
     """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
 
-    ``acceleration`` (N, ...) [m/s2] is at ``phases(N)`` of the ``period`` [s]. Whatever velocity it began
-    with comes on top. Source: the integral of a harmonic acceleration; docs/mechanics.md, "The floor".
+    The velocity is the integral of the acceleration by the trapezoidal rule, less its mean. The velocity with
+    which the part began would come on top; it is not known, and friction does not end it.
+
+    Parameters
+    ----------
+    acceleration : (N, ...) float [m/s2]
+        At the phases ``phases(N)``.
+    period : float [s]
+
+    Returns
+    -------
+    Cycle
+        (N, ...) float [m/s], settled, of mean 0.
+
+    References
+    ----------
+    The integral of a harmonic acceleration; docs/mechanics.md, "The floor".
     """
     gain = period / len(acceleration) * 0.5 * (acceleration + np.roll(acceleration, -1, axis=0))
     velocity = np.roll(np.cumsum(gain - np.mean(gain, axis=0), axis=0), 1, axis=0)
@@ -106,7 +152,7 @@ def swing(acceleration: Floats, period: float) -> Cycle:
 
 
 class _Ride:
-    """One period after another of a part under a given acceleration."""
+    """Periods, one after another, of a part under a given acceleration."""
 
     def __init__(
         self, acceleration: Acceleration, windows: Sequence[Window], pace: float, samples: int
@@ -116,7 +162,7 @@ class _Ride:
         self.kink = KINK * pace * max(abs(acceleration(0.25 * PERIOD_PHASE * k, 0.0, 1.0)) for k in range(4))
 
     def over(self, speed: float) -> tuple[Floats, float]:
-        """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
+        """Return the velocities (samples + 1,) [m/s] of a period that begins with a speed, and their mean."""
         grid = [PERIOD_PHASE * k / self.samples for k in range(self.samples + 1)]
         speeds, travel = [speed], 0.0
         for now, end in itertools.pairwise(grid):
@@ -138,7 +184,11 @@ class _Ride:
     def _slip(
         self, speed: float, now: float, end: float, until: float, sense: float
     ) -> tuple[float, float, float]:
-        """Velocity, way and phase where a slip stops or the stretch ends."""
+        """Return velocity, way and phase where a slip stops or the stretch ends.
+
+        The slip does not stop before the phase ``until``: the end of the window in which a part at rest
+        breaks loose, the present phase of one that slides already.
+        """
         span = end - now
         after, travel = self._step(now, span, speed, sense)
         low = until - now
@@ -168,7 +218,10 @@ class _Ride:
     def _step(
         self, now: float, span: float, speed: float, sense: float, whole: Step | None = None, depth: int = 0
     ) -> Step:
-        """Velocity and way after a span, by one step or, where two halves differ from it, by theirs."""
+        """Return velocity and way after a span: of one step, or of two halves where these differ from it.
+
+        They differ where the acceleration has a kink, as where contact is lost.
+        """
         half, begun = 0.5 * span, self.gain(now, speed, sense)
         whole = whole or self._once(now, span, speed, sense, begun)
         first = self._once(now, half, speed, sense, begun)
@@ -179,7 +232,7 @@ class _Ride:
         return last[0], first[1] + last[1]
 
     def _once(self, now: float, span: float, speed: float, sense: float, begun: float | None = None) -> Step:
-        """One step of the classical Runge-Kutta rule for the velocity and its integral."""
+        """Return velocity and way after one step of the classical Runge-Kutta rule."""
         half = 0.5 * span
         a = self.gain(now, speed, sense) if begun is None else begun
         b = self.gain(now + half, speed + half * a, sense)

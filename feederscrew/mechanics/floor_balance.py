@@ -46,9 +46,28 @@ class FloorMotion:
 
 
 def drive_force(mass: float, bowl: Bowl, heading: Reals, phase: Reals = UPPER_REVERSAL) -> Floats:
-    """Return the inertial force of the vibration on a mass [kg], (..., 3) [N] along x', y', z, at w t [rad].
+    """Return the inertial force of the vibration on a mass, as seen from the bowl.
 
-    Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
+        F = m A w^2 sin(w t) (cos b cos(alpha - theta), cos b sin(alpha - theta), sin b)
+
+    Parameters
+    ----------
+    mass : float [kg]
+    bowl : Bowl
+        Its drive: amplitude A, frequency, vibration angle b, direction alpha.
+    heading : float or (...) float [rad]
+        theta of the part.
+    phase : float or (...) float [rad]
+        w t.
+
+    Returns
+    -------
+    (..., 3) float [N]
+        Along the body axes x', y' and up.
+
+    References
+    ----------
+    d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
     """
     drive = bowl.drive
     size = mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * np.sin(phase)
@@ -60,20 +79,44 @@ def drive_force(mass: float, bowl: Bowl, heading: Reals, phase: Reals = UPPER_RE
 def motion(
     posture: Posture, bowl: Bowl, heading: Reals, phase: Reals = UPPER_REVERSAL, moving: Reals = 0.0
 ) -> FloorMotion:
-    """Return what a part on the level bowl floor does at one phase of the vibration.
+    """Return how a part moves on the level bowl floor at one phase of the vibration.
 
-    ``posture`` Posture: its ``offset`` e is the lever by which the drive turns the part, a parameter of the
-    published model: the distance from the foot of the centre of mass to the centroid of the contact polygon.
-    Inertia itself acts at the centre of mass; with e = 0 nothing turns; ``bowl`` Bowl: drive, friction and
-    gravity; the floor is level; ``heading`` (...) [rad]: theta; ``phase`` (...) [rad]: w t; a quarter turn is
-    the upper reversal; ``moving`` (...) [1]: sense of the part's sliding along the drive's direction, +1 or
-    -1; 0 for a part at rest, which breaks loose only against static friction. A rolling part is taken from
-    rest.
+    The normal force is N = m g - m A w^2 sin(b) sin(w t), eq. [4.14]. A part at rest breaks loose where the
+    drive along the floor exceeds mu_s N, eq. [4.28]; a sliding part feels mu_k N against its motion,
+    eq. [4.26], and accelerates by eqs. [4.15] and [4.16]. The drive turns a sliding part, theta'' = e F_y' /
+    I, eq. [4.17].
+
+    The normal force acts where it balances the moment of friction, d = h R / N, eqs. [4.18] and [4.19]; a
+    part that turns shifts it further by its products of inertia. Where that point lies outside the contact
+    polygon, the part tips.
 
     Friction is a vector against the sliding, so the factor cos(alpha - theta) of [4.27] is absent: the
-    thesis's form holds where a wall takes the force across. The normal force, eq. [4.14], acts where it
-    balances friction's lever h: d = h R / N, and further by the products of inertia while the part turns,
-    eq. [4.17]. Source: these, and eqs. [4.15], [4.16], [4.18], [4.19], [4.26] and [4.28].
+    thesis's form holds where a wall takes the force across.
+
+    Parameters
+    ----------
+    posture : Posture
+        Its ``offset`` e [m] is a parameter of the published model: the lever by which the drive turns the
+        part, from the foot of the centre of mass to the centroid of the contact polygon. Inertia itself acts
+        at the centre of mass; with e = 0 nothing turns.
+    bowl : Bowl
+        Drive, friction and gravity; the floor is level. Fields may be arrays that broadcast.
+    heading : float or (...) float [rad]
+        theta.
+    phase : float or (...) float [rad]
+        w t; a quarter turn is the upper reversal.
+    moving : float or (...) float [1]
+        Sense in which the part slides along the drive's direction, +1 or -1. A part at rest has 0 and breaks
+        loose only against static friction. A rolling part is taken from rest.
+
+    Returns
+    -------
+    FloorMotion
+        Arrays (...) [N, m/s2, rad/s2, m].
+
+    References
+    ----------
+    The thesis, eqs. [4.14] to [4.19], [4.26] and [4.28]; docs/mechanics.md, "The floor".
     """
     force = drive_force(posture.mass, bowl, heading, phase)
     normal = posture.mass * bowl.gravity - force[..., 2]  # eq. [4.14]
@@ -123,11 +166,27 @@ def motion(
 def over_cycle(
     posture: Posture, bowl: Bowl, heading: float, samples: int = cycle.PERIOD_SAMPLES
 ) -> tuple[FloorMotion, cycle.Cycle]:
-    """Return the same over one settled period of ``samples``, and its Cycle; single values.
+    """Return ``motion`` over one settled period of the vibration; single values of the bowl.
 
-    The velocity is along the drive's direction. Flights are not followed: past the hop the state says ``hop``
-    and the velocity is that of a part that keeps to the plane. A rolling part is not brought to rest by
-    friction: its velocity is the swing about whatever it began with. A flat one breaks loose by eq. [4.28].
+    Flights are not followed: past the hop the state says ``hop``, and the velocity is that of a part that
+    keeps to the plane. Friction does not bring a rolling part to rest: its velocity is the swing about the
+    one it began with. A flat part breaks loose by eq. [4.28].
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+    heading : float [rad]
+        theta.
+    samples : int
+        Samples in the period.
+
+    Returns
+    -------
+    FloorMotion
+        Of ``samples`` phases, the sense of sliding being that of the cycle.
+    Cycle
+        Velocity [m/s] along the drive's direction.
     """
     phase, turn = cycle.phases(samples), bowl.drive.direction - heading
     along = np.array([np.cos(turn), np.sin(turn)])
@@ -143,7 +202,8 @@ def over_cycle(
         s = math.sin(phase)
         return push * s - sense * mu.kinetic * max(bowl.gravity - lift * s, 0.0)
 
-    # the phases within which a flat part at rest breaks loose
+    # A flat part at rest breaks loose where push s > mu (g - lift s), s = sin(w t): between the onset and its
+    # mirror image about the reversal.
     for sense, start in ((1.0, 0.0), (-1.0, math.pi)):
         gain, held = push + sense * mu.static * lift, mu.static * bowl.gravity  # eq. [4.28]
         if gain > held:
@@ -165,16 +225,42 @@ def regime(states: Ints) -> str:
 
 
 def stable_heading(posture: Posture, bowl: Bowl) -> Any:
-    """Return the heading [rad] to which the drive turns the part, by the sign of eq. [4.17]; NaN for none."""
+    """Return the heading to which the drive turns the part, by the sign of eq. [4.17].
+
+    theta'' is proportional to e sin(alpha - theta): with e > 0 the part turns to the drive's direction alpha,
+    with e < 0 to the opposite one.
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Its drive's direction may be an array.
+
+    Returns
+    -------
+    (...) float [rad]
+        NaN where nothing turns the part.
+    """
     if not np.isfinite(posture.offset) or posture.offset == 0.0:
         return np.full(np.shape(bowl.drive.direction), np.nan)[()]
     return bowl.drive.direction + (0.0 if posture.offset > 0.0 else np.pi)
 
 
 def with_friction(bowl: Bowl, friction: Reals) -> Bowl:
-    """Return the bowl with one coefficient [1] for sticking and sliding; the wall keeps its own."""
-    coefficients: Any = {"static": friction, "kinetic": friction}
-    return replace(bowl, friction=replace(bowl.friction, **coefficients))
+    """Return the bowl with one coefficient for sticking and sliding; the wall keeps its own.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    friction : float or (...) float [1]
+
+    Returns
+    -------
+    Bowl
+    """
+    # a map gives arrays here, which the fields of a record name as numbers
+    coefficient: Any = friction
+    return replace(bowl, friction=replace(bowl.friction, static=coefficient, kinetic=coefficient))
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,30 +275,49 @@ class Rolling:
 
 
 def solve_rolling(posture: Posture, coefficients: Friction, push: Floats, normal: Floats) -> Rolling:
-    """Return a part on a rolling aspect, from rest.
+    """Return the forces on a part of a rolling aspect, from rest.
 
-    Its rolling axis goes through the centre of mass, ``height`` above the floor; a ball has none and rolls
-    every way. Static friction decides whether it slips, kinetic how; ``push`` (..., 2) [N] is the drive along
-    the floor, ``normal`` (...) [N] the normal force.
+    The rolling axis goes through the centre of mass, ``height`` h above the floor; a ball has none and rolls
+    every way. While the part only rolls, its contact line stays at rest. Then friction across the axis is
 
-    Rolling, the contact line stays at rest: across the axis friction is T I / (I + m h^2), a third of the
-    drive for a solid cylinder, and along the axis the whole drive; for a ball it is two sevenths of the drive
-    either way. Where their sum exceeds static friction, kinetic friction acts against the slip of the contact
-    line, whose direction follows from itself.
-    Source: the thesis, chapter 1, on Diaz (2004): friction of a rolling cylinder is found, not assumed to be
-    mu N.
+        R = T I / (I + m h^2)
+
+    of the drive T: a third of it for a solid cylinder, two sevenths for a ball. Along the axis nothing rolls,
+    and friction takes the whole drive. Where the sum exceeds static friction the part slips as well: kinetic
+    friction acts against the slip of the contact line.
+
+    Parameters
+    ----------
+    posture : Posture
+    coefficients : Friction
+        Static friction decides whether the part slips, kinetic friction how.
+    push : (..., 2) float [N]
+        Drive along the floor, in body axes.
+    normal : (...) float [N]
+        Normal force.
+
+    Returns
+    -------
+    Rolling
+
+    References
+    ----------
+    The thesis, chapter 1, on Diaz (2004): friction of a rolling cylinder is found, not assumed to be mu N.
     """
     axis = np.array([0.0, 1.0]) if posture.axis is None else posture.axis
     frame = np.array([[-axis[1], axis[0]], axis])  # rows: across, along
     level = posture.inertia[:2, :2]
     inertia, other = (float(vectors.dot(vectors.product(line, level), line)) for line in frame[::-1])
     turning = np.array([1.0 / inertia, 1.0 / other if posture.axis is None else 0.0])  # for a moment of 1
-    ease = 1.0 / posture.mass + posture.height**2 * turning  # of the contact
+    # acceleration of the contact line for a force of 1 there, across and along: the part moves and turns
+    ease = 1.0 / posture.mass + posture.height**2 * turning
     drive = vectors.product(push, frame.T) / posture.mass
     need = drive / ease
     limiting = vectors.ratio(np.hypot(need[..., 0], need[..., 1]), normal)
     slips = ~(limiting <= coefficients.static)
-    # resistance of a given strength along the slip that remains under it
+    # Kinetic friction has a known strength and acts against the slip, and the slip is what the drive leaves
+    # under that friction: slip s = drive - strength * ease * s / |s|. For a trial size |s| the direction
+    # follows, and |s| is right where this direction has length 1. Halving finds it.
     strength = np.asarray(coefficients.kinetic * normal)[..., None]
     drive = np.broadcast_to(drive, (*np.broadcast_shapes(drive.shape[:-1], strength.shape[:-1]), 2))
     low, high = np.zeros(drive.shape[:-1]), np.hypot(drive[..., 0], drive[..., 1])

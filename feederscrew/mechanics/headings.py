@@ -69,20 +69,43 @@ class Headings(ReadableRecord):
 
 
 def rests(outline: Points, radius: float, merge: float = MIN_DIP_SHARE) -> Rests:
-    """Return how an outline can lie against a wall.
+    """Return every way in which an outline can lie against a wall.
 
-    ``outline`` (J, 2) [m]: convex, counter-clockwise seen from above, from the foot of the centre of mass;
-    ``radius`` [m]: of the wall, not below the outline's greatest extent; infinite for a straight wall;
-    ``merge`` [1]: headings divided by a lesser rise of the centre of mass's distance, over the outline's
-    size, count as one: the facets of a tessellated curve. Shares sum to 1. A part laid down in any direction
-    and pushed outward turns to the rest in whose range of directions it was: the plane's counterpart of
-    quasi-static tumbling. Raises ValueError if the outline is not an array of corners, or the foot is not
-    inside it. Source: own; docs/mechanics.md, "Headings".
+    Seen from the part, the bowl's axis O may lie anywhere within the wall's radius of every corner. A part
+    that is pushed outward moves until O is as far from the foot G of the centre of mass as that allows, and
+    turns to the rest in whose range of directions it was laid down: the plane's counterpart of quasi-static
+    tumbling.
+
+    Parameters
+    ----------
+    outline : (J, 2) float [m]
+        Convex, counter-clockwise seen from above, from the foot of the centre of mass.
+    radius : float [m]
+        Of the wall, not below the outline's greatest extent; infinite for a straight wall.
+    merge : float [1]
+        Headings divided by a lesser rise of the centre of mass's distance, over the outline's size, count as
+        one: the facets of a tessellated curve.
+
+    Returns
+    -------
+    Rests
+        M rows by angle; their shares sum to 1.
+
+    Raises
+    ------
+    ValueError
+        If the outline is not an array of corners, or the foot is not inside it.
+
+    References
+    ----------
+    Own; docs/mechanics.md, "Headings".
     """
     outline = check.shaped("outline", outline, (-1, 2))
     if not inset(outline, np.zeros(2)) > 0.0:
         raise ValueError("the outline does not hold the foot of the centre of mass")
-    corners = outline  # that can reach the wall: those its curve does not bridge
+    # Keep the corners that can reach the wall. Two neighbours on a curved wall bridge the corner between them
+    # where it lies farther from the wall's arc than zero; the farthest is taken out first.
+    corners = outline
     while len(corners) > 2 and np.isfinite(radius):
         middle, inward, half = _chord(np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0))
         depth = radius - np.sqrt(radius**2 - half**2)  # of the wall behind the chord
@@ -102,6 +125,8 @@ def rests(outline: Points, radius: float, merge: float = MIN_DIP_SHARE) -> Rests
         centre = middle + reach[:, None] * inward
         rise = half**2 - np.einsum("ki,ki->k", middle, middle) - 2.0 * reach * in_line  # R^2 - far^2, exactly
         outward, distance = np.arctan2(-centre[:, 1], -centre[:, 0]), rise / (radius + np.hypot(*centre.T))
+    # A pair of corners is a stable rest where the outward direction passes between them. A corner alone
+    # balances where it passes through that corner: the top between two rests.
     towards = np.arctan2(corners[:, 1], corners[:, 0])
     stable = (_angle_between(towards, outward) > 0.0) & (_angle_between(outward, np.roll(towards, -1)) > 0.0)
     balanced = (_angle_between(np.roll(outward, 1), towards) > 0.0) & (_angle_between(towards, outward) > 0.0)
@@ -141,7 +166,7 @@ def rests(outline: Points, radius: float, merge: float = MIN_DIP_SHARE) -> Rests
 
 
 def _chord(first: Points, second: Points) -> tuple[Floats, Floats, Floats]:
-    """Middle of two corners, unit vector into the outline, half their distance."""
+    """Return the middle of two corners, the unit vector into the outline, and half their distance."""
     along = second - first
     length = np.hypot(along[..., 0], along[..., 1])
     inward = np.stack([-along[..., 1], along[..., 0]], axis=-1) / length[..., None]
@@ -149,15 +174,33 @@ def _chord(first: Points, second: Points) -> tuple[Floats, Floats, Floats]:
 
 
 def _angle_between(start: Reals, end: Reals) -> Floats:
-    """Angle from one direction on to another, -pi to pi."""
+    """Return the angle from one direction on to another, -pi to pi."""
     return np.mod(end - start + np.pi, 2.0 * np.pi) - np.pi
 
 
 def supported_reaches(headings: Headings, posture: Posture, track: Track) -> list[Floats]:
-    """Return how far from the wall a track of some radius and width supports a part in each of its Headings.
+    """Return how far from the wall a track supports a part in each of its Headings.
 
-    A (K, 2) [m] each: places along the track and how far it reaches there, as seen from the centre of mass;
-    none where it supports nothing.
+    The support is the hull of the part's foot as far as it lies over the track. Only the side of that hull
+    away from the wall matters for falling off, so that side alone is returned.
+
+    Parameters
+    ----------
+    headings : Headings
+    posture : Posture
+        Its ``feet`` are the edges that touch the track.
+    track : Track
+        Its radius and width.
+
+    Returns
+    -------
+    list of (K, 2) float [m]
+        One array a heading: places along the track and how far the support reaches there, as seen from the
+        centre of mass. No rows where the track supports nothing.
+
+    References
+    ----------
+    Own; docs/mechanics.md, "Headings".
     """
     reaches, edge = [], track.radius - track.width
     for angle, wall in zip(headings.headings, headings.distances):
@@ -174,7 +217,8 @@ def supported_reaches(headings: Headings, posture: Posture, track: Track) -> lis
             shares = (-b + np.sqrt(b * b - a * c) * np.array([[-1.0], [1.0]])) / a
             root, row = np.nonzero((shares >= 0.0) & (shares <= 1.0))
             points = np.concatenate([on, centre + (first[row] + shares[root, row][:, None] * way[row])])
-        # the side of their hull that is away from the wall
+        # The side of their hull that is away from the wall: the upper chain of a convex hull (Andrew). Places
+        # are rounded, so that points above one another sort by their distance and not by rounding.
         along = PLACE_TOLERANCE_M * np.round(points[:, 0] / PLACE_TOLERANCE_M)
         places = np.column_stack([along, points[:, 1]])
         chain: list[Floats] = []
@@ -189,15 +233,32 @@ def supported_reaches(headings: Headings, posture: Posture, track: Track) -> lis
 
 
 def falls_off(posture: Posture, reach: Points, track: Track) -> bool:
-    """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
+    """Return whether the part tips over the track's free edge.
 
-    Towards the wall the part leans on it, and ahead or behind it tips without leaving the track. One that
-    rolls touches along a line through its foot: it falls where the track ends before that, however wide the
-    strip of its file is. ``reach`` (K, 2) [m] is of one heading, from ``supported_reaches``.
-    Source: own; docs/mechanics.md, "Headings".
+    It does where the line of its weight meets the surface beyond what the track supports, on the side of the
+    free edge. Towards the wall the part leans on the wall; ahead or behind it tips without leaving the track.
+    A part that rolls touches along a line through its foot: it falls where the track ends before that line,
+    however wide the strip of its file is.
+
+    Parameters
+    ----------
+    posture : Posture
+    reach : (K, 2) float [m]
+        Of one heading, from ``supported_reaches``.
+    track : Track
+        Its climb and bank.
+
+    Returns
+    -------
+    bool
+
+    References
+    ----------
+    Own; docs/mechanics.md, "Headings".
     """
     if len(reach) == 0:
         return True
+    # the line of the weight from the centre of mass, h above the surface, in track axes
     slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
     ahead, inward = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
     least, most = EDGE_TOLERANCE * np.ptp(posture.outline, axis=0).max(), reach[:, 1].max()
@@ -210,7 +271,26 @@ def falls_off(posture: Posture, reach: Points, track: Track) -> bool:
 def headings(posture: Posture, track: Track) -> Headings:
     """Return the stable headings of a part with an outline against the wall of a Track.
 
-    Raises FeederError if the bowl is smaller than the part, or the part is a card without an outline.
+    Rests that look the same are one heading: its share is theirs together.
+
+    Parameters
+    ----------
+    posture : Posture
+    track : Track
+
+    Returns
+    -------
+    Headings
+        M rows, the most frequent first.
+
+    Raises
+    ------
+    FeederError
+        If the bowl is smaller than the part, or the part is a card without an outline.
+
+    References
+    ----------
+    Own; docs/mechanics.md, "Headings".
     """
     if len(posture.outline) == 0:
         what = f"the card of aspect {posture.name} has no outline"
@@ -220,15 +300,16 @@ def headings(posture: Posture, track: Track) -> Headings:
         what = f"{1e3 * np.min(track.radius):.4g} mm is less than the part's {1e3 * across:.4g} mm across"
         raise FeederError("track.radius", what, "give the radius of a bowl that holds the part")
     curved, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
-    # places of the rests that are each other's like under no turn, ranked; of each rest the like that stands
-    # for it; the shares of all its likes together, at its place
+    # Rests are ranked, so that the first of each kind is its most frequent one. ``first`` names for each rest
+    # the first of its kind; the shares of a kind are added at that place.
     order = _rank_rests(curved.share, curved.outward)
     first = np.empty(len(order), dtype=np.int64)
-    first[order] = order[sameness.firsts(posture, _heading(curved.outward[order]))]
+    first[order] = order[sameness.first_alike(posture, _heading(curved.outward[order]))]
     shares, rows = np.bincount(first, curved.share, minlength=len(curved.share)), np.unique(first)
     order = rows[_rank_rests(shares[rows], curved.outward[rows])]
     turn, distances = _heading(curved.outward[order]), curved.distance[order]
-    # a row is not its own half turn; the body's own axes are mirrored
+    # how far each pair of headings is from being turned by half, and from being mirrored; a row is not its
+    # own half turn
     halves = np.abs(_angle_between(turn, turn[:, None] + np.pi)) + np.pi * np.eye(len(turn))
     mirrored = np.abs(_angle_between(turn, np.pi - turn[:, None]))
     shapes, widths = [turned(posture.outline, angle) for angle in turn], []
@@ -268,10 +349,24 @@ def headings(posture: Posture, track: Track) -> Headings:
 def on_track(
     headings: Headings, posture: Posture, track: Track, reaches: Sequence[Points] | None = None
 ) -> Headings:
-    """Return the same Headings on a track of other width [m], climb or bank [rad], but of the same radius.
+    """Return the same Headings on a track of another width, climb or bank, but of the same radius.
 
-    ``reaches`` is what ``supported_reaches`` gives for that width, where it is known already.
-    Source: own; docs/mechanics.md, "Headings".
+    Parameters
+    ----------
+    headings : Headings
+    posture : Posture
+    track : Track
+    reaches : sequence of (K, 2) float [m], or None
+        Result of ``supported_reaches`` for that width, where it is known already.
+
+    Returns
+    -------
+    Headings
+        With overhangs [m] and ``falls_off`` of this track.
+
+    References
+    ----------
+    Own; docs/mechanics.md, "Headings".
     """
     reaches = supported_reaches(headings, posture, track) if reaches is None else reaches
     falls = np.array([falls_off(posture, reach, track) for reach in reaches])
@@ -282,9 +377,24 @@ def on_track(
 def stable_row(headings: Headings, heading: float | None = None) -> int:
     """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
 
-    ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track. Raises
-    FeederError if the part falls off the track in that heading, or in every one.
-    Source: own; docs/mechanics.md, "Headings".
+    Parameters
+    ----------
+    headings : Headings
+    heading : float [rad] or None
+        As laid down; None takes the most frequent heading that stays on the track.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    FeederError
+        If the part falls off the track in that heading, or in every one.
+
+    References
+    ----------
+    Own; docs/mechanics.md, "Headings".
     """
     if heading is None:
         if headings.falls_off.all():
@@ -300,7 +410,22 @@ def stable_row(headings: Headings, heading: float | None = None) -> int:
 
 
 def settled(headings: Headings, heading: float) -> int:
-    """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
+    """Return the row in whose range of headings a part is laid down; on a border the one nearer in heading.
+
+    Parameters
+    ----------
+    headings : Headings
+    heading : float [rad]
+
+    Returns
+    -------
+    int
+
+    References
+    ----------
+    ``rests``.
+    """
+    # ranges are half open in exact numbers; rounding may leave a heading on a border beyond both
     lowest, width = headings.ranges.T
     beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
     middle = np.abs(_angle_between(heading, lowest + 0.5 * width))
@@ -308,7 +433,7 @@ def settled(headings: Headings, heading: float) -> int:
 
 
 def _rank_rests(share: Array, outward: Floats) -> Ints:
-    """Places of rests, the most frequent first; those of equal shares by their headings."""
+    """Return the places of rests, the most frequent first; those of equal shares by their headings."""
     order = np.argsort(-share)
     ordered = share[order]
     rank = np.zeros(len(order), dtype=int)
@@ -317,13 +442,13 @@ def _rank_rests(share: Array, outward: Floats) -> Ints:
 
 
 def _heading(outward: Floats) -> Floats:
-    """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
+    """Return the turn that brings a body direction to the wall, at -Y; 0 to 2 pi, rounding of 0 removed."""
     turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
     return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
 
 
 def _partners(shapes: Sequence[Points], image: Callable[[Points], Points], astray: Floats) -> Ints:
-    """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
+    """Return for each outline the row that is its image, the least astray of several; -1 for none."""
     partner = np.full(len(shapes), -1)
     for i, shape in enumerate(shapes):
         like, mirrored = [], image(shape)

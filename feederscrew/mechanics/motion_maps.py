@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Array, Bools, Reals
+from feederscrew.arrays import Array, Bools, Floats, Reals
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.errors import FeederError
 from feederscrew.mechanics import floor_balance, limits, track_balance
@@ -22,11 +22,26 @@ FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
 
 
 def floor_cells(posture: Posture, bowl: Bowl, heading: Reals) -> dict[str, Array]:
-    """Return the upper reversal for arrays of bowl settings. Source: ``motion``, cell by cell.
+    """Return the upper reversal on the floor for arrays of bowl settings, cell by cell.
 
-    ``heading`` [rad] is theta. Returns a dict of str to array [SI, as each name says]: 'acceleration_z_m_s2'
-    V'_z and 'alignment_acceleration_rad_s2', NaN where the part has lost contact; 'throw_number' above 1
-    where it hops; 'regime' places in ``FLOOR_REGIMES``.
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Fields may be arrays that broadcast.
+    heading : float or (...) float [rad]
+        theta.
+
+    Returns
+    -------
+    dict of str to (...) array
+        In SI, as each name says: 'acceleration_z_m_s2' V'_z and 'alignment_acceleration_rad_s2', NaN where
+        the part has lost contact; 'throw_number', above 1 where it hops; 'regime', places in
+        ``FLOOR_REGIMES``.
+
+    References
+    ----------
+    ``floor_balance.motion``; maps as in Figures 5-6 and 5-7 of the thesis.
     """
     motion = floor_balance.motion(posture, bowl, heading)
     contact = motion.state != HOP
@@ -59,12 +74,32 @@ TRACK_DECIMALS = 12  # decimals that tell two radii, widths or banks apart
 
 
 def seated(posture: Posture, bowl: Bowl, heading: float | None = None) -> tuple[Seat, Headings | None, int]:
-    """Return how a part lies against the wall of a bowl: its Seat, its Headings and the row taken.
+    """Return how a part lies against the wall of a bowl.
 
-    ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track. A part
-    card has its printed seat only, and no headings. Source: docs/mechanics.md, "Headings".
-    Raises FeederError if the bowl is smaller than the part, the part falls off, or a card lacks what is
-    asked.
+    Parameters
+    ----------
+    posture : Posture
+        A part card has its printed seat only, and no headings.
+    bowl : Bowl
+    heading : float [rad] or None
+        As laid down; None takes the most frequent heading that stays on the track.
+
+    Returns
+    -------
+    Seat
+    Headings or None
+        None of a part card.
+    int
+        Row of the headings that was taken.
+
+    Raises
+    ------
+    FeederError
+        If the bowl is smaller than the part, the part falls off, or a card lacks the data of its seat.
+
+    References
+    ----------
+    docs/mechanics.md, "Headings".
     """
     if posture.corners is None:
         return card_seat(posture), None, 0
@@ -74,13 +109,28 @@ def seated(posture: Posture, bowl: Bowl, heading: float | None = None) -> tuple[
 
 
 def track_cells(posture: Posture, bowl: Bowl, heading: float | None = None) -> dict[str, Array]:
-    """Return the upper reversal at every cell of a map; fields of the bowl may be arrays that broadcast.
+    """Return the upper reversal on the track at every cell of a map.
 
-    ``heading`` as for ``seated``. Returns a dict of str to array [SI, as each column's name says]: columns of
-    the map, 'throw_number', above 1 where it hops, and 'regime', places in ``TRACK_REGIMES``; NaN where the
-    part does not fit; no acceleration where it hops. Source: ``motion``, cell by cell.
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Fields may be arrays that broadcast.
+    heading : float [rad] or None
+        As in ``seated``.
+
+    Returns
+    -------
+    dict of str to (...) array
+        In SI, as each name says: ``MOTION_MAP_COLUMNS``; 'throw_number', above 1 where the part hops;
+        'regime', places in ``TRACK_REGIMES``. NaN where the part does not fit; no acceleration where it hops.
+
+    References
+    ----------
+    ``track_balance.motion``, cell by cell.
     """
-    # every field that acts on a part, by its section: its name and its value
+    # Fields of the bowl that act on a part, by section. Cells that share a seat are solved together, so each
+    # field is spread over the whole map first.
     sections = {section: vars(getattr(bowl, section)) for section in SECTIONS}
     single = {name: getattr(bowl, name) for name in SINGLE}
     settings = [value for fields in (*sections.values(), single) for value in fields.values()]
@@ -115,20 +165,25 @@ def _seats(
     if posture.corners is None:
         yield card_seat(posture), np.ones(shape, bool)
         return
+    # A map has thousands of cells and few tracks: a seat is found once for each different track. Headings
+    # depend on its radius alone, the support on radius and width, and the lean on the sign of the bank.
     names = ("climb", "bank", "radius", "width")
     values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
     kinds, place = np.unique(np.round(values, TRACK_DECIMALS), axis=1, return_inverse=True)
-    groups: dict[Any, tuple[Seat, list[int]]] = {}  # by the name of a seat: itself, and its tracks
-    cache: dict[Any, Any] = {}
+    groups: dict[
+        tuple[float, int, float], tuple[Seat, list[int]]
+    ] = {}  # by radius, row, lean: and its tracks
+    free_by_radius: dict[float, Headings] = {}
+    reaches: dict[tuple[float, float], list[Floats]] = {}  # by radius and width
     for k, kind in enumerate(kinds.T):
         track = Track(*kind)
         try:
-            if track.radius not in cache:
-                cache[track.radius] = headings(posture, track)
-            free = cache[track.radius]
-            if (track.radius, track.width) not in cache:
-                cache[track.radius, track.width] = supported_reaches(free, posture, track)
-            stable = on_track(free, posture, track, cache[track.radius, track.width])
+            if track.radius not in free_by_radius:
+                free_by_radius[track.radius] = headings(posture, track)
+            free = free_by_radius[track.radius]
+            if (track.radius, track.width) not in reaches:
+                reaches[track.radius, track.width] = supported_reaches(free, posture, track)
+            stable = on_track(free, posture, track, reaches[track.radius, track.width])
             row = stable_row(stable, heading)
         except FeederError:  # the part does not fit
             continue

@@ -22,12 +22,29 @@ LOOK_DIRECTIONS = 750  # on half the sphere; their images by mirroring are the o
 
 
 def looks(posture: Posture, headings: Iterable[float]) -> tuple[Floats, Floats | None]:
-    """Compute what a Posture with hull corners looks like in each of some headings (M,) [rad].
+    """Return the appearance of a Posture in each of some headings, as numbers that can be compared.
 
-    Returns ``supports`` (M, 2, N) [1]: support function about the centre of mass in N directions of the
-    track's axes and in their images under x -> -x, in units of the part's size; ``moments`` (M, 2, n, 6) [1]:
-    directional moments of the solid, likewise; None where only the hull is known.
-    Source: own; docs/mechanics.md, "Headings".
+    The support function of a body in a direction is how far the body reaches that way. Two convex hulls are
+    the same if their support functions are. Directional moments tell solids apart that share a hull, such as
+    a block with a hole on one side.
+
+    Parameters
+    ----------
+    posture : Posture
+        With the corners of its hull.
+    headings : iterable of M float [rad]
+
+    Returns
+    -------
+    (M, 2, N) float [1]
+        Support function about the centre of mass in N directions of the track's axes, and in their images
+        under x -> -x, in units of the part's size.
+    (M, 2, n, 6) float [1] or None
+        Directional moments of the solid, likewise; None where only the hull is known.
+
+    References
+    ----------
+    Own; docs/mechanics.md, "Headings".
     """
     corners = np.asarray(posture.corners) - [0.0, 0.0, posture.height]
     size, supports = np.ptp(corners, axis=0).max(), []
@@ -39,6 +56,7 @@ def looks(posture: Posture, headings: Iterable[float]) -> tuple[Floats, Floats |
         supports.append(greatest / size)
     if posture.solid is None:
         return np.array(supports), None
+    # moments are smooth: some 24 directions tell them apart
     solid, there = _moments(posture.solid), directions()[:: LOOK_DIRECTIONS // 24]
     axes = np.asarray(posture.axes)
     ways = [np.einsum("ji,...j->...i", axes, _with_images(there, turn)) for turn in headings]
@@ -46,7 +64,25 @@ def looks(posture: Posture, headings: Iterable[float]) -> tuple[Floats, Floats |
 
 
 def looks_alike(first: Look, second: Look, mirrored: bool = False) -> bool:
-    """Return whether two rows of ``looks`` are the same, or each other's mirror image fore and aft."""
+    """Return whether two rows of ``looks`` are the same, or each other's mirror image fore and aft.
+
+    Parameters
+    ----------
+    first : (2, N) float [1] and (2, n, 6) float [1] or None
+        Supports and moments of one heading.
+    second : (2, N) float [1] and (2, n, 6) float [1] or None
+        Those of the other.
+    mirrored : bool
+        Compare with the mirror image of the second.
+
+    Returns
+    -------
+    bool
+
+    References
+    ----------
+    Own; docs/mechanics.md, "Headings".
+    """
     (hull, solid), (other_hull, other_solid), place = first, second, int(mirrored)
     if np.abs(hull[0] - other_hull[place]).max() > SAME_SURFACE:
         return False
@@ -56,13 +92,26 @@ def looks_alike(first: Look, second: Look, mirrored: bool = False) -> bool:
     return bool(change.max() < SAME_SOLID)
 
 
-def firsts(posture: Posture, headings: Floats) -> Ints:
-    """Return for each of the headings (M,) [rad] the first, (M,) [1], that is the same orientation.
+def first_alike(posture: Posture, headings: Floats) -> Ints:
+    """Return for each heading the first one of the list that is the same orientation.
 
-    Source: own; what counts as one is in docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    posture : Posture
+    headings : (M,) float [rad]
+
+    Returns
+    -------
+    (M,) int
+        Places in the list; a place of its own where no earlier heading is the same.
+
+    References
+    ----------
+    Own; what counts as one is in docs/tooling.md, "1. The method".
     """
     if posture.corners is None or len(headings) < 2:
         return np.arange(len(headings))
+    # Likeness within a tolerance is not transitive, so each heading is compared with the first of each kind.
     supports, moments = looks(posture, headings)
     rows = [(supports[k], None if moments is None else moments[k]) for k in range(len(headings))]
     first = np.arange(len(headings))
@@ -73,7 +122,7 @@ def firsts(posture: Posture, headings: Floats) -> Ints:
 
 
 def _with_images(there: Points, turn: float) -> Floats:
-    """Directions (n, 3) of the track and their images (2, n, 3), in the axes of the turned posture."""
+    """Return directions (n, 3) of the track and their images, (2, n, 3), in axes of the turned posture."""
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
     c, s = np.cos(turn), np.sin(turn)
     x, y, z = both[..., 0], both[..., 1], both[..., 2]

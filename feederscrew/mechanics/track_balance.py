@@ -50,11 +50,14 @@ class Seat:
     contact: Floats  # (K, 2) [m] contact polygon in track axes; (0, 2) of a card
 
     def twist(self, bank: float) -> float:
-        """Return how far [rad] a bank turns the part, its higher wall contact leaning beyond the lower."""
+        """Return how far [rad] a bank turns the part about its lower wall contact.
+
+        The higher contact leans beyond the lower one by its height times tan(bank).
+        """
         (x_1, _, z_1), (x_2, _, z_2) = self.walls
         return float(np.arctan2((z_1 - z_2) * np.tan(bank), x_2 - x_1))
 
-    def inside(self, offset: Points) -> Any:
+    def inside(self, offset: Points) -> Floats:
         """Return how far (...) [m] points (..., 2) [m] from the foot lie inside the contact polygon."""
         return inset(self.contact, offset)
 
@@ -81,7 +84,7 @@ class SeatStack:
         )
         return cls(seats[0].mass, height, inertia, walls, tuple(seat.contact for seat in seats))
 
-    def inside(self, offset: Points) -> Any:
+    def inside(self, offset: Points) -> Floats:
         """Return how far (M, P) [m] points (M, P, 2) [m] lie inside the contact polygon of each."""
         return np.stack([inset(contact, points) for contact, points in zip(self.contacts, offset)])
 
@@ -103,10 +106,23 @@ class TrackAxes:
 def seat(posture: Posture, heading: float, touching: Points, lean: float) -> Seat:
     """Return a mesh part in a heading against the wall.
 
-    ``touching`` (2, 2) [m] are corners of the outline at the wall in track axes, from the foot of the centre
-    of mass; ``lean`` is the sign of the bank: with it the upper end of an upright side touches the wall,
-    against it the lower end; upright, the reaction may act anywhere between and is put halfway.
-    Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
+    Parameters
+    ----------
+    posture : Posture
+    heading : float [rad]
+    touching : (2, 2) float [m]
+        Corners of the outline at the wall, in track axes, from the foot of the centre of mass.
+    lean : float [1]
+        Sign of the bank. With the bank the upper end of an upright side touches the wall, against it the
+        lower end. On a level track the reaction may act anywhere between them and is put halfway.
+
+    Returns
+    -------
+    Seat
+
+    References
+    ----------
+    docs/mechanics.md, "Headings"; the height of the contacts is own.
     """
     corners, levels = np.asarray(posture.corners), []
     plan = turned(corners[:, :2], heading)
@@ -130,9 +146,21 @@ def seat(posture: Posture, heading: float, touching: Points, lean: float) -> Sea
 def card_seat(posture: Posture) -> Seat:
     """Return the one seat that a part card prints for this aspect, at heading 0.
 
-    Wall contacts are at the end of the printed lever. The signs of [4.29] put R1 behind the centre of mass
-    and R2 ahead of it.
-    Raises FeederError if the card has no such data.
+    Wall contacts are at the end of the printed lever. The signs of [4.29] put R1 behind the centre of
+    mass and R2 ahead of it.
+
+    Parameters
+    ----------
+    posture : Posture
+
+    Returns
+    -------
+    Seat
+
+    Raises
+    ------
+    FeederError
+        If the card has no such data.
     """
     block = (posture.printed or {}).get("track") or {}
     missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in block]
@@ -153,16 +181,30 @@ def card_seat(posture: Posture) -> Seat:
 
 
 def frame(bowl: Bowl, walls: Floats) -> TrackAxes:
-    """Return the directions on the track of a Bowl, its fields maybe arrays; ``walls`` [m] are of a Seat.
+    """Return the directions on the track of a Bowl.
 
-    Source: docs/mechanics.md, "Frames and signs".
+    Parameters
+    ----------
+    bowl : Bowl
+        Fields may be arrays that broadcast.
+    walls : (..., 2, 3) float [m]
+        Wall contacts of a Seat.
+
+    Returns
+    -------
+    TrackAxes
+        Unit vectors [1].
+
+    References
+    ----------
+    docs/mechanics.md, "Frames and signs".
     """
     phi, delta, beta, alpha, radius = np.broadcast_arrays(
         bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
     )
 
     def banked(x: Reals, y: Reals, z: Reals) -> Floats:
-        """Track axes of a vector given along X, level towards the bowl's axis, and square to both."""
+        """Return in track axes a vector given along X, level towards the bowl's axis, and square to both."""
         along = x, y * np.cos(delta) + z * np.sin(delta), z * np.cos(delta) - y * np.sin(delta)
         return np.stack(np.broadcast_arrays(*along), axis=-1)
 
@@ -170,7 +212,8 @@ def frame(bowl: Bowl, walls: Floats) -> TrackAxes:
     ahead = banked(np.cos(phi), 0.0, -np.sin(phi))  # level
     radial = banked(0.0, 1.0, 0.0)
     drive = banked(np.cos(beta) * np.cos(alpha), np.cos(beta) * np.sin(alpha), np.sin(beta))
-    # behind the centre of mass, level: climb and bank count
+    # The wall is a circle, so its normal at a contact is turned by sigma, sin(sigma) = (how far the contact
+    # lies behind the centre of mass) / radius. That distance is level: climb and bank count.
     behind = -np.einsum("...i,...ki->...k", ahead, walls)
     sine = behind / radius[..., None]  # of sigma, positive at the trailing contact
     cosine = np.sqrt(1.0 - sine**2)
@@ -191,9 +234,30 @@ def loads(
 ) -> Floats:
     """Return weight, drive and centrifugal force on the part, all at its centre of mass.
 
-    (..., 3) [N], at a phase w t [rad]; ``speed`` [m/s] is of the part relative to the bowl, whose own speed
-    along the track is added. ``without_drive`` leaves the vibration out, and with it the bowl's own speed.
-    Source: the loads of eq. [4.29], with the centrifugal force of docs/mechanics.md, "The track".
+        F = m (A w^2 sin(w t) d - g u - (v + A w cos(w t) d_x)^2 / r e)
+
+    with d the direction of the drive, u upwards, and e towards the bowl's axis.
+
+    Parameters
+    ----------
+    seat : Seat or SeatStack
+    bowl : Bowl
+    axes : TrackAxes
+    phase : float or (...) float [rad]
+        w t.
+    speed : float or (...) float [m/s]
+        v of the part relative to the bowl; the bowl's own speed along the track is added.
+    without_drive : bool
+        Leave the vibration out, and with it the bowl's own speed.
+
+    Returns
+    -------
+    (..., 3) float [N]
+        In track axes.
+
+    References
+    ----------
+    The loads of eq. [4.29], with the centrifugal force of docs/mechanics.md, "The track".
     """
     omega = 2.0 * np.pi * bowl.drive.frequency
     stroke = 0.0 * omega if without_drive else bowl.drive.amplitude * omega
@@ -241,13 +305,35 @@ def solve_sliding(
     wall: Reals,
     course: Floats = ALONG_X,
 ) -> TrackSolution:
-    """Solve the wrench equations of a sliding part: accelerations and reactions.
+    """Return accelerations and reactions of a sliding part: the wrench equations.
 
-    ``seat`` Seat; ``axes`` TrackAxes; ``load`` (..., 3) [N]: all that acts but contacts; ``closed`` pair of
-    bool: which wall contacts press; ``floor`` and ``wall`` (...) [1]: coefficients of friction, negative
-    where the part slides back; ``course`` (..., 2) [1]: direction of positive sliding on the floor.
+    They are the complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62]. With the floor's friction
+    put at the normal force, three of the six equations hold only R1, R2 and the motion in the plane of the
+    floor; the other three then give N and the place where it acts.
 
-    The complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62]; not finite where they are singular.
+    Parameters
+    ----------
+    seat : Seat or SeatStack
+    axes : TrackAxes
+    load : (..., 3) float [N]
+        Everything that acts but the contacts.
+    closed : (bool, bool)
+        Which wall contacts press, the trailing one first.
+    floor : float or (...) float [1]
+        Coefficient of friction at the floor, negative where the part slides back.
+    wall : float or (...) float [1]
+        The same at the wall.
+    course : (..., 2) float [1]
+        Direction of positive sliding on the floor.
+
+    Returns
+    -------
+    TrackSolution
+        Per unit of mass [m/s2]; not finite where the equations are singular.
+
+    References
+    ----------
+    The thesis, eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62]; docs/mechanics.md, "The track".
     """
     slide = _Slide(seat, axes, load, floor, course)
     acting, walls, across, turning = slide.motion(closed, np.asarray(wall, dtype=float))
@@ -261,11 +347,28 @@ def solve_rest(
 ) -> TrackSolution:
     """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
 
-    Arguments as for ``solve_sliding``; ``wall_share`` (...) [1] is the wall's coefficient over the floor's.
-    ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall does not hold
-    across the track, or against turning, is held by the floor. Forces at rest are not determined by the
-    equations; this choice goes over into sliding without a jump.
-    Source: the equations of ``solve_sliding`` with a choice of friction; docs/mechanics.md, "The track".
+    Forces at rest are not determined by the equations: there are seven unknowns and six of them. This choice
+    goes over into sliding without a jump. A part that the wall does not hold across the track, or against
+    turning, is held by the floor.
+
+    Parameters
+    ----------
+    seat : Seat or SeatStack
+    axes : TrackAxes
+    load : (..., 3) float [N]
+    closed : (bool, bool)
+        Which wall contacts press, the trailing one first.
+    wall_share : float or (...) float [1]
+        Coefficient of the wall over that of the floor.
+
+    Returns
+    -------
+    TrackSolution
+        Per unit of mass; ``mobilised`` [1] is the coefficient that the floor needs along the track.
+
+    References
+    ----------
+    The equations of ``solve_sliding`` with a choice of friction; docs/mechanics.md, "The track".
     """
     (normals, courses), force = _pushes(seat, axes), load / seat.mass
 
@@ -273,14 +376,15 @@ def solve_rest(
         pushes = normals - (mobilised * wall_share)[..., None, None] * courses
         return _Acting(force, pushes, -mobilised[..., None] * ALONG_X)
 
-    def slip(mobilised: Floats) -> tuple[Any, ...]:
-        """What is left over along X, times the divisor of the reactions, and that."""
+    def slip(mobilised: Floats) -> tuple[Floats, Floats]:
+        """Return the force left over along X times the divisor of the reactions, and that divisor."""
         acting = acting_at(mobilised)
         shares, divisor = acting.shares(closed, np.zeros(2))
         return acting.pull[..., 0] * divisor + dot(acting.planar[..., 0], shares), divisor
 
-    # friction over normal force that leaves no slip along the track; where friction at the wall grows without
-    # bound before the slip is held, what the floor alone would need
+    # Find the friction over normal force that leaves no force along the track. Multiplied by the divisor the
+    # function has no pole, so the secant rule is safe. Where friction at the wall grows without bound before
+    # the slip is held, the divisor changes sign: then the floor alone counts, which is the first guess.
     unslid = np.zeros(force.shape[:-1])
     unheld, divisor = slip(unslid)
     guess = ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
@@ -315,8 +419,8 @@ def _zero(
     slip_before: Floats,
     after: Floats,
     stepped: Callable[[Floats, Floats], Floats],
-) -> Any:
-    """Where a function is zero, by the secant rule from two guesses; ``stepped`` keeps a step in bounds."""
+) -> Floats:
+    """Return a zero of a function: the secant rule from two guesses; ``stepped`` keeps a step in bounds."""
     for _ in range(14):  # they are nearly straight
         if np.array_equal(before, after, equal_nan=True):  # it would stay there
             break
@@ -337,20 +441,40 @@ def wall_use(
     course: Floats,
     turns: Bools,
 ) -> Floats:
-    """Return friction over normal force (...) [1] at the one closed wall contact of what begins to turn.
+    """Return friction over normal force at the one closed wall contact of a part that begins to turn.
 
-    ``ahead`` (...) [1], the coefficient at the wall, negative where the part slides back, where the contact
-    slides with the part; its opposite where turning drives it the other way; between them what keeps it in
-    place: the part then rolls along the wall. ``turns`` (...) bool is where the part starts from rest;
-    elsewhere it goes on sliding and ``ahead`` is kept. Other arguments as for ``solve_sliding``.
-    Source: the equations of ``solve_sliding`` with one wall contact.
+    A part that turns moves that contact itself. The contact slides with the part, or turning drives it the
+    other way, or friction between the two limits keeps it in place: the part then rolls along the wall.
+
+    Parameters
+    ----------
+    seat : Seat or SeatStack
+    axes : TrackAxes
+    load : (..., 3) float [N]
+    closed : (bool, bool)
+        One of them.
+    floor : float or (...) float [1]
+    ahead : (...) float [1]
+        Coefficient at the wall where the contact slides with the part, negative where the part slides back.
+    course : (..., 2) float [1]
+    turns : (...) bool
+        Where the part starts from rest; elsewhere it goes on sliding and ``ahead`` is kept.
+
+    Returns
+    -------
+    (...) float [1]
+        Between ``ahead`` and its opposite.
+
+    References
+    ----------
+    The equations of ``solve_sliding`` with one wall contact.
     """
     slide, k = _Slide(seat, axes, load, floor, course), closed.index(True)
     along = axes.courses[..., k, :2]
     lever, limit = cross(seat.walls[..., k, :2] / _widen(seat.height, 1), along), np.abs(ahead)
 
-    def slip(use: Floats) -> Any:
-        """Acceleration of the contact along the wall."""
+    def slip(use: Floats) -> Floats:
+        """Return the acceleration of the contact along the wall."""
         acting, walls, across, turning = slide.motion(closed, use)
         return acting.left_over(walls, 0) * along[..., 0] + across * along[..., 1] + turning * lever
 
@@ -359,7 +483,7 @@ def wall_use(
 
 
 class _Slide:
-    """A part that slides on the floor; (..., 2) ``drag`` is the floor's friction for a normal force of 1."""
+    """A part that slides on the floor; ``drag`` (..., 2) is the floor's friction for a normal force of 1."""
 
     def __init__(self, seat: AnySeat, axes: TrackAxes, load: Floats, floor: Reals, course: Floats) -> None:
         self.pushes, self.rates, self.force = _pushes(seat, axes), _gap_rates(seat, axes), load / seat.mass
@@ -368,18 +492,19 @@ class _Slide:
         self.resists = dot(self.drag, self.inertia[..., :2]) + self.inertia[..., 2]
         self.give = self.rates[..., 1] / (self.rates[..., 0] * self.resists[..., None])
 
-    def motion(self, closed: Closed, use: Floats) -> Any:
+    def motion(self, closed: Closed, use: Floats) -> tuple["_Acting", Floats, Floats, Floats]:
         """Return what acts, the wall's reactions and the accelerations across the track and in turning."""
         normals, courses = self.pushes
         acting = _Acting(self.force, normals - use[..., None, None] * courses, self.drag)
         walls = acting.reactions(closed, self.give)
         if all(closed):
-            return acting, walls, *np.zeros((2, *walls.shape[:-1]))
+            nothing = np.zeros(walls.shape[:-1])
+            return acting, walls, nothing, nothing
         return acting, walls, acting.left_over(walls, 1), dot(acting.yaws, walls) / self.resists
 
 
 def _pushes(seat: AnySeat, axes: TrackAxes) -> tuple[Floats, ...]:
-    """Wrenches (..., 2, 6) of a force of 1 at the wall's contacts, along their normals and their courses."""
+    """Return wrenches (..., 2, 6) of forces of 1 at the wall's contacts, along normals and courses."""
     arms = seat.walls / _widen(seat.height, 2)
     normals, courses = (
         np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
@@ -388,7 +513,12 @@ def _pushes(seat: AnySeat, axes: TrackAxes) -> tuple[Floats, ...]:
 
 
 class _Acting:
-    """A load (..., 3), wrenches of the wall's contacts (..., 2, 6) and the floor's drag, N eliminated."""
+    """A load (..., 3), wrenches of the wall's contacts (..., 2, 6) and the floor's drag, N eliminated.
+
+    Friction of the floor is N times the drag, and N follows from the forces along Z. Put into the forces
+    along X and Y and the moment about Z, this leaves ``pull`` (load), ``planar`` and ``yaws`` (wall
+    contacts).
+    """
 
     def __init__(self, force: Floats, pushes: Floats, drag: Floats) -> None:
         self.force, self.pushes = force, pushes
@@ -405,7 +535,7 @@ class _Acting:
         shares, divisor = self.shares(closed, give)
         return ratio(shares, divisor[..., None])
 
-    def shares(self, closed: Closed, give: Floats) -> tuple[Any, ...]:
+    def shares(self, closed: Closed, give: Floats) -> tuple[Floats, Floats]:
         """Return R1 and R2 times the divisor that they have in common, (..., 2), and that, (...)."""
         across, pull = self.planar[..., 1], -self.pull[..., 1]
         shares = np.zeros(np.broadcast_shapes(across.shape, (*pull.shape, 1)))
@@ -418,11 +548,11 @@ class _Acting:
             return shares, (across + give * self.yaws)[..., k]
         return shares, np.ones(shares.shape[:-1])
 
-    def left_over(self, walls: Floats, axis: int) -> Any:
-        """Sum of the forces along X or Y, (...)."""
+    def left_over(self, walls: Floats, axis: int) -> Floats:
+        """Return the sum of the forces along X or Y, (...)."""
         return self.pull[..., axis] + dot(self.planar[..., axis], walls)
 
-    def normal(self, walls: Floats) -> Any:
+    def normal(self, walls: Floats) -> Floats:
         """Return the floor's normal force N, (...)."""
         return -(self.force[..., 2] + dot(self.pushes[..., 2], walls))
 
@@ -456,13 +586,13 @@ class _Acting:
 
 
 def _gap_rates(seat: AnySeat, axes: TrackAxes) -> Floats:
-    """How fast each wall contact opens for an acceleration along Y and a turning, (..., 2, 2)."""
+    """Return how fast each wall contact opens for an acceleration along Y and a turning, (..., 2, 2)."""
     lever = cross(seat.walls[..., :2] / _widen(seat.height, 2), axes.normals[..., :2])
     return np.stack([axes.normals[..., 1], lever], axis=-1)
 
 
 def _widen(values: Reals, axes: int) -> Floats:
-    """Values with so many more axes, of length one, at the end."""
+    """Return values with so many more axes, of length one, at the end."""
     return np.asarray(values)[(..., *[None] * axes)]
 
 
@@ -502,16 +632,35 @@ def motion(
     *,
     held: bool = False,
 ) -> TrackMotion:
-    """Return what a part on the track does at one phase of the vibration.
+    """Return how a part moves on the track at one phase of the vibration.
 
-    ``seat`` Seat or SeatStack; ``bowl`` Bowl: fields may be arrays, except the track's radius and the sign of
-    its bank, which belong to the seat; of a stack they are single values, and the other arguments single
-    values or (P,); ``phase`` (...) [rad]: w t; a quarter turn is the upper reversal; ``moving`` (...) [1]:
-    sense of sliding along the track, +1 or -1; 0 for a part at rest; ``speed`` (...) [m/s]: of that sliding,
-    for the centrifugal force; ``held``: keep a part at rest even where the least friction that holds it is
-    more than there is. No reaction is negative: where a wall contact would have to pull, it is opened and the
-    equations are solved without it, the part then turning or leaving the wall.
-    Source: ``solve_sliding`` and ``solve_rest``; docs/mechanics.md, "The track".
+    The balance at rest is tried first. If the friction it needs is more than static friction, the part
+    slides, and the equations of sliding hold. No reaction is negative: where a wall contact would have to
+    pull, it is opened and the equations are solved without it. The part then turns or leaves the wall.
+
+    Parameters
+    ----------
+    seat : Seat or SeatStack
+    bowl : Bowl
+        Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat.
+        For a stack they are single values, and the other arguments single values or (P,).
+    phase : float or (...) float [rad]
+        w t; a quarter turn is the upper reversal.
+    moving : float or (...) float [1]
+        Sense of sliding along the track, +1 or -1; 0 for a part at rest.
+    speed : float or (...) float [m/s]
+        Of that sliding, for the centrifugal force.
+    held : bool
+        Keep a part at rest even where the least friction that holds it is more than there is.
+
+    Returns
+    -------
+    TrackMotion
+        Arrays (...), of a stack (M, P) [N, m/s2, rad/s2, m].
+
+    References
+    ----------
+    ``solve_sliding`` and ``solve_rest``; docs/mechanics.md, "The track".
     """
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase, speed)
@@ -568,10 +717,28 @@ def motion(
 def over_cycle(
     seat: Seat, bowl: Bowl, samples: int = cycle.PERIOD_SAMPLES
 ) -> tuple[TrackMotion, cycle.Cycle]:
-    """Return ``motion`` over one settled period of ``samples``, and its Cycle; single values.
+    """Return ``motion`` over one settled period of the vibration; single values of the bowl.
 
-    Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
+    Flights are not followed: past the hop the state says ``hop``, and the velocity is that of a part that
     keeps to the track.
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+    samples : int
+        Samples in the period.
+
+    Returns
+    -------
+    TrackMotion
+        Of ``samples`` phases.
+    Cycle
+        Velocity [m/s] along the track.
+
+    References
+    ----------
+    ``cycle.settle``; docs/mechanics.md, "The track".
     """
     slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL_TOLERANCE * bowl.gravity)
     course = cycle.settle(slips, _loose_windows(seat, bowl), 1.0 / bowl.drive.frequency, samples)
@@ -580,13 +747,13 @@ def over_cycle(
 
 
 def _coefficients(bowl: Bowl) -> tuple[Array, ...]:
-    """Static, kinetic and wall friction, of one shape."""
+    """Return static, kinetic and wall friction, of one shape."""
     friction = bowl.friction
     return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
 
 
 def _choose_rest(seat: AnySeat, bowl: Bowl, axes: TrackAxes, load: Floats) -> tuple[dict[str, Array], Floats]:
-    """The part at rest as ``solve_rest`` has it, and friction over normal force that holds it, (..., 3)."""
+    """Return the part at rest as in ``solve_rest``, and the friction over normal force (..., 3) it needs."""
     static, _, wall = _coefficients(bowl)
     wall_share = ratio(wall, static, 0.0)
 
@@ -602,7 +769,7 @@ def _choose_rest(seat: AnySeat, bowl: Bowl, axes: TrackAxes, load: Floats) -> tu
 
 
 def _choose_contacts(solve: Callable[[Closed], dict[str, Array]], gravity: float) -> dict[str, Array]:
-    """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
+    """Return at each instant the solution with most closed contacts of which none pulls and no gap closes."""
     least = -PULL_TOLERANCE * np.max(gravity)
     chosen: dict[str, Array] = {}
     for closed in SETS:
@@ -619,8 +786,8 @@ def _choose_contacts(solve: Callable[[Closed], dict[str, Array]], gravity: float
     return chosen
 
 
-def _select(condition: Bools, first: Array, second: Array) -> Any:
-    """np.where with the condition widened over trailing axes."""
+def _select(condition: Bools, first: Array, second: Array) -> Array:
+    """Return ``np.where`` with the condition widened over trailing axes."""
     wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
     return np.where(wide, first, second)
 
@@ -628,9 +795,25 @@ def _select(condition: Bools, first: Array, second: Array) -> Any:
 def sliding_acceleration(seat: Seat, bowl: Bowl, axes: TrackAxes, least: float) -> cycle.Acceleration:
     """Return the acceleration of a sliding part as a function of phase, speed and sense; single values.
 
-    From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; without
-    contact what the load gives it. A reaction over mass more negative than ``least`` [m/s2] would be a pull.
-    Source: ``solve_sliding``, which is linear in the load.
+    The equations are linear in the load. So they are solved once for a unit of load along X, Y and Z, for
+    either sense and each set of closed contacts; a call then multiplies and adds a dozen numbers.
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+    axes : TrackAxes
+    least : float [m/s2]
+        A reaction over mass more negative than this would be a pull.
+
+    Returns
+    -------
+    function of phase [rad], speed [m/s] and sense of sliding
+        Acceleration along the track [m/s2]; without contact that of the load.
+
+    References
+    ----------
+    ``solve_sliding``, which is linear in the load.
     """
     # by sense, for each set of closed contacts, the acceleration, the normal force and two margins, for a
     # unit of load per mass along X, Y and Z
@@ -666,7 +849,7 @@ def sliding_acceleration(seat: Seat, bowl: Bowl, axes: TrackAxes, least: float) 
 
 
 def _loose_windows(seat: Seat, bowl: Bowl) -> list[cycle.Window]:
-    """The phases at which a part at rest breaks loose, as ``cycle.settle`` takes them.
+    """Return the phases at which a part at rest breaks loose, as ``cycle.settle`` takes them.
 
     They are looked for at a multiple of four samples, so that both reversals are among them.
     """
@@ -681,14 +864,14 @@ def _loose_windows(seat: Seat, bowl: Bowl) -> list[cycle.Window]:
     sign = np.where((before != 0.0) & (sense[change] == 0.0), -1.0, 1.0)
 
     def margin(at: Floats) -> Floats:
-        """Of the friction needed over what there is; positive where none holds the part."""
+        """Return the friction needed less static friction; positive where the part breaks loose."""
         axes = frame(bowl, seat.walls)
         rest, needed = _choose_rest(seat, bowl, axes, loads(seat, bowl, axes, at))
         beyond = np.where(rest["normal"] > 0.0, needed[..., 0], np.nan) - static
         return sign * np.nan_to_num(beyond, nan=UNBOUNDED_FRICTION, posinf=UNBOUNDED_FRICTION)
 
-    # the phases at which it passes zero; brackets whose ends are both loose, one way and the other, close in
-    # on their lower end
+    # Find the phases at which the margin passes zero: two steps of false position, then one of halving.
+    # Brackets whose ends are both loose, one way and the other, close in on their lower end.
     low, high = phase[change] - step, phase[change].copy()
     left, right = margin(low), margin(high)
     for count in range(60):

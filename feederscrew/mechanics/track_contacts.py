@@ -56,12 +56,29 @@ def contact_wrenches(
 ) -> Wrench:
     """Return unit wrenches of six contacts about the centre of mass: three floor points, two walls, traction.
 
-    ``points`` (3, 2) [m] are those of the floor, in track axes from the foot of the centre of mass. ``floor``
-    and ``wall`` (2,) [1] are friction at work over normal force, against motion along X: it turns each wrench
-    off the normal. ``traction`` (3,) [m] is a point of the last wrench's line, along X. Of a part at rest
-    that is floor friction; of a sliding one the inertia of its motion along the track, through the centre of
-    mass.
-    Source: screws of unit forces; docs/method/screws.md, "Contacts: reciprocal screws".
+    Parameters
+    ----------
+    seat : Seat
+    axes : TrackAxes
+    points : (3, 2) float [m]
+        Points of the floor, in track axes, from the foot of the centre of mass.
+    floor : float [1]
+        Friction at work over normal force at the floor, against motion along X; it turns the wrench off the
+        normal.
+    wall : (2,) array_like of float [1]
+        The same at the two wall contacts.
+    traction : (3,) array_like of float [m]
+        Point of the last wrench's line, which runs along X. For a part at rest that is floor friction; for a
+        sliding one it is the inertia of its motion along the track, through the centre of mass.
+
+    Returns
+    -------
+    Wrench
+        (6,) [1, m].
+
+    References
+    ----------
+    Screws of unit forces; docs/method/screws.md, "Contacts: reciprocal screws".
     """
     feet = np.column_stack([points, np.full(3, -seat.height)])
     places = np.concatenate([feet, seat.walls, [traction]])
@@ -74,9 +91,23 @@ def first_to_open(seat: Seat, bowl: Bowl) -> Opening:
     """Return the contact that a growing drive opens first, at either reversal; single values.
 
     A part that slides goes on sliding, one that sticks goes on sticking. Each reaction grows linearly with
-    the drive, lambda_i = -(load o t_i) / (w_i o t_i), t_i the twist reciprocal to the five other wrenches.
-    The axis is that of the twist reciprocal to the normals of the other four contacts and to the traction:
-    the part tips or turns about it without sliding.
+    the drive, lambda_i = -(load o t_i) / (w_i o t_i), where t_i is the twist reciprocal to the five other
+    wrenches. The axis is that of the twist reciprocal to the normals of the other four contacts and to the
+    traction: the part tips or turns about it without sliding.
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+
+    Returns
+    -------
+    Opening
+        'none' with an infinite ``drive_factor`` [1] where no drive opens a contact.
+
+    References
+    ----------
+    Reciprocal screws; docs/method/screws.md, "Contacts: reciprocal screws".
     """
     openings = [x for name, phase in REVERSALS.items() for x in _openings(seat, bowl, name, phase)]
     nowhere = np.full(3, np.nan)
@@ -85,7 +116,7 @@ def first_to_open(seat: Seat, bowl: Bowl) -> Opening:
 
 
 def _openings(seat: Seat, bowl: Bowl, reversal: str, phase: float) -> list[Opening]:
-    """Every contact that would open at one reversal."""
+    """Return every contact that would open at one reversal."""
     now, axes = track_balance.motion(seat, bowl, phase), frame(bowl, seat.walls)
     driven = loads(seat, bowl, axes, phase)
     resting = loads(seat, bowl, axes, phase, without_drive=True)
@@ -130,15 +161,32 @@ def _openings(seat: Seat, bowl: Bowl, reversal: str, phase: float) -> list[Openi
 def has_equilibrium(seat: Seat, bowl: Bowl, phase: float = 0.5 * np.pi) -> bool:
     """Return whether forces within the friction cones balance the load on a part at rest; single values.
 
-    The floor presses at the corners of the contact polygon, the wall at its two contacts; False also for a
-    part card without that polygon, of which it is not known. ``phase`` is w t [rad].
-    Source: Coulomb's cones as a linear programme; docs/mechanics.md, "The track".
+    The floor presses at the corners of the contact polygon, the wall at its two contacts. Each cone is
+    replaced by a pyramid inside it, so that the forces are sums of rays with factors that are not negative: a
+    linear programme without an aim.
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+    phase : float [rad]
+        w t.
+
+    Returns
+    -------
+    bool
+        False also for a part card without a contact polygon, of which it is not known.
+
+    References
+    ----------
+    Coulomb's cones as a linear programme; docs/mechanics.md, "The track".
     """
     if len(seat.contact) == 0:
         return False
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase) / (seat.mass * bowl.gravity)
-    # edges of the friction pyramids as wrenches about the centre of mass, its height the unit
+    # edges of the friction pyramids as wrenches about the centre of mass; its height is the unit of length,
+    # so that forces and moments have like sizes
     angle = 2.0 * np.pi * np.arange(CONE_SIDES) / CONE_SIDES
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     static, wall = (mu * (1.0 - CONE_MARGIN) for mu in (bowl.friction.static, bowl.friction.wall))

@@ -56,17 +56,17 @@ class Solution:
 
     @property
     def number(self) -> float:
-        """The value in the key's unit, as it is given back."""
+        """Return the value in the key's unit, as it is given back."""
         return float(f"{self.value / units.factor(self.key.unit, self.key.dimension):.12g}")
 
     @property
     def rate(self) -> float:
-        """Well-oriented parts [1/s] at that speed."""
+        """Return the well-oriented parts [1/s] at that speed."""
         return self.speed * self.parts_per_metre
 
     @property
     def order(self) -> tuple[int, bool, float]:
-        """Sorts the gentle ones first: regime, one velocity before several, softest impact."""
+        """Return a sort key, the gentle ones first: regime, one velocity before several, softest impact."""
         here = self.answer
         several = here.high - here.low > answer.COEXISTING_VELOCITY_GAP * here.speed
         return REGIMES_BY_GENTLENESS.index(here.regime), several, here.hardest_impact
@@ -90,11 +90,13 @@ def solutions(
     worst: bool = False,
     progress: Callable[[int, int], object] | None = None,
 ) -> FoundSettings:
-    """Find settings of amplitude, angle or frequency alone that give a rate, with what each lets arrive.
+    """Return settings of amplitude, angle or frequency alone that give a rate, with what each lets arrive.
 
-    Each solution gives the rate to ``ACCEPTED_RATE_ERROR``; where none does, because the velocity jumps over
-    the wanted one, each gives more. One-way and gentle regimes come first. Values are round numbers in their
-    unit. Source: docs/conveying.md, "Commands".
+    A rate is velocity times well-oriented parts on a length of track. Both depend on the drive, so each
+    setting is sought in steps: the velocity that the last density asks for, then the density at that
+    velocity. Each solution gives the rate to ``ACCEPTED_RATE_ERROR``; where none does, because the velocity
+    jumps over the wanted one, each gives more. One-way and gentle regimes come first. Values are round
+    numbers in their unit.
 
     Parameters
     ----------
@@ -104,15 +106,16 @@ def solutions(
         as ``well_oriented.velocity``.
     density : callable
         Of a bowl: the well-oriented parts on a length of its track [1/m], with what arrives at its drive and
-        without what that turns over; of None: at the bowl's own drive as if it turned over none.
+        without what that turns over. For None: at the bowl's own drive as if it turned over none.
     rough : callable, optional
         The same with what arrives at the bowl's own drive, sooner: it leads to a setting that ``density``
         then decides on.
     sampled : bool
-        Whether ``density`` is of parts that are simulated: a setting is no better known than to DECIDED, and
-        at most ``MAX_SIMULATED`` are tried, those of each key in turn; at most ``MAX_SIMULATED_IN_VAIN``
+        The parts of ``density`` are simulated. A setting is then known no better than to ``DECIDED``. At most
+        ``MAX_SIMULATED`` settings are tried, those of each key in turn; at most ``MAX_SIMULATED_IN_VAIN``
         where none of them gives the rate.
     worst : bool
+        Take the slowest velocity of every start and surface, not the one from rest.
     progress : callable, optional
         Called with how many settings are found, and of how many, at first with none.
 
@@ -124,6 +127,10 @@ def solutions(
     ------
     FeederError
         If no setting gives the rate; the line says what the bowl reaches at most.
+
+    References
+    ----------
+    docs/conveying.md, "Commands".
     """
     curves = [_Curve.of(bowl, BY_NAME[name], worst) for name in KNOBS]
     if not any(np.isfinite(curve.speeds).any() for curve in curves):
@@ -193,7 +200,20 @@ def solutions(
 
 
 def turned(bowl: Bowl, key: Key, value: Any) -> Bowl:
-    """Return the bowl with one key of its drive at another value [SI], or at an array of them."""
+    """Return the bowl with one key of its drive at another value, or at an array of values.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    key : Key
+        Of the section ``drive``.
+    value : float or (V,) float [SI]
+
+    Returns
+    -------
+    Bowl
+        Its field of that key is an array where ``value`` is one.
+    """
     return replace(bowl, drive=replace(bowl.drive, **{key.word: value}))
 
 
@@ -209,7 +229,11 @@ class _Curve:
 
     @classmethod
     def of(cls, bowl: Bowl, key: Key, worst: bool) -> "_Curve":
-        """Return the curve of a knob within its limits and below the highest throw number."""
+        """Return the curve of a knob within its limits and below the highest throw number.
+
+        The throw number grows with amplitude, with the square of the frequency, and with the sine of the
+        vibration angle: ``share`` is how far it may grow from here.
+        """
         low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
         drive = bowl.drive
         upright = answer.throw_number(turned(bowl, BY_NAME["drive.vibration_angle"], np.pi / 2))
@@ -224,14 +248,14 @@ class _Curve:
         return cls(bowl, key, worst, values, _speeds(bowl, key, values, worst))
 
     def starts(self, velocity: float) -> Floats:
-        """Values from which a setting is sought: where a velocity is passed, else the fastest there is."""
+        """Return the values to seek a setting from: where a velocity is passed, else where it is greatest."""
         there = self.crossings(velocity)
         if there.size or not np.isfinite(self.speeds).any() or np.nanmax(self.speeds) <= 0.0:
             return there
         return self.values[[np.nanargmax(self.speeds)]]
 
     def crossings(self, velocity: float) -> Floats:
-        """Where a velocity is passed, (N,): the faster side of it, beyond a jump where it jumps over it."""
+        """Return where a velocity is passed (N,): the faster side of it; where it jumps, beyond the jump."""
         above, finite = self.speeds >= velocity, np.isfinite(self.speeds)
         k = np.flatnonzero((above[1:] != above[:-1]) & finite[1:] & finite[:-1])
         low, high, rises = self.values[k], self.values[k + 1], above[k + 1]
@@ -242,22 +266,22 @@ class _Curve:
         return np.where(rises, high, low)
 
     def nearest_crossing(self, value: float, velocity: float) -> float | None:
-        """The crossing of a velocity that is nearest to a value; None where it is never passed."""
+        """Return the crossing of a velocity that is nearest to a value; None where it is never passed."""
         there = self.crossings(velocity)
         return float(there[np.argmin(np.abs(there - value))]) if there.size else None
 
     def readable(self, value: float) -> float:
-        """The value as it is printed in the key's unit, so that it is the same when it is given back."""
+        """Return the value as printed in the key's unit, so that it is the same when it is given back."""
         number = value / units.factor(self.key.unit, self.key.dimension)
         return units.quantity(f"{number:.{SETTING_DIGITS}g} {self.key.unit}", self.key.dimension)
 
     def speed(self, value: float) -> float:
-        """The velocity [m/s] at a value."""
+        """Return the velocity [m/s] at a value."""
         return float(_speeds(self.bowl, self.key, np.array([value]), self.worst)[0])
 
 
 def _keys_in_turn(starts: list[tuple[_Curve, float]]) -> list[tuple[_Curve, float]]:
-    """Starts in another order: the first of each key, then the second of each."""
+    """Return the starts in another order: the first of each key, then the second of each."""
     earlier = [[other.key for other, _ in starts[:k]].count(curve.key) for k, (curve, _) in enumerate(starts)]
     return [starts[k] for k in sorted(range(len(starts)), key=earlier.__getitem__)]
 
@@ -265,10 +289,10 @@ def _keys_in_turn(starts: list[tuple[_Curve, float]]) -> list[tuple[_Curve, floa
 def _steps(
     curve: _Curve, value: float, target: float, density: Density, close: float, most: int
 ) -> list[Solution]:
-    """Settings on the way from a start to one that gives the target with what arrives there.
+    """Return the settings on the way from a start to one that gives the target with what arrives there.
 
-    Each step takes the parts that arrived at the step before it, since another drive brings others; they are
-    sampled, so after some steps the mean of the last ones leads on.
+    Each step takes the parts that arrived at the step before it, since another drive brings others. They are
+    sampled, so after ``REMEMBERED`` steps the mean of the last ones leads on.
     """
     steps: list[Solution] = []
     last = None
@@ -289,14 +313,14 @@ def _steps(
 
 
 def _nearest_step(steps: list[Solution], target: float) -> Solution:
-    """The setting that gives the target, or comes nearest to it; one that gives more before one below it."""
+    """Return the setting that gives the target, else the nearest that gives more, else the nearest."""
     away = [(abs(step.rate - target), step) for step in steps]
     enough = [pair for pair in away if pair[0] <= ACCEPTED_RATE_ERROR * target or pair[1].rate > target]
     return min(enough or away, key=lambda pair: pair[0])[1]
 
 
 def _separate_solutions(solutions: list[Solution], target: float) -> list[Solution]:
-    """Those of each key that are no other's neighbour, the nearest to the target of such neighbours."""
+    """Return the solutions without neighbours of the same key: of those, the nearest to the target."""
     separate: list[Solution] = []
     for solution in sorted(solutions, key=lambda solution: abs(solution.rate - target)):
         values = [other.value for other in separate if other.key == solution.key]
@@ -306,7 +330,7 @@ def _separate_solutions(solutions: list[Solution], target: float) -> list[Soluti
 
 
 def _speeds(bowl: Bowl, key: Key, values: Floats, worst: bool) -> Floats:
-    """Velocity at each value [m/s]: from rest, or the slowest of every start and surface."""
+    """Return the velocity at each value [m/s]: from rest, or the slowest of every start and surface."""
     there = turned(bowl, key, values)
     here = answer.cells(there)
     if not worst:

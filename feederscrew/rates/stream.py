@@ -39,7 +39,21 @@ def on_stretch(bowl: Bowl, orientation: Orientation) -> Bowl:
     """Return a bowl in which parts travel as on the stretch of track on which an orientation lies.
 
     In a groove each face carries 1 / (2 cos(angle)) of the weight, so friction acts as mu / cos(angle): the
-    balance of forces of a part on both faces. Source: docs/tooling.md, "A groove".
+    balance of forces of a part on both faces. The groove holds the part, so the bank counts as 0 there.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    orientation : Orientation
+        Its track has climb, bank [rad]; its groove the angle of each face [rad], 0 without a groove.
+
+    Returns
+    -------
+    Bowl
+
+    References
+    ----------
+    docs/tooling.md, "A groove".
     """
     track = replace(bowl.track, climb=orientation.track.climb, bank=orientation.track.bank)
     if not orientation.groove:
@@ -53,18 +67,48 @@ def on_stretch(bowl: Bowl, orientation: Orientation) -> Bowl:
 def queueing(bowl: Bowl, orientations: Sequence[Orientation]) -> Bowl:
     """Return the bowl as parts queue in it, before the first device that does more than lean the track.
 
-    Source: own; docs/tooling.md, "A groove". Orientations are as they lie at its entry: a bank or a groove
-    that is listed first begins there. A steeper stretch does not: it is where a queue comes apart.
+    A bank or a groove that is listed first begins at the track's entry. A steeper stretch does not: there a
+    queue comes apart.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    orientations : (M,) sequence of Orientation
+        As they lie at the entry.
+
+    Returns
+    -------
+    Bowl
+
+    References
+    ----------
+    Own; docs/tooling.md, "A groove".
     """
     orientation = orientations[0]
     return on_stretch(bowl, replace(orientation, track=replace(orientation.track, climb=bowl.track.climb)))
 
 
 def needed_spacing(chain: Sequence[Device], orientations: Sequence[Orientation], bowl: Bowl) -> float:
-    """Return the free way [m] between parts at the track's entry that the devices need, or 0.
+    """Return the free way between parts at the track's entry that the devices need.
 
-    Behind a stretch on which parts travel r times as fast, their pitch is r times as large.
-    Source: own; docs/tooling.md, "1. The method".
+    Behind a stretch on which parts travel r times as fast, their pitch is r times as large. So a device that
+    needs the free way d behind it asks for (d + l) / r - l at the entry, l the shortest part.
+
+    Parameters
+    ----------
+    chain : (D,) sequence of Device
+    orientations : (M,) sequence of Orientation
+        As they lie at the entry.
+    bowl : Bowl
+
+    Returns
+    -------
+    float [m]
+        0 where no device needs one; infinite where parts stand on the stretch of a device that does.
+
+    References
+    ----------
+    Own; docs/tooling.md, "1. The method".
     """
     here, gap = orientations[0], 0.0
     first = travel_speed(queueing(bowl, orientations))
@@ -102,70 +146,73 @@ class Orientations:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the stations: 'track', 'wiper_1', 'gap_2'."""
+        """Return the names of the stations: 'track', 'wiper_1', 'gap_2'."""
         return tuple(f"{name}_{place}" if place else name for place, name in enumerate(self.stations))
 
     @property
     def aspects(self) -> tuple[str, ...]:
-        """(M,) names of the aspects."""
+        """Return the names of the aspects (M,)."""
         return tuple(orientation.aspect for orientation in self.lying)
 
     @property
     def headings(self) -> Floats:
-        """(M,) [rad]."""
+        """Return the headings (M,) [rad]."""
         return np.array([orientation.heading for orientation in self.lying])
 
     @property
     def heading_shares(self) -> Floats:
-        """(M,) of the parts on that aspect; headings equal under a turn of the part are one."""
+        """Return the share of the parts on that aspect (M,); headings alike under a turn count as one."""
         return np.array([orientation.heading_share for orientation in self.lying])
 
     @property
     def lengths(self) -> Floats:
-        """(M,) [m] along the track."""
+        """Return the lengths along the track (M,) [m]."""
         return np.array([orientation.length for orientation in self.lying])
 
     @property
     def widths(self) -> Floats:
-        """(M,) [m] across it."""
+        """Return the widths across the track (M,) [m]."""
         return np.array([orientation.width for orientation in self.lying])
 
     @property
     def rolls_back(self) -> Bools:
-        """(M,) bool, whether it lies on its round side, not along the track, and rolls down the climb."""
+        """Return whether each lies on its round side across the track and rolls down the climb (M,)."""
         return np.array([orientation.may_roll_back for orientation in self.lying], dtype=bool)
 
     @property
     def stays(self) -> Bools:
-        """(M,) share that the bare track carries: what falls off, turns over or rolls back does not queue."""
+        """Return the share that the bare track carries (M,).
+
+        What falls off, turns over or rolls back does not queue.
+        """
         return np.where(self.rolls_back, 0.0, self.passes[:, 0])
 
     @property
     def leaves(self) -> Floats:
-        """(M,) share that leaves the bowl, in any state."""
+        """Return the share that leaves the bowl (M,), in any state."""
         return np.where(self.rolls_back, 0.0, self.through)
 
     @property
     def may_leave(self) -> Floats:
-        """(M,) share that leaves the bowl, or is not sure to be returned."""
+        """Return the share that leaves the bowl, or is not sure to be returned (M,)."""
         return np.where(self.rolls_back, 0.0, self.through + self.doubtful)
 
     @property
     def carried(self) -> "Orientations":
-        """The same orientations, were those that roll back carried as what slides."""
+        """Return the same orientations with those that roll back carried like those that slide."""
         return replace(self, lying=tuple(replace(one, may_roll_back=False) for one in self.lying))
 
     @property
     def through(self) -> Floats:
-        """(M,) share that passes every station."""
+        """Return the share that passes every station (M,)."""
         return self.passes.prod(axis=1)
 
     @property
     def margin(self) -> Floats:
-        """(M,) [m] of the first device that returns it, or the least by which it passes all; NaN without any.
+        """Return the margin of the first device that returns it, or the least of all it passes (M,) [m].
 
-        One that momentum, friction or the wall may undo is none.
-        To the devices behind the first that returns it, it does not come as it lies.
+        NaN where there is no margin. A margin that momentum, friction or the wall may undo does not count.
+        To the devices behind the first that returns it, a part does not come as it lies.
         """
         margins = np.where(np.isnan(self.margins), np.inf, self.margins)
         returns = np.isfinite(margins) & (self.passes < 0.5)
@@ -175,10 +222,10 @@ class Orientations:
 
     @property
     def sure(self) -> Bools:
-        """(M,) bool, whether it comes along the bare track as it lies, and no momentum decides at a device.
+        """Return whether it comes along the track as it lies, and no momentum decides at a device (M,).
 
-        On the track it shall neither rock nor roll, nor a landing turn it: nothing holds what is round at
-        the wall without a bank, and no bank brings back to it what rolls along the track, since that does not
+        On the track it shall neither rock nor roll, nor a landing turn it. Without a bank nothing holds what
+        is round at the wall. No bank brings back to the wall what rolls along the track, since that does not
         slip.
         """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
@@ -203,9 +250,29 @@ def follow_orientations(
 ) -> Orientations:
     """Return every stable aspect and heading of a part from a mesh, and what becomes of it at each device.
 
-    ``sigma`` [m] is the standard deviation of play and tolerance together, of every device. What the drive
-    of ``bowl``, that of the track, turns over on it goes back, as what falls off does.
-    Source: docs/tooling.md, "1. The method".
+    What the drive of the bowl turns over on the track goes back, as what falls off does.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    aspects : Aspects
+        Of the part.
+    track : Track
+    chain : (D,) sequence of Device
+        Along the track, in the order parts meet them.
+    sigma : float [m]
+        Standard deviation of play and tolerance together, of every device.
+    bowl : Bowl, optional
+        Its drive moves the track; None where no drive is known.
+
+    Returns
+    -------
+    Orientations
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     return along(tooling.orientations(part, aspects, track), aspects, chain, sigma, bowl)
 
@@ -218,7 +285,32 @@ def along(
     bowl: Bowl | None = None,
     rows: Collection[int] | None = None,
 ) -> Orientations:
-    """Return what becomes of given orientations, or of some rows alone; the rest as for the whole part."""
+    """Return what becomes of given orientations at each device, or of some rows alone.
+
+    Parameters
+    ----------
+    orientations : (M,) sequence of Orientation
+        As they lie on the bare track.
+    aspects : Aspects
+        Of the part.
+    chain : (D,) sequence of Device
+        Along the track, in the order parts meet them.
+    sigma : float [m]
+        Standard deviation of play and tolerance together, of every device.
+    bowl : Bowl, optional
+        Its drive moves the track; None where no drive is known.
+    rows : collection of int, optional
+        Places of the orientations that are followed; None follows all.
+
+    Returns
+    -------
+    Orientations
+        All M rows; shares and rules are those of the whole part.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
+    """
     # what a device turns becomes another one, of which has to be known whether it stays
     alone = None if any(device.turns or device.grooved for device in chain) else rows
     orientations, tips = (tuple(orientations), None) if bowl is None else marked(orientations, bowl, alone)
@@ -251,7 +343,19 @@ def along(
 
 
 def with_shares(queue: Orientations, aspects: Aspects) -> Orientations:
-    """Return the same orientations, devices and drive where the aspects arrive in other shares."""
+    """Return the same orientations, devices and drive where the aspects arrive in other shares.
+
+    Parameters
+    ----------
+    queue : Orientations
+    aspects : Aspects
+        Of the same part, with the other shares.
+
+    Returns
+    -------
+    Orientations
+        A row's probability is that of its aspect times the share of its heading.
+    """
     rows = [aspects.names.index(orientation.aspect) for orientation in queue.lying]
     lying = tuple(
         replace(
@@ -264,13 +368,13 @@ def with_shares(queue: Orientations, aspects: Aspects) -> Orientations:
 
 
 def _rules(orientations: Sequence[Orientation], aspects: Aspects) -> dict[str, Floats]:
-    """Probability (M,) [1] of each orientation by every rule."""
+    """Return the probability (M,) [1] of each orientation by every rule."""
     chances = {rule: [orientation.chances[rule] for orientation in orientations] for rule in aspects.chances}
     return {rule: check.frozen(np.array(chance)) for rule, chance in chances.items()}
 
 
 def _interval(orientations: Sequence[Orientation], aspects: Aspects) -> Floats:
-    """Lowest and highest probability by the recommended rule (M, 2) [1]; NaN without it."""
+    """Return the lowest and highest probability by the recommended rule (M, 2) [1]; NaN without it."""
     ends = aspects.recommended
     if ends is None:
         return check.frozen(np.full((len(orientations), 2), np.nan))
@@ -280,11 +384,27 @@ def _interval(orientations: Sequence[Orientation], aspects: Aspects) -> Floats:
 
 
 def counted_stations(queue: Orientations, counts: DeviceCounts) -> Floats:
-    """Return the stations (D,) int [1] of a chain that were counted.
+    """Return the stations of a chain that were counted.
 
-    Devices of the counts are named as the stations are, 'gap_2', or by a kind that is there once. Raises
-    FeederError if one is not there, or is counted twice.
-    Source: docs/counts.md, "A feeding test, device by device".
+    Parameters
+    ----------
+    queue : Orientations
+    counts : DeviceCounts
+        Its devices are named as the stations are, 'gap_2', or by a kind that is there once.
+
+    Returns
+    -------
+    (D,) int [1]
+        Places in ``queue.stations``, in the order of the counts.
+
+    Raises
+    ------
+    FeederError
+        If a device is not there, or is counted twice.
+
+    References
+    ----------
+    docs/counts.md, "A feeding test, device by device".
     """
     stations = {name: place for place, name in enumerate(queue.names)}
     once = {kind: queue.stations.index(kind) for kind in queue.stations if queue.stations.count(kind) == 1}
@@ -304,8 +424,20 @@ def counted_stations(queue: Orientations, counts: DeviceCounts) -> Floats:
 def station_shares(queue: Orientations, names: Sequence[str]) -> Floats:
     """Return which share of each aspect's parts comes to each station, and which goes on from it.
 
-    ``names`` are those of the A aspects. Returns (2, stations, A) [1].
-    Source: own; docs/counts.md, "A feeding test, device by device".
+    Parameters
+    ----------
+    queue : Orientations
+    names : (A,) sequence of str
+        Of the aspects.
+
+    Returns
+    -------
+    (2, stations, A) float [1]
+        Shares that come, then shares that go on.
+
+    References
+    ----------
+    Own; docs/counts.md, "A feeding test, device by device".
     """
     on = np.cumprod(queue.passes, axis=1)
     came = np.column_stack([np.ones(len(on)), on[:, :-1]])
@@ -315,10 +447,23 @@ def station_shares(queue: Orientations, names: Sequence[str]) -> Floats:
 
 
 def passing_shares(flow: Floats, shares: Floats) -> Floats:
-    """Return the share that passes of the parts that come, (D,) [1]; NaN where none comes.
+    """Return the share that passes of the parts that come to each device.
 
-    ``flow`` (2, D, A) [1] is that of ``station_shares``, and ``shares`` (A,) [1] those of the aspects.
-    Source: own; docs/counts.md, "A feeding test, device by device".
+    Parameters
+    ----------
+    flow : (2, D, A) float [1]
+        Of ``station_shares``.
+    shares : (A,) float [1]
+        Of the aspects; NaN counts as 0.
+
+    Returns
+    -------
+    (D,) float [1]
+        NaN where no part comes.
+
+    References
+    ----------
+    Own; docs/counts.md, "A feeding test, device by device".
     """
     came, on = np.einsum("kda,a->kd", flow, np.nan_to_num(shares))
     return np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
@@ -327,12 +472,29 @@ def passing_shares(flow: Floats, shares: Floats) -> Floats:
 def passing_ends(flow: Floats, low: Floats, high: Floats) -> tuple[Floats, ...]:
     """Return the least and the greatest share that passes if every aspect's share lies within its ends.
 
-    ``flow`` (2, D, A) [1] is that of ``station_shares``; ``low`` and ``high`` (A,) [1] are the ends of the
-    shares of the aspects; that they sum to 1 is not used. Returns (D,), (D,) [1], NaN where no part can come.
-
     A ratio of two linear functions on a box is greatest where the aspects of which most passes have their
-    greatest share and the others their least; each place for the cut between them is tried.
-    Source: a linear programme over a simplex with bounds; docs/conveying.md, "Commands".
+    greatest share and the others their least; each place for the cut between them is tried. That the shares
+    sum to 1 is not used.
+
+    Parameters
+    ----------
+    flow : (2, D, A) float [1]
+        Of ``station_shares``.
+    low : (A,) float [1]
+        Least share of each aspect; NaN counts as 0.
+    high : (A,) float [1]
+        Greatest share.
+
+    Returns
+    -------
+    (D,) float [1]
+        Least share that passes; NaN where no part can come.
+    (D,) float [1]
+        Greatest share.
+
+    References
+    ----------
+    A linear programme over a simplex with bounds; docs/conveying.md, "Commands".
     """
     low, high = np.nan_to_num(low), np.nan_to_num(high)
     ends = np.full((2, flow.shape[1]), np.nan)
@@ -353,7 +515,17 @@ def passing_ends(flow: Floats, low: Floats, high: Floats) -> tuple[Floats, ...]:
 def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
     """Return the aspects with what arrives at the track's entry as their recommended answer.
 
-    ``seed`` is that of the launches. There is a warning where the shares are undecided.
+    Parameters
+    ----------
+    aspects : Aspects
+    arrival : Arrival
+    seed : int
+        Of the launches.
+
+    Returns
+    -------
+    Aspects
+        With a warning where the shares are undecided, or no part came to lie on the floor.
     """
     parts = arrival.shaken.parts
     if not np.isfinite(arrival.p).all():
@@ -367,7 +539,17 @@ def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
 
 
 def too_long(aspects: Aspects, bowl: Bowl) -> bool:
-    """Whether a part would take more steps on the floor of a bowl than one is followed for."""
+    """Return whether a part would take more steps on the floor of a bowl than one is followed for.
+
+    Parameters
+    ----------
+    aspects : Aspects
+    bowl : Bowl
+
+    Returns
+    -------
+    bool
+    """
     from feederscrew.dropping.arrival import MAX_ARRIVAL_STEPS, steps_needed
 
     return aspects.ground is not None and steps_needed(aspects.ground.hull, bowl) > MAX_ARRIVAL_STEPS
@@ -377,7 +559,21 @@ def counted(aspects: Aspects, measured: CountFile) -> Aspects:
     """Return the aspects with measured counts as their recommended answer.
 
     Without facets the part rolls off. The interval is Wilson's, of 95 %; shares without counts have none.
-    Raises FeederError if there are several columns.
+
+    Parameters
+    ----------
+    aspects : Aspects
+    measured : CountFile
+        Of one column.
+
+    Returns
+    -------
+    Aspects
+
+    Raises
+    ------
+    FeederError
+        If there are several columns.
     """
     column = _only(measured)
     p = column.fractions / column.fractions.sum()
@@ -399,8 +595,20 @@ def _only(measured: CountFile) -> AspectProfile:
 def oriented(queue: Orientations, measured: CountFile | None) -> Orientations:
     """Return the orientations with the shares that were counted for each of them.
 
-    They stay as they are where aspects were counted, or nothing. Raises FeederError if a part was counted in
-    an orientation that it cannot have on this track.
+    Parameters
+    ----------
+    queue : Orientations
+    measured : CountFile or None
+
+    Returns
+    -------
+    Orientations
+        As they were where aspects were counted, or nothing.
+
+    Raises
+    ------
+    FeederError
+        If a part was counted in an orientation that it cannot have on this track.
     """
     if measured is None or measured.by_orientation is None:
         return queue

@@ -48,8 +48,24 @@ class Rocker:
 def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocker:
     """Return a part on the track of a bowl as what rocks over its weakest side, while it lies and slides.
 
-    ``gyration`` gives for an angle from the track [rad] the square of its radius of gyration about that
-    direction [m2]. The bowl has single values.
+    The weakest side is the one about which the force of the track has the least moment N d over a period, d
+    the distance of that force inside it.
+
+    Parameters
+    ----------
+    place : Seat
+    gyration : callable
+        Of an angle from the track [rad]: the square of the radius of gyration about that direction [m2].
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    Rocker
+
+    References
+    ----------
+    Housner 1963, as in ``goes_over``.
     """
     force, offset = over_period(place, bowl)
     along = _side_directions(place.contact)
@@ -67,6 +83,7 @@ def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocke
 
 
 def _side_directions(contact: Floats) -> Floats:
+    """Return unit vectors (K, 2) [1] along the sides of what carries a part."""
     along = sides(contact)
     return along / np.hypot(*along.T)[:, None]
 
@@ -74,13 +91,29 @@ def _side_directions(contact: Floats) -> Floats:
 def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
     """Return whether rocking brings the centre of mass of a part over one of its sides.
 
-    ``period`` [s] is of the drive; ``start`` is the instant of the period from which it is followed.
+    A part tilted by a small angle over a side at distance r turns by
 
-    A part tilted by a small angle over a side at distance r turns by N (o - r + h angle) / (k^2 + r^2 + h^2),
+        angle'' = N (o - r + h angle) / (k^2 + r^2 + h^2),
+
     N the force of the track over its mass and o its offset with the part lying. When it comes down on the
-    opposite side at distance s it keeps (k^2 + h^2 - r s) / (k^2 + h^2 + s^2) of its rate.
+    opposite side at distance s it keeps (k^2 + h^2 - r s) / (k^2 + h^2 + s^2) of its rate, 0 where that is
+    negative.
 
-    Source: G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bulletin of the
+    Parameters
+    ----------
+    rocker : Rocker
+    period : float [s]
+        Of the drive.
+    start : int
+        Instant of the period, of ``ROCKING_STEPS``, from which the part is followed for ``FOLLOWED`` periods.
+
+    Returns
+    -------
+    bool
+
+    References
+    ----------
+    G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bulletin of the
     Seismological Society of America 53(2), 403-417, 1963.
     """
     step, angle, rate = period / ROCKING_STEPS, 0.0, 0.0
@@ -107,9 +140,22 @@ def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
 def over_period(place: Seat, bowl: Bowl) -> tuple[Floats, Floats]:
     """Return what the track does to a part over a settled period, in which it slides as it then does.
 
-    Returns (ROCKING_STEPS,) [m/s2], the force of the track over the mass, and (ROCKING_STEPS, 2) [m], where
-    it acts from the foot of the centre of mass. The bowl has single values.
-    Source: Housner 1963, the rocking block; docs/method/trial.md, "What other parts said of the rules".
+    Parameters
+    ----------
+    place : Seat
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    (ROCKING_STEPS,) float [m/s2]
+        Force of the track over the mass.
+    (ROCKING_STEPS, 2) float [m]
+        Where it acts, from the foot of the centre of mass.
+
+    References
+    ----------
+    Housner 1963, the rocking block; docs/method/trial.md, "What other parts said of the rules".
     """
     phase = phases(ROCKING_STEPS)
     motions = [track_balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in SENSES]
@@ -120,7 +166,11 @@ def over_period(place: Seat, bowl: Bowl) -> tuple[Floats, Floats]:
 
 
 def _senses(motions: list[track_balance.TrackMotion], step: float) -> Floats:
-    """How the part slides at each instant of a settled period, (ROCKING_STEPS,) int: places in ``SENSES``."""
+    """Return how the part slides at each instant of a settled period.
+
+    The entries (ROCKING_STEPS,) int are places in ``SENSES``. From rest the part begins to slide where
+    friction no longer holds it. Sliding, it comes to rest where its speed changes sign.
+    """
     gains = [step * motion.acceleration[:, 0] for motion in motions]
     loose, speed = motions[0].slides, 0.0
     senses = np.zeros(ROCKING_STEPS, dtype=int)
@@ -170,7 +220,7 @@ class Stands:
 
     @property
     def sentence(self) -> str:
-        """The verdict in words, with its angles."""
+        """Return the verdict in words, with its angles."""
         if self.verdict == ROCKS:
             tilt, lean = np.degrees(self.tilt), np.degrees(self.lean)
             return f"rocks by {tilt:.2g} deg a stroke; turns over from {lean:.3g} deg on"
@@ -180,9 +230,19 @@ class Stands:
 
 
 def stands(orientation: Orientation, bowl: Bowl, hops: bool) -> Stands:
-    """Return what the drive of a bowl, of single values, does to an orientation on the bare track.
+    """Return what the drive of a bowl does to an orientation on the bare track.
 
-    ``hops``: whether the drive throws it; what it comes down on is not followed then.
+    Parameters
+    ----------
+    orientation : Orientation
+    bowl : Bowl
+        Single values.
+    hops : bool
+        The drive throws the part; what it comes down on is not followed then.
+
+    Returns
+    -------
+    Stands
     """
     (lying,), tips = marked((orientation,), bowl)
     angles = float(tips.tilt[0]), float(tips.balance[0])
@@ -196,11 +256,28 @@ def stands(orientation: Orientation, bowl: Bowl, hops: bool) -> Stands:
 def marked(
     orientations: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | None = None
 ) -> tuple[tuple[Orientation, ...], TrackTipping]:
-    """Return orientations that know what the drive of a bowl, of single values, does to them on the track.
+    """Return orientations that know what the drive of a bowl does to them on the track.
 
     That is whether it turns them over, a landing may tip them, or the wall may turn them out of their
-    heading. With ``rows``, their places, the others know how they are carried alone.
-    Source: own; docs/tooling.md, "Parts that hop".
+    heading.
+
+    Parameters
+    ----------
+    orientations : (M,) sequence of Orientation
+    bowl : Bowl
+        Single values.
+    rows : collection of int, optional
+        Places of the orientations that are looked at; the others know only how they are carried. None looks
+        at all.
+
+    Returns
+    -------
+    (M,) tuple of Orientation
+    TrackTipping
+
+    References
+    ----------
+    Own; docs/tooling.md, "Parts that hop".
     """
     tips, energy = tipping(orientations, bowl, rows), landing_energy(bowl)
     oriented = [replace(one, turns_over=bool(turns)) for one, turns in zip(orientations, tips.over)]
@@ -221,7 +298,7 @@ def marked(
 
 
 def remark(orientations: Sequence[Orientation]) -> tuple[str, ...]:
-    """Say what a drive turns over, how parts hop, and which of them may turn as they do: a sentence each."""
+    """Return a sentence each: what a drive turns over, how parts hop, which of them may turn as they do."""
     over = [orientation.name for orientation in orientations if orientation.turns_over]
     turning = [
         orientation.name for orientation in orientations if orientation.may_turn and orientation.hop > 0.0
@@ -247,13 +324,28 @@ def tipping(
 ) -> TrackTipping:
     """Return which orientations tip on the track of a bowl, and which turn over there.
 
-    They know where they touch the wall; the bowl has single values. With ``rows`` those places alone are
-    looked at. None tips where that is not known: a part that rolls or hops, a drive that is not straight.
-
     The greatest moment about a side is taken for half a period, on the moment of inertia m (r^2 + h^2) of the
-    centre of mass about that side, r beside it and h above it: an upper estimate. It is over at atan(r/h).
+    centre of mass about that side, r beside it and h above it: an upper estimate. It is over at atan(r / h).
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
     the next one, or over already, its rocking is followed: ``goes_over``.
+
+    Parameters
+    ----------
+    orientations : (M,) sequence of Orientation
+        They know where they touch the wall.
+    bowl : Bowl
+        Single values.
+    rows : collection of int, optional
+        Places of the orientations that are looked at; None looks at all.
+
+    Returns
+    -------
+    TrackTipping
+        No orientation tips where that is not known: a part that rolls or hops, a drive that is not straight.
+
+    References
+    ----------
+    Own; Housner 1963, as in ``goes_over``.
     """
     states = [(False, 0.0, np.nan, False)] * len(orientations)
     places = {
@@ -303,7 +395,7 @@ def tipping(
 def landing_energy(bowl: Bowl) -> float:
     """Return the energy of the hardest landing of a part, as a height [m]; 0 where it never leaves the track.
 
-    Source: u^2 / 2 g, u the velocity of a point mass towards the track as it lands.
+    Source: u^2 / (2 g), u the velocity of a point mass towards the track as it lands.
     """
     if travel_speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
         return 0.0
@@ -315,18 +407,33 @@ def may_tip(
 ) -> bool:
     """Return whether a landing may tip an orientation over a side of what carries it.
 
-    ``contact`` (K, 2) [m] has the corners of that, in track axes from the foot of the centre of mass, taken
-    to be smaller all round by ``margin`` [m]; ``energy`` [m] is that of ``landing_energy``, of 0 nothing tips
-    so.
-
-    The track drags the foot by at most mu times what it strikes it with. Over a side b from the foot of the
-    centre of mass, of which the normal lies at an angle a to the track, that tips a part of which the centre
-    of mass is at the height h where mu h |cos a| > b. Where it is less, the part has to be lifted by
-    sqrt(h^2 + b^2) - h. Along the track the whole energy E of the landing may do that. Across it nothing
+    The track drags the foot by at most mu times what it strikes it with. Let a side lie at the distance b
+    from the foot of the centre of mass, its normal at an angle a to the track, and the centre of mass at the
+    height h. Then that drag tips the part where mu h |cos a| > b. Where it is less, the part has to be lifted
+    by sqrt(h^2 + b^2) - h. Along the track the whole energy E of the landing may do that. Across it nothing
     drags the part: struck at a place beside its centre of mass it keeps (1 + e)^2 / 4 of E as rotation at
     most, e being the restitution. The wall holds a part over a side that faces it; a groove holds it over the
     sides that face both its surfaces.
-    Source: own; moments of an impact about a side with Coulomb's friction, and the energy to rise over it.
+
+    Parameters
+    ----------
+    contact : (K, 2) float [m]
+        Corners of what carries the part, in track axes from the foot of the centre of mass.
+    orientation : Orientation
+    bowl : Bowl
+    energy : float [m]
+        Of ``landing_energy``.
+    margin : float [m]
+        By which the contact is taken to be smaller all round.
+
+    Returns
+    -------
+    bool
+        True as well where the contact has no area.
+
+    References
+    ----------
+    Own; moments of an impact about a side with Coulomb's friction, and the energy to rise over it.
     """
     ring = contact[convex(contact)]
     if len(ring) < 3:
@@ -342,7 +449,7 @@ def may_tip(
 
 
 def _is_plain(bowl: Bowl) -> bool:
-    """Whether a bowl's drive and conveyor are of the plain kind, for which tipping is followed."""
+    """Return whether a bowl's drive and conveyor are of the plain kind, for which tipping is followed."""
     try:
         return limits.plain(bowl) is bowl
     except ConfigError:
@@ -354,9 +461,18 @@ def _rolls(orientation: Orientation) -> bool:
 
 
 def seat_in_groove(orientation: Orientation, bank: float) -> Seat:
-    """Return how an orientation lies on a track of some bank [rad], a Seat.
+    """Return how an orientation lies on a track of some bank.
 
-    One that rolls tips over the ends of its line only, so its contact is wide beside that.
+    One that rolls tips over the ends of its line only, so its contact is made wide beside that line.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    bank : float [rad]
+
+    Returns
+    -------
+    Seat
     """
     place = seat(orientation.posture, orientation.heading, np.asarray(orientation.touching), bank)
     if orientation.kind == FLAT_KIND:
@@ -377,8 +493,7 @@ def steady(
     """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
 
     Of the devices, which let them pass, those up to the first that lets parts hang or turns them over are
-    looked at. By ``margin`` [m] they shall not rock beside an edge along the track. The bowl has single
-    values. Returns (M,) bool, True also where that is not known: a drive that is not straight.
+    looked at.
 
     A ledge, a canyon or a slot goes on: there the force of the track has to stay within what is left of the
     foot all through the cycle, as on the bare track, or the part rocks. Over an edge across the track every
@@ -387,7 +502,24 @@ def steady(
     back over the far edge, from which it travels on at the velocity of the point mass. A landing of a part
     that hops must not tip it over what a ledge, a canyon or a slot leaves of its foot, less the margin; over
     an edge across the track the verdict itself is less the flight.
-    Source: own; docs/method/trial.md, "What other parts said of the rules".
+
+    Parameters
+    ----------
+    devices : (D,) sequence of Device
+    orientations : (M,) sequence of Orientation
+    bowl : Bowl
+        Single values.
+    margin : float [m]
+        By which they shall not rock beside an edge along the track.
+
+    Returns
+    -------
+    (M,) bool
+        True also where that is not known: a drive that is not straight.
+
+    References
+    ----------
+    Own; docs/method/trial.md, "What other parts said of the rules".
     """
     plain, energy = _is_plain(bowl), landing_energy(bowl)
     if energy <= 0.0 and not plain:
@@ -398,8 +530,21 @@ def steady(
 def is_surely_gone(devices: Sequence[Device], orientations: Sequence[Orientation], passes: Floats) -> Bools:
     """Return which orientations the first device that does not let them pass is sure to get rid of.
 
-    ``passes`` (M, 1 + D) [1] is the share that the track and each device let pass. Returns (M,) bool, True
-    also of what no device returns. Source: own; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    devices : (D,) sequence of Device
+    orientations : (M,) sequence of Orientation
+    passes : (M, 1 + D) float [1]
+        Share that the track and each device let pass.
+
+    Returns
+    -------
+    (M,) bool
+        True also of what no device returns.
+
+    References
+    ----------
+    Own; docs/tooling.md, "1. The method".
     """
     gone = np.ones(len(orientations), dtype=bool)
     for row, (orientation, shares) in enumerate(zip(orientations, np.asarray(passes)[:, 1:])):
@@ -412,7 +557,10 @@ def is_surely_gone(devices: Sequence[Device], orientations: Sequence[Orientation
 def _steady(
     devices: Sequence[Device], orientation: Orientation, bowl: Bowl, margin: float, energy: float
 ) -> bool:
-    """Whether one orientation is steady at every device, by a margin [m]; of an energy [m] it lands."""
+    """Return whether one orientation is steady at every device.
+
+    It is so by a margin [m], and lands with an energy [m].
+    """
     if orientation.returned or orientation.touching is None:
         return True
     touched = list(itertools.takewhile(lambda device: not (device.turns or device.hangs), devices))
@@ -461,13 +609,13 @@ def _steady(
 
 
 def _foot_beside(orientation: Orientation, span: tuple[float, ...]) -> Floats:
-    """Corners (K, 2) [m] of what a span of the track leaves of a foot."""
+    """Return the corners (K, 2) [m] of what a span of the track leaves of a foot."""
     foot, radius = orientation.foot, orientation.track.radius
     return footprints.rest_beside_slot(foot, span, orientation.distance, radius).corners
 
 
 def _takes(device: Device, orientation: Orientation) -> bool:
-    """Whether a device takes anything from what carries an orientation."""
+    """Return whether a device takes anything from what carries an orientation."""
     span, hole = device.span_on(orientation.track), device.hole_on(orientation.track)
     if span is not None:
         (first, last), radius = span, orientation.track.radius

@@ -24,19 +24,48 @@ RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
 
 
 def entering(queue: Orientations, rule: str) -> tuple[Floats, float]:
-    """Return the chance (M,) [1] of each orientation by a rule, and the share [1] that stays on the track.
+    """Return the chance of each orientation by a rule, and the share that stays on the track.
 
-    Source: docs/conveying.md, "Commands".
+    Parameters
+    ----------
+    queue : Orientations
+    rule : str
+        A key of ``queue.rules``.
+
+    Returns
+    -------
+    (M,) float [1]
+        Chances; 0 where the rule has none.
+    float [1]
+        Share that stays.
+
+    References
+    ----------
+    docs/conveying.md, "Commands".
     """
     chance = np.nan_to_num(queue.rules[rule])
     return chance, float((chance * queue.stays).sum())
 
 
 def mean_length(queue: Orientations, rule: str) -> float:
-    """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
+    """Return the mean length along the track of the parts that stay on it.
 
     What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
-    Source: docs/conveying.md, "Commands".
+
+    Parameters
+    ----------
+    queue : Orientations
+    rule : str
+        A key of ``queue.rules``.
+
+    Returns
+    -------
+    float [m]
+        NaN where no part stays.
+
+    References
+    ----------
+    docs/conveying.md, "Commands".
     """
     chance, enters = entering(queue, rule)
     weights = chance * queue.stays
@@ -44,35 +73,61 @@ def mean_length(queue: Orientations, rule: str) -> float:
 
 
 def _of_entering(queue: Orientations, rule: str, values: Floats) -> float:
-    """Mean of what each orientation brings (M,), over all that enters the track; 0 where nothing enters."""
+    """Return the mean of ``values`` (M,) over all that enters the track; 0 where nothing enters."""
     chance, enters = entering(queue, rule)
     return float((chance * values).sum() / enters) if enters > 0.0 else 0.0
 
 
 def _queued(queue: Orientations, row: int, rule: str, gap: float, fill: float) -> float:
-    """Parts on a length of track before the devices [1/m]: all that stay on it.
+    """Return the parts on a length of track before the devices [1/m]: all that stay on it.
 
-    They come end to end, or as far apart as the devices need: docs/tooling.md, "1. The method".
+    They come end to end, or as far apart as the devices need: fill / (mean length + gap). Source:
+    docs/tooling.md, "1. The method".
     """
     length = mean_length(queue, rule)
     return float(fill / ((queue.lengths[row] if np.isnan(length) else length) + max(gap, queue.gap)))
 
 
 def efficiency(queue: Orientations, row: int, rule: str) -> float:
-    """Return the share [1] of the parts offered, which are on the track, that leave in the state of a row.
+    """Return the share of the parts offered, which are on the track, that leave in the state of a row.
 
-    Source: docs/conveying.md, "Commands".
+    Parameters
+    ----------
+    queue : Orientations
+    row : int
+        Of the wanted orientation.
+    rule : str
+        A key of ``queue.rules``.
+
+    Returns
+    -------
+    float [1]
+        0 where no part enters the track.
+
+    References
+    ----------
+    docs/conveying.md, "Commands".
     """
     return _of_entering(queue, rule, _fed_share(queue, row))
 
 
 def fed(queue: Orientations, row: int) -> Orientation:
-    """Return the Orientation in which parts wanted as a row leave: as they lie, or hanging."""
+    """Return the orientation in which parts wanted as a row leave: as they lie, or hanging.
+
+    Parameters
+    ----------
+    queue : Orientations
+    row : int
+
+    Returns
+    -------
+    Orientation
+    """
     return queue.states[queue.leaves_as[row]]
 
 
 def _fed_share(queue: Orientations, row: int) -> Floats:
-    """Share (M,) [1] of each orientation that leaves in the state of a wanted row."""
+    """Return the share (M,) [1] of each orientation that leaves in the state of a wanted row."""
     return np.where(queue.rolls_back, 0.0, queue.leaving[:, queue.leaves_as[row]])
 
 
@@ -90,12 +145,12 @@ class Range:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Its lowest and its highest."""
+        """Return the lowest and the highest."""
         return self.low, self.high
 
     @property
     def all(self) -> tuple[float, float, float]:
-        """Value, lowest, highest."""
+        """Return value, lowest, highest."""
         return self.value, self.low, self.high
 
     def __mul__(self, factor: "Range | float") -> "Range":
@@ -163,7 +218,9 @@ def wanted(
     FeederError
         If there is no such aspect, or none of its headings is stable.
 
-    Source: docs/mechanics.md, "Headings".
+    References
+    ----------
+    docs/mechanics.md, "Headings".
     """
     lying = posture(part, aspects, name)
     stable = headings(lying, track)
@@ -178,10 +235,24 @@ def wanted(
 
 
 def velocity(bowl: Bowl) -> Range:
-    """Return the conveying velocity [m/s] with what it may be; a part that travels back counts as 0.
+    """Return the conveying velocity with what it may be; a part that travels back counts as 0.
 
-    It is over all starts, here, for friction a fifth lower and higher and, where parts hop, over the spread
-    of restitution. Raises FeederError if there is no steady state.
+    The range is over all starts, for the bowl itself, for friction a fifth lower and higher and, where parts
+    hop, over the spread of restitution: ``answer.surfaces``.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    Range [m/s]
+
+    Raises
+    ------
+    FeederError
+        If there is no steady state.
     """
     here = answer.answer(bowl)
     if here.unsteady == answer.UnsteadyMotion.KEEPS_SPEED:
@@ -206,12 +277,42 @@ def rate(
     gap: float = 0.0,
     fill: float = 1.0,
 ) -> Rate:
-    """Return well-oriented parts leaving a bowl, at a speed of ``velocity`` and a target of ``wanted``.
+    """Return well-oriented parts leaving a bowl.
 
-    ``gap`` [m] is between one part and the next, ``fill`` [1] the share of the track that is occupied. What
-    lies on its round side across the track rolls back and is not offered; in the highest rate it is carried
-    as what slides, since a drive that throws it or a wall may do so. Raises FeederError if no such rule has
-    probabilities of this part. Source: docs/conveying.md, "Commands".
+        offered = 1 / (1 / (velocity density) + blocked)
+        parts = min(offered efficiency, velocity / length of the part as it leaves)
+
+    The density is that of the queue before the devices, ``blocked`` the mean time for which an offered part
+    blocks the track on its way off it. What lies on its round side across the track rolls back and is not
+    offered; in the highest rate it is carried like what slides, since a drive that throws it or a wall may do
+    so.
+
+    Parameters
+    ----------
+    queue : Orientations
+    speed : Range [m/s]
+        Of ``velocity``.
+    target : (str, float [rad])
+        Aspect and heading of ``wanted``.
+    rule : str
+        A key of ``queue.rules``.
+    gap : float [m]
+        Between one part and the next.
+    fill : float [1]
+        Share of the track that is occupied.
+
+    Returns
+    -------
+    Rate
+
+    Raises
+    ------
+    FeederError
+        If no such rule has probabilities of this part.
+
+    References
+    ----------
+    docs/conveying.md, "Commands".
     """
     row = _row(queue, target)
     _check_rule(queue, rule)
@@ -260,12 +361,12 @@ def rate(
 
 
 def _offered(freely: float, blocked: float) -> float:
-    """Parts a second that come to the devices, each of which blocks the track for a time [s] in the mean."""
+    """Return the parts a second that come to the devices, if each blocks the track for a mean time [s]."""
     return 1.0 / (1.0 / freely + blocked) if freely > 0.0 else 0.0
 
 
 def _blocked(queue: Orientations, rule: str) -> tuple[float, float]:
-    """Mean time [s] for which a part that is offered blocks the track, and the same of those that do."""
+    """Return the mean time [s] for which an offered part blocks the track, and the mean of those that do."""
     chance, enters = entering(queue, rule)
     does = chance * (queue.clearing > 0.0)
     times = float((chance * queue.clearing).sum())
@@ -275,10 +376,33 @@ def _blocked(queue: Orientations, rule: str) -> tuple[float, float]:
 def parts_per_metre(
     queue: Orientations, target: tuple[str, float], rule: str, *, gap: float = 0.0, fill: float = 1.0
 ) -> float:
-    """Return well-oriented parts on a length of track [1/m], which velocity turns into a rate.
+    """Return well-oriented parts on a length of track, which velocity turns into a rate.
 
-    Parameters are those of ``rate``. Raises FeederError if there are none: the probability is zero, or the
-    track or a device returns them all. Source: docs/conveying.md, "Commands".
+    Parameters
+    ----------
+    queue : Orientations
+    target : (str, float [rad])
+        Aspect and heading.
+    rule : str
+        A key of ``queue.rules``.
+    gap : float [m]
+        Between one part and the next.
+    fill : float [1]
+        Share of the track that is occupied.
+
+    Returns
+    -------
+    float [1/m]
+        Above 0.
+
+    Raises
+    ------
+    FeederError
+        If there are none: the probability is zero, or the track or a device returns them all.
+
+    References
+    ----------
+    docs/conveying.md, "Commands".
     """
     parts = leaving_per_metre(queue, target, rule, gap=gap, fill=fill)
     if not parts > 0.0:
@@ -288,7 +412,23 @@ def parts_per_metre(
 
 
 def holds(queue: Orientations, target: tuple[str, float]) -> None:
-    """Raise a FeederError where a wanted orientation rolls back down the climb."""
+    """Raise a FeederError where a wanted orientation rolls back down the climb.
+
+    Parameters
+    ----------
+    queue : Orientations
+    target : (str, float [rad])
+        Aspect and heading.
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    FeederError
+        If it rolls back; the line says how to hold it.
+    """
     if queue.rolls_back[_row(queue, target)]:
         raise FeederError(_where(target), ROLLS_BACK_REMARK, HOLD_ADVICE)
 
@@ -300,7 +440,36 @@ def _where(target: tuple[str, float]) -> str:
 def leaving_per_metre(
     queue: Orientations, target: tuple[str, float], rule: str, *, gap: float = 0.0, fill: float = 1.0
 ) -> float:
-    """Return the same [1/m], 0 where no part leaves so."""
+    """Return well-oriented parts on a length of track, 0 where no part leaves so.
+
+    They are efficiency times the density of the queue, at most one behind the other as they leave. What
+    blocks the track thins the queue: ``_offered`` at the speed of the wanted orientation.
+
+    Parameters
+    ----------
+    queue : Orientations
+    target : (str, float [rad])
+        Aspect and heading.
+    rule : str
+        A key of ``queue.rules``.
+    gap : float [m]
+        Between one part and the next.
+    fill : float [1]
+        Share of the track that is occupied.
+
+    Returns
+    -------
+    float [1/m]
+
+    Raises
+    ------
+    FeederError
+        If no such rule has probabilities of this part.
+
+    References
+    ----------
+    docs/conveying.md, "Commands".
+    """
     _check_rule(queue, rule)
     row = _row(queue, target)
     share, density = efficiency(queue, row, rule), _queued(queue, row, rule, gap, fill)

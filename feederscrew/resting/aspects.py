@@ -154,7 +154,10 @@ class Aspects(ReadableRecord):
 
     @property
     def chances(self) -> dict[str, Floats]:
-        """Probability of each aspect by every name a user may ask for: the rules, 'closed', 'recommended'."""
+        """Return the probability (A,) [1] of each aspect by every name that a user may ask for.
+
+        They are the rules, 'closed' and 'recommended'.
+        """
         answers = {"closed": self.closed, "recommended": self.recommended}
         return self.probabilities | {name: answer.p for name, answer in answers.items() if answer is not None}
 
@@ -170,16 +173,16 @@ class Aspects(ReadableRecord):
 
     @property
     def likeliest(self) -> str:
-        """Name of the aspect it rests on most often: by the recommended answer, of a card by CSA."""
+        """Return the name of the likeliest aspect: by the recommended answer, of a card by CSA."""
         return self.names[int(np.argmax(np.nan_to_num(self.chances[self.ranking])))]
 
     def source(self, rule: str) -> str:
-        """Say whose the probabilities of a rule are: 'csa', of an answer 'drop test, launch feed'."""
+        """Return whose the probabilities of a rule are: 'csa', of an answer 'drop test, launch feed'."""
         return getattr({"closed": self.closed, "recommended": self.recommended}.get(rule), "rule", rule)
 
     @property
     def ranking(self) -> str:
-        """Name of the answer that ranks the aspects: 'recommended', of a card 'csa'."""
+        """Return the name of the answer that ranks the aspects: 'recommended', of a card 'csa'."""
         return "csa" if self.recommended is None else "recommended"
 
 
@@ -193,11 +196,31 @@ def find(
 ) -> Aspects:
     """Find the resting aspects of a part, with their probability by every rule.
 
-    ``as_published``: count each class once in the PMI rule, as the thesis's tables do; ``unstable``: list the
-    facets the part rolls off as well, with no probability; ``exponent`` [1]: of the surface-weighted closed
-    form, which is then the recommended one; see `formulas.EXPONENTS`; ``launch``: one of
-    `recommended.LAUNCH_NAMES` or a former name: the recommended closed form depends on it. Raises MeshError
-    if the centre of mass is not strictly inside the convex hull; ArgumentError if there is no such launch.
+    Parameters
+    ----------
+    part : Part
+        From a mesh or from a part card.
+    as_published : bool
+        Count each class once in the PMI rule, as the thesis's tables do.
+    unstable : bool
+        List the facets the part rolls off as well; their probability is 0.
+    exponent : float [1] or None
+        Exponent of the surface-weighted closed form, which is then the recommended one; see
+        ``formulas.EXPONENTS``.
+    launch : str
+        One of ``recommended.LAUNCH_NAMES`` or a former name; the recommended closed form depends on it.
+
+    Returns
+    -------
+    Aspects
+        A rows, the most likely first.
+
+    Raises
+    ------
+    MeshError
+        If the centre of mass is not strictly inside the convex hull.
+    ArgumentError
+        If there is no such launch.
     """
     launch = recommended.launch_of_name(launch)
     if part.vertices is None:
@@ -266,7 +289,20 @@ def find(
 def require_ground(part: Part, aspects: Aspects) -> exact_tumbling.Ground:
     """Return the faces a part rests on, matched to the rows of its aspects, with exact basins and barriers.
 
-    Raises MeshError if the part is a card without a shape.
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of that part.
+
+    Returns
+    -------
+    Ground
+
+    Raises
+    ------
+    MeshError
+        If the part is a card without a shape.
     """
     if aspects.ground is None:
         raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
@@ -274,16 +310,16 @@ def require_ground(part: Part, aspects: Aspects) -> exact_tumbling.Ground:
 
 
 def waits(part: Part) -> bool:
-    """Return whether `find` must compile first: on a machine's first large hull, for some seconds."""
+    """Return whether ``find`` must compile first: on a machine's first large hull, for some seconds."""
     return part.hull is not None and compiled.due(walks.trace_saddles, 3 * len(part.hull.triangles))
 
 
 def _form(face: Face, hull: Hull, flats: bool) -> str:
-    """What a class is by its form, from one of its faces; ``flats``: whether the part has any.
+    """Return the form of a class, from one of its faces; ``flats`` says whether the part has any flat.
 
-    'flat'; 'cylinder', which rolls straight; 'cone', which rolls in a circle, as parts on two unlike circles
-    do; 'ball', about the centre of mass; 'off-centre ball' and 'ball with a flat', which rest on one point of
-    a ball's side and rock: of a part that has no other class, or that has flats as well.
+    'flat'; 'cylinder', which rolls straight; 'cone', which rolls in a circle, as a part on two unlike circles
+    does; 'ball', about the centre of mass; 'off-centre ball' and 'ball with a flat', which rest on one point
+    of a ball's side and rock. The first of these two has no other class, the second has flats as well.
     """
     if face.kind == FLAT:
         return FLAT
@@ -297,9 +333,25 @@ def _form(face: Face, hull: Hull, flats: bool) -> str:
 def postures(normals: Floats, contact_areas: Floats, kinds: tuple[str, ...], hull: Hull) -> list[str]:
     """Return in words how a part lies on each class: its height there beside its least and greatest height.
 
-    ``normals`` (A, 3) [1]: outward normal of the side that is down; ``contact_areas`` (A,) [m2]; ``kinds``:
-    'flat' or 'rolling'. 'flat', 'on end' or 'on side'; a flat class adds that the face that is down is the
-    larger or smaller of two back to back, or the largest of the part; a rolling class says that it rolls.
+    The words are 'flat', 'on end' or 'on side'. For a flat class they add that the face that is down is the
+    larger or smaller of two back to back, or the largest of the part; for a rolling class, that it rolls.
+
+    Parameters
+    ----------
+    normals : (A, 3) float [1]
+        Outward normal of the side that is down.
+    contact_areas : (A,) float [m2]
+    kinds : tuple of A str
+        'flat' or 'rolling'.
+    hull : Hull
+
+    Returns
+    -------
+    list of A str
+
+    References
+    ----------
+    Own.
     """
     sizes = np.ptp((hull.vertices[:, None, :] * normals[None, :, :]).sum(axis=-1), axis=0)
     texts = []
@@ -325,7 +377,7 @@ def postures(normals: Floats, contact_areas: Floats, kinds: tuple[str, ...], hul
 
 
 def form_remarks(forms_of_classes: list[str]) -> tuple[str, ...]:
-    """Say of forms, (A,) str, what a user must know, a sentence each."""
+    """Return what a user must know of the forms (A,) of the classes, a sentence each."""
     if list(forms_of_classes) == [BALL]:
         return (BALL_REMARK,)
     rocks = dict.fromkeys(form for form in forms_of_classes if form in (OFF_CENTRE, WITH_A_FLAT))
@@ -334,7 +386,7 @@ def form_remarks(forms_of_classes: list[str]) -> tuple[str, ...]:
 
 
 def _geometry(groups: list[list[Face]], part: Part, hull: Hull) -> dict[str, Any]:
-    """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
+    """Return the columns of the table in the order of the groups; a class's numbers are its faces' means."""
     counts = np.array([len(group) for group in groups])
     faces = [face for group in groups for face in group]
     flats = any(group[0].kind == FLAT for group in groups)
@@ -362,9 +414,9 @@ def _geometry(groups: list[list[Face]], part: Part, hull: Hull) -> dict[str, Any
 
 
 def _rank_classes(table: dict[str, Any], chance: Floats, part: Part, moments: Moments) -> Ints:
-    """Order of the rows: by falling CSA probability, then by size, then by direction in the part.
+    """Return the order of the rows: by falling CSA probability, then by size, then by direction in the part.
 
-    The last is taken in axes fixed in the part, so that a turned file keeps its names.
+    The direction is taken in axes fixed in the part, so that a turned file keeps its names.
     """
     size = np.where(table["stable"], 1.0 + chance, table["faces"] * table["solid_angles"] / (4.0 * np.pi))
     order = np.argsort(-size, kind="stable")
@@ -388,11 +440,11 @@ def _rank_classes(table: dict[str, Any], chance: Floats, part: Part, moments: Mo
 
 
 def _from_card(part: Part) -> Aspects:
-    """Aspects as the card's source gives them, by its own names and in its order; NaN where it is silent."""
+    """Return the aspects of a card by its own names and in its order; NaN where the card is silent."""
     rows = part.aspects
 
     def column(quantity: str, instead: Floats | float = np.nan) -> Floats:
-        """A quantity of every row; what a rule's own table does not give is that of the aspects."""
+        """Return a quantity of every row; where a rule's own table is silent, ``instead``."""
         values = [getattr(row, quantity) for row in rows]
         numbers = np.array([np.nan if value is None else value for value in values], dtype=float)
         return check.frozen(np.where(np.isnan(numbers), instead, numbers))
@@ -432,12 +484,35 @@ def _from_card(part: Part) -> Aspects:
 def name_classes(
     groups: list[list[Face]], normals: Floats, hull: Hull, user_names: AspectNames | None
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Name the classes of aspects; names that fit no aspect, and aspects without a name, are warnings.
+    """Name the classes of aspects: by a user's names, matched by direction, else by letters.
 
-    ``groups``: the faces of each class, in the order of the rows; ``normals`` (A, 3) [1]: what is down when
-    the part rests on each; ``user_names``: what has none of them takes the first letter that is free. Raises
-    ConfigError if a name fits two aspects and is of neither.
-    Source: own; docs/resting.md, "Names that stay".
+    Of all pairs of a name and a class the nearest is joined first, then the nearest of those left.
+
+    Parameters
+    ----------
+    groups : list of A lists of Face
+        Faces of each class, in the order of the rows.
+    normals : (A, 3) float [1]
+        Direction that is down when the part rests on each.
+    hull : Hull
+    user_names : AspectNames or None
+        A class without a name takes the first letter that is free.
+
+    Returns
+    -------
+    tuple of A str
+        Names.
+    tuple of str
+        Warnings: names that fit no aspect, and aspects without a name.
+
+    Raises
+    ------
+    ConfigError
+        If a name fits two aspects and lies on neither.
+
+    References
+    ----------
+    Own; docs/resting.md, "Names that stay".
     """
     # A, B ... Z, AA, AB ...
     words = (itertools.product(ascii_uppercase, repeat=size) for size in itertools.count(1))
@@ -492,11 +567,26 @@ def _direction_text(direction: Floats | tuple[float, ...]) -> str:
 
 
 def join_classes(faces: list[Face], part: Part, moments: Moments) -> Ints:
-    """Return labels (N,) [1] of equal faces, numbered in order of first appearance.
+    """Return labels of equal faces, numbered in order of first appearance.
 
-    Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
-    a symmetry of the solid, not just of its hull.
-    Source: own; docs/resting.md, "Exact tumbling".
+    Equal faces are those that a rotation carries into each other. Only rotations count: a feeder cannot
+    reflect a part, so mirror images stay apart. The rotation must be a symmetry of the solid, not just of its
+    hull.
+
+    Parameters
+    ----------
+    faces : list of N Face
+    part : Part
+    moments : Moments
+        Of the part; they judge whether a rotation leaves the solid as it is.
+
+    Returns
+    -------
+    (N,) int [label]
+
+    References
+    ----------
+    Own; docs/resting.md, "Exact tumbling".
     """
     middles, equal = np.array([face.middle for face in faces]), _are_equal(faces)
     axes = np.array([face.axis for face in faces])
@@ -523,7 +613,7 @@ def join_classes(faces: list[Face], part: Part, moments: Moments) -> Ints:
 
 
 def _are_equal(faces: list[Face]) -> Bools:
-    """(N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
+    """Return (N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
     heights, kinds = (np.array([getattr(face, of) for face in faces]) for of in ("height", "kind"))
     noise = 2.0 * max(face.roughness for face in faces)
     gaps = np.abs(heights[:, None] - heights)
@@ -532,7 +622,7 @@ def _are_equal(faces: list[Face]) -> Bools:
 
 
 def _by_landmarks(faces: list[Face]) -> Floats | None:
-    """Rotations that carry one pair of unlike directions onto another; None where all are parallel."""
+    """Return rotations that carry one pair of unlike directions onto another; None where all are parallel."""
     normals, heights = (np.array([getattr(face, of) for face in faces]) for of in ("normal", "height"))
     like, flat = _are_equal(faces), np.array([face.kind == FLAT for face in faces])
     rarest = np.lexsort((-heights, like.sum(axis=1), ~flat))
@@ -551,7 +641,7 @@ def _by_landmarks(faces: list[Face]) -> Floats | None:
 
 
 def _half_turns(axis: Floats, moments: Moments) -> Floats:
-    """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
+    """Return half turns about axes across ``axis``: the likeliest, where the solid changes least."""
     u, v = vectors.plane_axes(axis)
 
     def turns(phases: Floats) -> Floats:
@@ -568,7 +658,7 @@ def _half_turns(axis: Floats, moments: Moments) -> Floats:
 
 
 def _frames(first: Floats, second: Floats) -> Floats:
-    """(..., 3, 3) right-handed axes as columns: along first (..., 3), and in the plane of both."""
+    """Return (..., 3, 3) right-handed axes as columns: along first (..., 3), and in the plane of both."""
     across = vectors.unit(vectors.cross(first, second))
     return np.stack([vectors.cross(across, first), across, first], axis=-1)
 
@@ -585,9 +675,26 @@ class ShallowFacets:
 
 
 def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowFacets:
-    """Find the facets on which a body stands and that are none of its stable faces.
+    """Find the facets on which a body stands and which are not among its stable faces.
 
-    None of a curved side that rolls: its facets are those of the tessellation.
+    The foot of the centre of mass lies inside them, but next to nothing tips the part to a deeper neighbour.
+    Facets of a curved side that rolls are left out: they are those of the tessellation.
+
+    Parameters
+    ----------
+    hull : Hull
+    basins : Landscape
+    faces : list of Face
+        Stable faces.
+
+    Returns
+    -------
+    ShallowFacets
+        K rows, the one with the foot furthest inside first.
+
+    References
+    ----------
+    Own; docs/resting.md, "Exact tumbling".
     """
     bends = angle(*(hull.normals[basins.pairs[:, k]] for k in (0, 1)))
     side = component_of(basins.pairs[bends < SMOOTH_ANGLE], len(hull.triangles))
@@ -604,7 +711,8 @@ def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowF
     bounds = np.searchsorted(plane[order], [candidates, candidates + 1])
     rows = []
     for start, end in bounds.T:
-        # normal, height, area, solid angle of the triangles of one plane; how far the foot is inside it
+        # Normal, height, area and solid angle of the triangles of one plane. An edge is on the border if no
+        # other triangle of the plane has it the other way round; the foot is inside by its least distance.
         facet = order[start:end]
         areas, corners = hull.areas[facet], hull.triangles[facet]
         normal = vectors.unit(np.einsum("t,tx->x", areas, hull.normals[facet]))
@@ -630,10 +738,25 @@ def published_changes(
 ) -> dict[str, Floats]:
     """Return the probabilities by the published rules with every facet on which the body stands.
 
-    ``weights`` (A,) [any one unit]: by rule, of the aspects; ``stable`` (A,) bool; ``inertia`` (3, 3) [kg
-    m2]: about the centre of mass; ``as_published``: equal facets count once in the PMI rule. Returns (A,)
-    [1]: of the aspects; what is missing to 1 is that of the facets.
-    Source: the rules of the thesis, chapter 3, over more faces.
+    Parameters
+    ----------
+    shallow : ShallowFacets
+    weights : dict of str to (A,) float [any one unit]
+        Of the aspects, by rule.
+    stable : (A,) bool
+    inertia : (3, 3) float [kg m2]
+        About the centre of mass.
+    as_published : bool
+        Count equal facets once in the PMI rule.
+
+    Returns
+    -------
+    dict of str to (A,) float [1]
+        Of the aspects; the rest, up to 1, belongs to the facets.
+
+    References
+    ----------
+    The rules of the thesis, chapter 3, over more faces.
     """
     heights, areas = shallow.heights, shallow.areas
     ones = once = np.ones(len(heights), dtype=int)
@@ -658,9 +781,21 @@ def published_changes(
 def shallow_remark(
     shallow: ShallowFacets, names: tuple[str, ...], chances: dict[str, Floats], complete: dict[str, Floats]
 ) -> tuple[str, ...]:
-    """Say in a sentence what the published rules give with every facet, where it differs.
+    """Return a sentence about the published rules with every facet, if they differ; else nothing.
 
-    ``chances`` and ``complete`` (A,) [1]: by rule, of the aspects alone and with every facet.
+    Parameters
+    ----------
+    shallow : ShallowFacets
+    names : tuple of A str
+    chances : dict of str to (A,) float [1]
+        By rule, over the aspects alone.
+    complete : dict of str to (A,) float [1]
+        By rule, over every facet.
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or no sentence.
     """
     changes = {rule: np.abs(chances[rule] - complete[rule]) for rule in complete}
     if not len(shallow.inside) or max(change.max() for change in changes.values()) < MIN_CHANGE:
@@ -682,7 +817,19 @@ def shallow_remark(
 
 
 def names_text(part: Part, aspects: Aspects) -> str:
-    """Return the names of a part's stable aspects as the text of a file for ``read_aspect_names``."""
+    """Return the names of a part's stable aspects as the text of a file for ``read_aspect_names``.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of that part.
+
+    Returns
+    -------
+    str
+        YAML: a name and the direction of the part's file that is down, a line each.
+    """
     lines = [
         f"# Aspects of {one_line(part.name)}: which direction of its file is down on each.",
         "# Change a name and leave its direction, then give this file as the names of the part.",
@@ -704,7 +851,11 @@ def write_names(part: Part, aspects: Aspects, path: str | PathLike[str]) -> None
     aspects : Aspects
         Of that part.
     path : str or Path
-        Of the file, written anew: change a name there and leave its direction.
+        File to write anew. A user changes a name there and leaves its direction.
+
+    Returns
+    -------
+    None
 
     Raises
     ------

@@ -60,22 +60,43 @@ class Tipping:
 def gather_tipping(tumbling: Tumbling, labels: Ints) -> Tipping:
     """Return basins and saddles of exact tumbling, gathered by face.
 
-    ``labels`` (T,) int: face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet
-    that noise or tessellation left) joins the face behind the lowest saddle around it, or the faces behind
-    saddles as low as each other, in equal parts. Raises ValueError if no sink carries a label.
+    A sink without a face is a facet that noise or tessellation left. It joins the face behind the lowest
+    saddle around it, or in equal parts the faces behind saddles as low as each other.
+
+    Parameters
+    ----------
+    tumbling : Tumbling
+    labels : (T,) int
+        Face of each hull triangle; UNNAMED for a triangle without a face.
+
+    Returns
+    -------
+    Tipping
+        F faces and B ways, the lowest between each two faces.
+
+    Raises
+    ------
+    ValueError
+        If no sink carries a label.
+
+    References
+    ----------
+    docs/resting.md, "Barriers and the tipping graph".
     """
     labels = np.asarray(labels)
     basins = adopted_shares(tumbling, labels[tumbling.sinks], labels.max() + 1)
     heights = np.full(basins.shape[1], np.inf)
     sinks = np.repeat(np.arange(basins.shape[0]), np.diff(basins.indptr))
     np.minimum.at(heights, basins.indices, tumbling.heights[sinks])
-    # each way from a face to a face: its saddle and the faces on both sides, smaller first
+    # A sink that is shared out belongs to several faces, so a saddle between two such sinks is a way between
+    # each face of one and each face of the other. ``turn`` counts through these pairs, saddle by saddle.
     many = np.diff(basins.indptr)[tumbling.pairs]
     paths = many[:, 0] * many[:, 1]
     saddles = np.repeat(np.arange(len(tumbling.pairs)), paths)
     step = np.arange(len(saddles)) - np.repeat(np.cumsum(paths) - paths, paths)
     turn = np.column_stack(np.divmod(step, many[saddles, 1]))
     first, other = basins.indices[basins.indptr[tumbling.pairs[saddles]] + turn].T
+    # of all ways between two faces the lowest, the face of the smaller index first
     faces = np.column_stack([np.minimum(first, other), np.maximum(first, other)])
     order = np.flatnonzero(faces[:, 0] != faces[:, 1])
     order = order[np.lexsort((tumbling.saddle_heights[saddles[order]], *faces[order, ::-1].T))]
@@ -93,45 +114,100 @@ def gather_tipping(tumbling: Tumbling, labels: Ints) -> Tipping:
 
 
 def rises(tips: Tipping) -> Floats:
-    """Return the lift (B, 2) [m] of the centre of mass on the way from the first face and from the second.
+    """Return the lift of the centre of mass on the way from the first face and from the second.
 
-    Source: docs/resting.md, "Barriers and the tipping graph".
+    Parameters
+    ----------
+    tips : Tipping
+
+    Returns
+    -------
+    (B, 2) float [m]
+
+    References
+    ----------
+    docs/resting.md, "Barriers and the tipping graph".
     """
     return np.maximum(tips.tops[:, None] - tips.heights[tips.pairs], 0.0)
 
 
 def barriers(tips: Tipping) -> Floats:
-    """Return the lowest lift (F,) [m] that tips each face into another; infinite where nothing does."""
+    """Return the lowest lift that tips each face into another.
+
+    Parameters
+    ----------
+    tips : Tipping
+
+    Returns
+    -------
+    (F,) float [m]
+        Infinite where nothing tips the part.
+
+    References
+    ----------
+    docs/resting.md, "Barriers and the tipping graph".
+    """
     lowest = np.full(len(tips.shares), np.inf)
     np.minimum.at(lowest, tips.pairs.ravel(), rises(tips).ravel())
     return lowest
 
 
 def tip_angles(polygons: Sequence[Points], heights: Floats | Sequence[float]) -> Floats:
-    """Return the tilt (F,) [rad] of the floor at which a part that does not slide tips over its contact.
+    """Return the tilt of the floor at which a part that does not slide tips over its contact.
 
-    It is negative where the part does not even stand on a level floor. ``polygons`` (K, 3) [m]: corners about
-    the centre of mass, counter-clockwise seen from outside; F polygons; ``heights`` (F,) [m]: of the centre
-    of mass over them.
-    Source: docs/resting.md, "Barriers and the tipping graph".
+        tan(angle) = (distance from the foot of the centre of mass to the nearest edge) / height
+
+    Parameters
+    ----------
+    polygons : sequence of F (K, 3) float [m]
+        Corners about the centre of mass, counter-clockwise seen from outside.
+    heights : (F,) float [m]
+        Of the centre of mass over them.
+
+    Returns
+    -------
+    (F,) float [rad]
+        Negative where the part does not even stand on a level floor.
+
+    References
+    ----------
+    docs/resting.md, "Barriers and the tipping graph".
     """
     _, across, first, counts = _edge_levers(polygons)
     return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
 
 
 def critical_solid_angles(polygons: Sequence[Points], heights: Floats) -> Floats:
-    """Return the share of each face's solid angle left when the mean critical one is taken off: (F,) [1].
+    """Return the share of each face's solid angle that is left when the mean critical one is taken off.
 
-    ``polygons`` and ``heights``: as in `tip_angles`. It is (Q - mean over the edges of Q_crit) / Q; 0 where Q
-    is. Q_crit of an edge is the solid angle of the polygon seen from the centre of mass lifted, upright, to
-    its distance from that edge: where it passes when the part tips. The rule's weight is this times Q / h.
-    Source: B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for
-    automated assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
-    restatement only, the paper itself was not at hand.
+        share = (Q - mean over the edges of Q_crit) / Q
+
+    Q is the solid angle of the contact polygon seen from the centre of mass. Q_crit of an edge is that angle
+    seen from the centre of mass lifted, upright, to its distance from that edge: as high as it passes when
+    the part tips there. The rule's weight is this share times Q / h.
+
+    Parameters
+    ----------
+    polygons : sequence of F (K, 3) float [m]
+        As in ``tip_angles``.
+    heights : (F,) float [m]
+
+    Returns
+    -------
+    (F,) float [1]
+        0 where Q is 0.
+
+    References
+    ----------
+    B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for automated
+    assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966. It was read in a
+    restatement only; the paper itself was not at hand.
     """
     normals, across, first, counts = _edge_levers(polygons)
     heights, corners = np.repeat(heights, counts), np.concatenate(polygons)
     lifts, shares = np.hypot(across, heights) - heights, np.empty(len(polygons))
+    # polygons with equally many corners make one array
+    # polygons with equally many corners make one array
     for size in np.unique(counts):
         same_size = np.flatnonzero(counts == size)
         edges = first[same_size, None] + np.arange(size)
@@ -149,18 +225,31 @@ def critical_solid_angles(polygons: Sequence[Points], heights: Floats) -> Floats
 
 
 def balance(tips: Tipping) -> Floats:
-    """Return the shares (F,) [1] that stay the same when every face keeps tipping into its neighbours.
+    """Return the shares that stay the same when every face keeps tipping into its neighbours.
 
     They are the stationary shares of a chain in which a face tips into each neighbour at a rate inverse to
-    the lift which that takes. Zero for faces without a sink. Boothroyd and
-    Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b = E_a / E_b with E
-    the energy to leave each; their book was not at hand. This is that balance on any number of faces, with
-    the saddle between two basins as the height the part must be lifted to.
-    Source: G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
+    the lift which that takes. Boothroyd and Redford balance the transitions between two aspects of prisms and
+    cylinders, N_a / N_b = E_a / E_b with E the energy to leave each; their book was not at hand. This is that
+    balance on any number of faces, with the saddle between two basins as the height to which the part must be
+    lifted.
 
-    States are taken out one by one and their traffic led past them; no difference is taken, so that rates
-    many orders of magnitude apart do no harm: W. K. Grassmann, M. I. Taksar, D. P. Heyman, "Regenerative
-    analysis and steady state distributions for Markov chains", Oper. Res. 33(5), 1107-1116, 1985.
+    States are taken out one by one and their traffic is led past them. No difference is taken, so rates that
+    are many orders of magnitude apart do no harm.
+
+    Parameters
+    ----------
+    tips : Tipping
+
+    Returns
+    -------
+    (F,) float [1]
+        They sum to 1; zero for faces without a sink.
+
+    References
+    ----------
+    G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968. W. K. Grassmann, M. I. Taksar, D.
+    P. Heyman, "Regenerative analysis and steady state distributions for Markov chains", Oper. Res. 33(5),
+    1107-1116, 1985 (the elimination).
     """
     count = len(tips.shares)
     rates = np.zeros((count, count))
@@ -169,6 +258,8 @@ def balance(tips: Tipping) -> Floats:
         rates[tips.pairs[:, k], tips.pairs[:, 1 - k]] = 1.0 / lift[:, k]
     present = np.flatnonzero(np.isfinite(tips.heights))
     rates, shares = rates[np.ix_(present, present)], np.ones(len(present))
+    # elimination from the last state to the first, then the shares from the first to the last
+    # elimination from the last state to the first, then the shares from the first to the last
     for last in range(len(rates) - 1, 0, -1):
         rates[:last, last] /= rates[last, :last].sum() or np.inf
         rates[:last, :last] += rates[:last, last, None] * rates[last, :last]
@@ -181,7 +272,7 @@ def balance(tips: Tipping) -> Floats:
 
 
 def _edge_levers(polygons: Sequence[Points]) -> tuple[Floats, Floats, Ints, Ints]:
-    """(F, 3) normals of polygons, (N,) [m] how far inside each edge the foot is; (F,) first edges, counts."""
+    """Return normals (F, 3), the foot's depth inside each edge (N,) [m], first edges and counts (F,)."""
     counts = np.array([len(polygon) for polygon in polygons])
     first = np.cumsum(counts) - counts
     corners, after = np.concatenate(polygons), np.arange(1, counts.sum() + 1)
@@ -194,12 +285,32 @@ def _edge_levers(polygons: Sequence[Points]) -> tuple[Floats, Floats, Ints, Ints
 
 
 def adopted_shares(tumbling: Tumbling, labels: Ints, count: int) -> Any:
-    """Parts of every sink's basin that belong to each face.
+    """Return the part of every sink's basin that belongs to each face.
 
-    ``labels`` (S,) int: face of each sink; UNNAMED for a facet that noise or tessellation left; ``count``:
-    faces, with or without a sink. Returns (S, F) sparse float [1]: rows sum to 1. An unnamed sink joins the
-    face behind the lowest saddle around it; where several saddles are as low, as around a sink on a mirror
-    plane, it is shared out among the faces behind them. Raises ValueError if no sink carries a label.
+    A sink without a face joins the face behind the lowest saddle around it. Where several saddles are as low,
+    as around a sink on a mirror plane, it is shared out among the faces behind them.
+
+    Parameters
+    ----------
+    tumbling : Tumbling
+    labels : (S,) int
+        Face of each sink; UNNAMED for a facet that noise or tessellation left.
+    count : int
+        Number of faces, with or without a sink.
+
+    Returns
+    -------
+    (S, F) sparse array of float [1]
+        Rows sum to 1.
+
+    Raises
+    ------
+    ValueError
+        If no sink carries a label.
+
+    References
+    ----------
+    Own; docs/resting.md, "Exact tumbling".
     """
     labels = np.asarray(labels)
     own = np.flatnonzero(labels != UNNAMED)
@@ -207,7 +318,8 @@ def adopted_shares(tumbling: Tumbling, labels: Ints, count: int) -> Any:
         raise ValueError("no sink of the tumbling carries a label")
     if len(own) == len(labels):
         return _links(own, labels, (len(labels), count))
-    # the sink that stands for each, with which it is claimed; claimed and claiming ones
+    # Unnamed sinks that lower saddles join form one tree, and the whole tree is claimed at once: ``members``
+    # names its root for each sink, ``claimed`` and ``by`` are the roots and the sinks that claim them.
     order = np.argsort(tumbling.saddle_heights, kind="stable")
     pairs, tops = tumbling.pairs[order], tumbling.saddle_heights[order]
     parent, claims = np.arange(len(labels)), np.empty_like(pairs)
@@ -225,5 +337,5 @@ def adopted_shares(tumbling: Tumbling, labels: Ints, count: int) -> Any:
 
 
 def _links(start: Ints, end: Ints, shape: tuple[int, int]) -> Any:
-    """Sparse matrix of equal parts, rows summing to 1, from each start to its ends."""
+    """Return a sparse matrix of equal parts, rows summing to 1, from each start to its ends."""
     return sparse.csr_array((1.0 / np.bincount(start)[start], (start, end)), shape=shape)

@@ -45,14 +45,36 @@ class Fit:
 
 
 def calibrate(counts: ArrayLike, shares: ArrayLike, heights: ArrayLike, radius: float) -> Calibration:
-    """Fit the exponent of surface_shares to counts by maximum likelihood.
+    """Fit the exponent of ``surface_shares`` to counts by maximum likelihood.
 
-    ``counts`` (A,) [1]: parts on each aspect; ``shares`` (A,) [1]: quasi-static probabilities; ``heights``
-    (A,) [m]: of the centre of mass on each aspect; ``radius`` [m]: largest distance from it to a corner.
-    Raises ValueError if shapes differ, a count is negative, fewer than two aspects can be told apart or parts
-    were counted on an aspect of share zero.
-    Source: S. S. Wilks, "The large-sample distribution of the likelihood ratio for testing composite
-    hypotheses", Ann. Math. Statist. 9(1), 60-62, 1938.
+    The interval holds the exponents whose log-likelihood lies within half the 95 % quantile of chi-square
+    with one degree of freedom of the greatest.
+
+    Parameters
+    ----------
+    counts : (A,) array_like of float [1]
+        Parts on each aspect.
+    shares : (A,) array_like of float [1]
+        Quasi-static probabilities.
+    heights : (A,) array_like of float [m]
+        Of the centre of mass on each aspect.
+    radius : float [m]
+        Largest distance from the centre of mass to a corner.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ValueError
+        If shapes differ, a count is negative, fewer than two aspects can be told apart, or parts were counted
+        on an aspect of share zero.
+
+    References
+    ----------
+    S. S. Wilks, "The large-sample distribution of the likelihood ratio for testing composite hypotheses",
+    Ann. Math. Statist. 9(1), 60-62, 1938.
     """
     counts = check.shaped("counts", counts, (-1,))
     shares = check.shaped("shares", shares, counts.shape)
@@ -78,7 +100,7 @@ def _likeliest(
     heights: Floats,
     radius: float,
 ) -> Calibration:
-    """The exponent whose shares have the least loss, with its interval and a test of these shares."""
+    """Return the exponent whose shares have the least loss, with its interval and a test of these shares."""
 
     def shares_at(exponent: float) -> Floats:
         return surface_shares(shares, heights, radius, exponent)
@@ -101,7 +123,22 @@ def _likeliest(
 def fit_counts(part: Part, aspects: Aspects, table: CountFile) -> list[Fit]:
     """Fit the surface exponent to every column of counts of a part with a mesh.
 
-    Raises FeederError if the part has no shape, no column holds counts, or they do not tell an exponent.
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of that part.
+    table : CountFile
+
+    Returns
+    -------
+    list of Fit
+        One a column of counts.
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, no column holds counts, or the counts do not tell an exponent.
     """
     tumbling = _tumbling_by_aspect(part, aspects)
     columns = [profile for profile in table.profiles if profile.has_counts]
@@ -119,12 +156,33 @@ def fit_counts(part: Part, aspects: Aspects, table: CountFile) -> list[Fit]:
 
 
 def fit_passes(part: Part, aspects: Aspects, counts: DeviceCounts, paths: Floats) -> Fit:
-    """Fit the surface exponent to what passed the devices of a bowl, by maximum likelihood.
+    """Fit the surface exponent to the parts that passed the devices of a bowl, by maximum likelihood.
 
-    ``paths`` (2, D, A) [1]: share of each aspect's parts that comes to each device, and that goes on from it.
-    A device that all aspects pass alike says nothing of the exponent and is left out. Raises FeederError if
-    the part has no shape, or the devices do not tell an exponent.
-    Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
+    Each device is one binomial count: of the parts that come to it, the share that goes on follows from the
+    shares of the aspects. A device that all aspects pass alike says nothing of the exponent and is left out.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of that part.
+    counts : DeviceCounts
+        D devices.
+    paths : (2, D, A) float [1]
+        Share of each aspect's parts that comes to each device, and that goes on from it.
+
+    Returns
+    -------
+    Fit
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or the devices do not tell an exponent.
+
+    References
+    ----------
+    Maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
     """
     shares, heights, radius = _tumbling_by_aspect(part, aspects)
     came, on = np.asarray(paths)[:, :, shares > 0.0]
@@ -155,7 +213,7 @@ def fit_passes(part: Part, aspects: Aspects, counts: DeviceCounts, paths: Floats
 
 
 def _tumbling_by_aspect(part: Part, aspects: Aspects) -> tuple[Floats, Floats, float]:
-    """Exact tumbling by aspect: (A,) shares [1], (A,) heights [m], and the part's radius [m]."""
+    """Return exact tumbling by aspect: shares (A,) [1], heights (A,) [m], and the part's radius [m]."""
     basis = require_ground(part, aspects)
     rows = len(aspects.names)
     shares: Floats = np.bincount(basis.rows, basis.tips.shares, minlength=rows).astype(float)

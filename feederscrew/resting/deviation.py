@@ -44,7 +44,20 @@ class Comparison:
 def deviation(first: ArrayLike, second: ArrayLike) -> float:
     """Return the root mean square difference: the 'standard deviation' of eq. [Table 3-12] and Table 3-13.
 
-    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect.
+    Parameters
+    ----------
+    first : (A,) array_like of float [1]
+        Probabilities or fractions by aspect.
+    second : (A,) array_like of float [1]
+
+    Returns
+    -------
+    float [1]
+
+    Raises
+    ------
+    ValueError
+        If the shapes differ.
     """
     first, second = _pair(first, second)
     return float(np.sqrt(np.mean((first - second) ** 2)))
@@ -53,8 +66,25 @@ def deviation(first: ArrayLike, second: ArrayLike) -> float:
 def total_variation(first: ArrayLike, second: ArrayLike) -> float:
     """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
-    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. The result is from 0 to 1.
-    Source: half the L1 distance of two distributions.
+    Parameters
+    ----------
+    first : (A,) array_like of float [1]
+        Probabilities or fractions by aspect.
+    second : (A,) array_like of float [1]
+
+    Returns
+    -------
+    float [1]
+        From 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If the shapes differ.
+
+    References
+    ----------
+    Half the L1 distance of two distributions.
     """
     first, second = _pair(first, second)
     return float(0.5 * np.abs(first - second).sum())
@@ -63,17 +93,36 @@ def total_variation(first: ArrayLike, second: ArrayLike) -> float:
 def chi_square(counts: ArrayLike, fractions: ArrayLike, fitted_count: int = 0) -> ChiSquare:
     """Test whether counts may come from given probabilities (goodness of fit).
 
-    ``counts`` (A,) int: observed, by aspect; ``fractions`` (A,) [1]: expected; scaled to the sum of the
-    counts; ``fitted_count``: parameters of the fractions that were fitted to these counts: each costs a
-    degree of freedom. An aspect that was seen though its probability is 0 gives infinity and p = 0; one
-    neither seen nor expected is left out.
-    Raises ValueError if a shape is wrong, an entry negative or a sum zero.
-    Aspects of which fewer than ``MIN_EXPECTED_COUNT`` are expected are joined, the weakest first, until the
-    group expects enough; ``joined_aspects`` says how many. There is no test without a degree of freedom:
-    groups less one, less the parameters that were fitted.
-    Source: K. Pearson, "On the criterion that a given system of deviations ...", Phil. Mag. 50, 157-175,
-    1900. W. G. Cochran, "Some methods for strengthening the common chi-square tests", Biometrics 10(4),
-    417-451, 1954.
+        chi2 = sum (count - expected)^2 / expected
+
+    It holds where enough parts are expected on each aspect. Aspects of which fewer than
+    ``MIN_EXPECTED_COUNT`` are expected are joined, the weakest first, until the group expects enough.
+
+    Parameters
+    ----------
+    counts : (A,) int
+        Observed, by aspect.
+    fractions : (A,) array_like of float [1]
+        Expected; scaled to the sum of the counts.
+    fitted_count : int
+        Parameters of the fractions that were fitted to these counts. Each costs a degree of freedom.
+
+    Returns
+    -------
+    ChiSquare
+        Infinity and p = 0 if an aspect was seen though its probability is 0. An aspect that was neither seen
+        nor expected is left out. ``joined_aspects`` says how many are counted as one. There is no test
+        without a degree of freedom: groups less one, less the parameters that were fitted.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry negative or a sum zero.
+
+    References
+    ----------
+    K. Pearson, "On the criterion that a given system of deviations ...", Phil. Mag. 50, 157-175, 1900. W. G.
+    Cochran, "Some methods for strengthening the common chi-square tests", Biometrics 10(4), 417-451, 1954.
     """
     counts, fractions = (_weights(values) for values in _pair(counts, fractions))
     expected = counts.sum() * fractions / fractions.sum()
@@ -86,8 +135,25 @@ def chi_square(counts: ArrayLike, fractions: ArrayLike, fitted_count: int = 0) -
 def chi_square_between(first: ArrayLike, second: ArrayLike) -> ChiSquare:
     """Test whether two sets of counts may come from the same probabilities (homogeneity).
 
-    ``first`` and ``second`` (A,) int: observed, by aspect. Aspects are joined as in ``chi_square``, by the
-    lower of the two expected counts. Raises ValueError if a shape is wrong, an entry negative or a sum zero.
+    Parameters
+    ----------
+    first : (A,) int
+        Observed, by aspect.
+    second : (A,) int
+
+    Returns
+    -------
+    ChiSquare
+        Aspects are joined as in ``chi_square``, by the lower of the two expected counts.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry negative or a sum zero.
+
+    References
+    ----------
+    K. Pearson, as in ``chi_square``.
     """
     observed = np.array([_weights(values) for values in _pair(first, second)])
     observed = observed[:, observed.any(axis=0)]
@@ -100,10 +166,32 @@ def chi_square_passes(
 ) -> ChiSquare:
     """Test whether parts that passed several devices may come from given shares (one binomial a device).
 
-    ``passed`` and ``rejected`` (D,) int: observed, by device; ``expected`` (D,) [1]: shares that pass, above
-    0 and below 1; ``fitted_count``: as in ``chi_square``. Devices at which fewer than ``MIN_EXPECTED_COUNT``
-    are expected to pass or to be rejected are left out, and counted in ``joined_aspects``.
-    Source: Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".
+        chi2 = sum (passed - n p)^2 / (n p (1 - p)),   n = passed + rejected
+
+    Parameters
+    ----------
+    passed : (D,) int
+        Observed, by device.
+    rejected : (D,) int
+    expected : (D,) array_like of float [1]
+        p, shares that pass, above 0 and below 1.
+    fitted_count : int
+        As in ``chi_square``.
+
+    Returns
+    -------
+    ChiSquare
+        Devices at which fewer than ``MIN_EXPECTED_COUNT`` are expected to pass or to be rejected are left
+        out, and counted in ``joined_aspects``.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry negative or a sum zero.
+
+    References
+    ----------
+    Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".
     """
     passed, rejected = (_weights(values) for values in _pair(passed, rejected))
     came, expected = passed + rejected, check.shaped("expected", expected, passed.shape)
@@ -116,9 +204,16 @@ def chi_square_passes(
 
 
 def compare(profiles: Sequence[AspectProfile]) -> list[Comparison]:
-    """Compute every measure between every two profiles over the same aspects in the same order.
+    """Return every measure between every two profiles over the same aspects in the same order.
 
-    There is a chi-square test wherever one of the two holds counts.
+    Parameters
+    ----------
+    profiles : sequence of AspectProfile
+
+    Returns
+    -------
+    list of Comparison
+        With a chi-square test wherever one of the two holds counts.
     """
     comparisons = []
     for a, b in combinations(profiles, 2):
@@ -134,7 +229,7 @@ def compare(profiles: Sequence[AspectProfile]) -> list[Comparison]:
 
 
 def _test(observed: Floats, expected: Floats, fitted_count: int = 0) -> ChiSquare:
-    """Pearson's statistic over groups that expect enough."""
+    """Return Pearson's statistic over groups that expect enough."""
     # the weakest columns are added up until each expects ``MIN_EXPECTED_COUNT`` in every row
     order, joined = np.argsort(expected.min(axis=0), kind="stable"), 0
     observed, expected = observed[:, order], expected[:, order]

@@ -27,12 +27,27 @@ FACET_UNEVENNESS = 1e-7  # [1] of the radius: corners of a facet merged from nee
 def tumble(hull: Hull) -> Tumbling:
     """Return basins, saddles and maxima of the quasi-static flow on a convex hull.
 
-    The centre of mass must lie strictly inside the hull. ``doubts`` names every self-check that failed: the
-    areas fill the sphere, sinks - saddles + maxima = 2, every walk falls from its saddle to a sink and rises
-    from it to a maximum. Source: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part
-    pose statistics: estimators and experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model).
-    H. Baktash, N. Sharp, Q. Zhou, A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans. Graph.
-    44(4), 2025 (its Morse-Smale form; written here from the mathematics).
+    A body without momentum rolls so that its centre of mass sinks. The directions from which it ends on a
+    facet are that facet's basin, bounded by the ways up from the saddles. The area of a basin is summed along
+    these ways, so the shares are exact.
+
+    Parameters
+    ----------
+    hull : Hull
+        The centre of mass must lie strictly inside.
+
+    Returns
+    -------
+    Tumbling
+        ``doubts`` names every self-check that failed: the areas fill the sphere, sinks - saddles + maxima =
+        2, every walk falls from its saddle to a sink and rises from it to a maximum.
+
+    References
+    ----------
+    K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part pose statistics: estimators and
+    experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model). H. Baktash, N. Sharp, Q. Zhou,
+    A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans. Graph. 44(4), 2025 (its Morse-Smale
+    form; written here from the mathematics).
     """
     edges = tumbling_edges.half_edges(hull)
     sinks, saddles = tumbling_edges.sinks(edges), tumbling_edges.saddles(edges)
@@ -79,7 +94,7 @@ def tumble(hull: Hull) -> Tumbling:
 
 
 def _areas(raw: Floats) -> Floats:
-    """Basin areas from boundary integrals: those that hold the point opposite their gauge lack 4 pi."""
+    """Return basin areas from boundary integrals; those that hold the point opposite the gauge lack 4 pi."""
     if len(raw) == 1:
         return np.array([barriers.SPHERE])
     missing = max(round(1.0 - raw.sum() / barriers.SPHERE), 0)
@@ -121,9 +136,18 @@ class Transition:
 
 
 def ground_faces(hull: Hull, faces: list[Face], rows: Ints) -> Ground:
-    """Compute exact basins and barriers of stable faces.
+    """Return exact basins and barriers of stable faces.
 
-    ``rows`` (F,) int: the row of each face's class among the aspects.
+    Parameters
+    ----------
+    hull : Hull
+    faces : list of F Face
+    rows : (F,) int
+        Row of each face's class among the aspects.
+
+    Returns
+    -------
+    Ground
     """
     labels = np.full(len(hull.triangles), barriers.UNNAMED)
     for k, face in enumerate(faces):
@@ -135,10 +159,24 @@ def ground_faces(hull: Hull, faces: list[Face], rows: Ints) -> Ground:
 def tumble_classes(
     ground: Ground, part: Part, stable: Bools, exponent: float = formulas.EXPONENTS["hard"]
 ) -> Exact:
-    """Compute the columns that exact tumbling adds to the aspects of a part.
+    """Return the columns that exact tumbling adds to the aspects of a part.
 
-    ``stable`` (A,) bool: which aspects are; ``exponent`` [1]: of the surface-weighted closed form.
-    Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
+    Parameters
+    ----------
+    ground : Ground
+    part : Part
+    stable : (A,) bool
+        Which aspects are stable.
+    exponent : float [1]
+        Exponent of the surface-weighted closed form.
+
+    Returns
+    -------
+    Exact
+
+    References
+    ----------
+    docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
     """
     tips, count = ground.tips, len(stable)
     lifts = barriers.barriers(tips)
@@ -193,7 +231,7 @@ def transitions(ground: Ground) -> list[Transition]:
 
 
 def _lowest(rows: Ints, values: Floats, count: int) -> Floats:
-    """(A,) smallest value of each row's faces; NaN where there is none."""
+    """Return the smallest value (A,) of each row's faces; NaN where there is none."""
     lowest = np.full(count, np.inf)
     np.fmin.at(lowest, rows, values)
     return np.where(np.isfinite(lowest), lowest, np.nan)

@@ -34,11 +34,11 @@ MAJORITY_SHARE = 0.95  # of a side, by area
 
 
 def _intended_flats(hull: Hull, basins: Landscape) -> Bools:
-    """(B,) which sinks lie on facets much wider than the others of their smooth side.
+    """Return which sinks (B,) lie on facets much wider than the others of their smooth side.
 
     Even the gentlest bend round such a facet is ``LARGER`` than that round half of the side, by area, or
-    ``LONE_BEND_FACTOR`` of that round ``MAJORITY_SHARE`` of it: a facet of a tessellated ball or cylinder is
-    not, a flat cut into it is.
+    ``LONE_BEND_FACTOR`` of that round ``MAJORITY_SHARE`` of it. A flat cut into a ball or cylinder passes
+    this; a facet of its tessellation does not.
     """
     first, second = basins.pairs.T
     bends = angle(hull.normals[first], hull.normals[second])
@@ -100,7 +100,18 @@ class Face:
 
 
 def stable_faces(hull: Hull, basins: Landscape) -> list[Face]:
-    """Return the faces the part rests on, one for each basin; strips of one coarse curve make one."""
+    """Return the faces the part rests on, one for each basin; strips of one coarse curve make one.
+
+    Parameters
+    ----------
+    hull : Hull
+    basins : Landscape
+        Of that hull.
+
+    Returns
+    -------
+    list of Face
+    """
     labels = _coarse_curves(hull, basins)
     sides = _smooth_sides(hull, basins, labels)
     lowest, strips = _strips(hull, basins, np.unique(labels, return_inverse=True)[1], sides)
@@ -108,7 +119,18 @@ def stable_faces(hull: Hull, basins: Landscape) -> list[Face]:
 
 
 def unstable_faces(hull: Hull, basins: Landscape, stable: list[Face]) -> list[Face]:
-    """Return the faces made of the triangles no stable face has taken: the part rolls off them."""
+    """Return the faces made of the triangles that no stable face has taken: the part rolls off them.
+
+    Parameters
+    ----------
+    hull : Hull
+    basins : Landscape
+    stable : list of Face
+
+    Returns
+    -------
+    list of Face
+    """
     free = np.ones(len(hull.triangles), dtype=bool)
     for face in stable:
         free[face.triangles] = False
@@ -124,7 +146,7 @@ def unstable_faces(hull: Hull, basins: Landscape, stable: list[Face]) -> list[Fa
 
 
 def _coarse_curves(hull: Hull, basins: Landscape) -> Ints:
-    """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
+    """Return a label of each sink (B,); strips of one coarsely tessellated curve share it."""
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
     step = np.abs(np.diff(levels, axis=1))[:, 0] / levels.max(axis=1, initial=0.0)  # whichever comes first
@@ -157,7 +179,7 @@ def _coarse_curves(hull: Hull, basins: Landscape) -> Ints:
 
 
 def _strips(hull: Hull, basins: Landscape, group: Ints, sides: Ints) -> tuple[Ints, list[Ints]]:
-    """(F,) lowest sink and the triangles of each face, from the (B,) face of every sink."""
+    """Return the lowest sink (F,) and the triangles of each face, from the face (B,) of every sink."""
     count, sinks = group.max() + 1, basins.sinks
     at = np.searchsorted(sinks, basins.basins)
     triangles = np.lexsort((at, group[at]))
@@ -181,12 +203,12 @@ def _strips(hull: Hull, basins: Landscape, group: Ints, sides: Ints) -> tuple[In
 
 
 def _may_roll(hull: Hull, triangles: list[Ints]) -> Bools:
-    """(F,) whether there are enough triangles, in each of a list of F arrays, and so unlike, for a curve."""
+    """Return which faces (F,), each an array of triangles, have enough unlike triangles for a curve."""
     return _are_curved(hull, triangles) & (np.array(list(map(len, triangles))) >= MIN_ROCKER_STRIPS)
 
 
 def _smooth_sides(hull: Hull, basins: Landscape, group: Ints) -> Ints:
-    """(T,) label of each triangle; gentle bends within its group lead to all others of the same."""
+    """Return a label of each triangle (T,); gentle bends within its group lead to all others of the same."""
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
     first, second = basins.pairs.T
     joined = (owner[first] == owner[second]) & gentle(hull.normals, basins.pairs)
@@ -194,7 +216,7 @@ def _smooth_sides(hull: Hull, basins: Landscape, group: Ints) -> Ints:
 
 
 def _is_rocker(hull: Hull, side: Ints, sink: int) -> bool:
-    """Whether a side that may roll is of strips of a curve, whose axis may lie off the centre of mass."""
+    """Return whether a side that may roll is a curve in strips; its axis may pass by the centre of mass."""
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
     if share[leans < 0.5 * SMOOTH_ANGLE].sum() > 0.5:
@@ -211,7 +233,7 @@ def _is_rocker(hull: Hull, side: Ints, sink: int) -> bool:
 
 
 def _effective_strips(normals: Floats, share: Floats) -> float:
-    """Effective number of strips, of (N, 3) normals and (N,) weights: 1 over the sum of squared shares."""
+    """Return the effective number of strips of normals (N, 3): 1 over the sum of squared shares (N,)."""
     places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
     strips = np.unique(places, return_inverse=True)[1]
     weights = np.bincount(strips, share)
@@ -219,7 +241,11 @@ def _effective_strips(normals: Floats, share: Floats) -> float:
 
 
 def _is_round(hull: Hull, triangles: Ints) -> bool:
-    """Whether triangles touch one cylinder, cone or ball, wherever its middle is."""
+    """Return whether triangles touch one cylinder, cone or ball, wherever its middle is.
+
+    The height of a tangent plane over the centre of mass is linear in its normal there: h = r + n . m with
+    the radius r and the middle m.
+    """
     weights, height = np.sqrt(hull.areas[triangles]), hull.heights[triangles]
     around = np.column_stack([np.ones(len(triangles)), hull.normals[triangles]])
     off = vectors.misfit(around * weights[:, None], height * weights)
@@ -227,7 +253,7 @@ def _is_round(hull: Hull, triangles: Ints) -> bool:
 
 
 def _describe_faces(hull: Hull, triangles: list[Ints], lowest: Ints, stable: bool) -> list[Face]:
-    """Records of the faces made of triangles, a list of F arrays, from the (F,) lowest of each."""
+    """Return records of the faces made of triangles, a list of F arrays, from the lowest (F,) of each."""
     if not len(triangles):
         return []
     curved, feet, count = _are_curved(hull, triangles), list(triangles), len(triangles)
@@ -277,7 +303,7 @@ def _describe_faces(hull: Hull, triangles: list[Ints], lowest: Ints, stable: boo
 
 
 def _axis(normals: Floats, weights: Floats, lowest: Floats) -> Floats:
-    """Axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball.
+    """Return the axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball.
 
     A cap of a ball has normals in two dimensions about the ``lowest`` one, which is no axis to roll about.
     """
@@ -292,7 +318,7 @@ def _axis(normals: Floats, weights: Floats, lowest: Floats) -> Floats:
 
 
 def _are_curved(hull: Hull, triangles: list[Ints]) -> Bools:
-    """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
+    """Return which faces (F,), each an array of triangles, are strips of a curve and not a plane."""
     if not len(triangles):
         return np.empty(0, dtype=bool)
     (members, owners), count = join_groups(triangles), len(triangles)
@@ -306,20 +332,20 @@ def _are_curved(hull: Hull, triangles: list[Ints]) -> Bools:
 
 
 def _spread(normals: Floats) -> float:
-    """Angle across a set of directions [rad]: between the two furthest apart, whatever their order."""
+    """Return the angle [rad] across a set of directions, between the two furthest apart."""
     if len(normals) > MOST_PAIRED:  # from the one furthest from their mean
         end = normals[np.argmax(angle(normals, normals.mean(axis=0)))]
-        return angle(normals, end).max()
+        return float(angle(normals, end).max())
     first, second = np.divmod(np.argmin(vectors.product(normals, normals.T)), len(normals))
-    return angle(normals[first], normals[second])
+    return float(angle(normals[first], normals[second]))
 
 
 def _planes(hull: Hull, sinks: Ints, members: list[Ints], of_curves: bool = False) -> list[Ints]:
-    """Of the members about each of (F,) sinks, those in the plane there and in the sink's own; ascending.
+    """Return the members about each sink (F,) that lie in the plane there and in the sink's own; ascending.
 
-    The tightest plane that holds most of what noise allows, and that a looser one would hardly add to: in a
-    clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a curve one
-    strip is wanted, though the halves of the strips beside it may lie as shallow.
+    It is the tightest plane that holds most of what noise allows, and that a looser one would hardly add to:
+    in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a curve
+    one strip is wanted, though the halves of the strips beside it may lie as shallow.
     """
     if not len(sinks):
         return []
@@ -353,25 +379,41 @@ def _planes(hull: Hull, sinks: Ints, members: list[Ints], of_curves: bool = Fals
 
 
 def _plane_depth(hull: Hull, planes: Ints, members: Ints, owners: Ints) -> Floats:
-    """(N,) [m] how far the corners of each member lie off the plane of its owner's triangle, of (F,)."""
+    """Return how far (N,) [m] the corners of each member lie off the plane of its owner's triangle."""
     corners = hull.triangles[members].T
     above = vectors.dot(hull.vertices[corners], hull.normals[planes][owners])
     return np.abs(above - hull.heights[planes][owners]).max(axis=0)
 
 
 def contact_outlines(vertices: Floats, corners: Ints, owners: Ints, normals: Floats) -> list[Floats]:
-    """Return the convex outlines (K, 3) [m] of points about planes, counter-clockwise against the normal.
+    """Return the convex outlines of points about planes, counter-clockwise against the normal.
 
-    ``vertices`` (V, 3) [m]; ``corners`` and ``owners`` (N,) int: the points of the outlines, and to which of
-    them each belongs, ascending; ``normals`` (F, 3) [1]: of the planes, outward. No corner is on a line
-    between its neighbours; where all points lie on one line they are returned as they are.
-    Source: own; docs/resting.md, "Barriers and the tipping graph".
+    Parameters
+    ----------
+    vertices : (V, 3) float [m]
+    corners : (N,) int
+        Points of the outlines, by their rows in ``vertices``.
+    owners : (N,) int
+        Outline to which each point belongs, ascending.
+    normals : (F, 3) float [1]
+        Of the planes, outward.
+
+    Returns
+    -------
+    list of F (K, 3) float [m]
+        No corner is on a line between its neighbours. Where all points lie on one line they are returned as
+        they are.
+
+    References
+    ----------
+    Own; docs/resting.md, "Barriers and the tipping graph".
     """
     points, count = vertices[corners], len(normals)
     x, y = (vectors.dot(points, axes[owners]) for axes in vectors.plane_axes(normals))
     u, v = (along - (group_sums(along, owners, count) / np.bincount(owners))[owners] for along in (x, y))
     around = np.lexsort((np.arctan2(v, u), owners))
-    # which outlines turn left at every corner
+    # Sorted by angle about their mean, most outlines are convex already: they turn left at every corner.
+    # Only the others need a hull algorithm.
     x, y, first = x[around], y[around], group_starts(owners, count)
     before = np.arange(len(x)) - 1
     before[first] = np.append(first[1:], len(x)) - 1
@@ -388,7 +430,7 @@ def contact_outlines(vertices: Floats, corners: Ints, owners: Ints, normals: Flo
 
 
 def _of_extreme_points(points: Floats, normal: Floats) -> Floats:
-    """The same where some of the points lie within the outline or straight between others."""
+    """Return the outline where some of the points lie within it or straight between others."""
     plane = vectors.product(points, np.column_stack(vectors.plane_axes(normal)))
     try:
         corners = points[spatial.ConvexHull(plane).vertices]
@@ -409,10 +451,11 @@ def _of_extreme_points(points: Floats, normal: Floats) -> Floats:
 
 
 def _rolling_height(polygon: Floats, axis: Floats, flat: float) -> float:
-    """[m] of the centre of mass over the line on which a round side rolls, from its lowest strip (K, 3) [m].
+    """Return the height [m] of the centre of mass over the line on which a round side rolls.
 
-    The corners lie on circles about the axis, and the line of contact touches the two at the strip's ends;
-    the height ``flat`` over the strip where the axis passes the centre of mass by, or there is none.
+    The strip's corners (K, 3) [m] lie on circles about the axis, and the line of contact touches the two at
+    the strip's ends. Where the axis passes the centre of mass by, or there is none, it is the height
+    ``flat``.
     """
     if np.isnan(axis).any() or not len(polygon):
         return flat

@@ -91,11 +91,11 @@ def half_edges(hull: Hull) -> Edges:
 
 
 def _one_way_out(slopes: Floats, sides: Floats, borders: "Borders") -> Floats:
-    """(H,) [m2] slopes with which every facet is left one way: over one edge, over one corner, or not at all.
+    """Return slopes (H,) [m2] with which every facet is left one way: over an edge, over a corner or not.
 
-    The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the
-    border lies on or, by rounding, behind the line between its neighbours, the signs may name two places or
-    none: the nearest is taken, and at the others the foot is past the corner on the other side of it.
+    The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the border
+    lies on or, by rounding, behind the line between its neighbours, the signs may name two places or none.
+    Then the nearest is taken; at the others the foot counts as past the corner on the other side of it.
     """
     edges, before = np.flatnonzero(borders.part), np.zeros_like(borders.ahead)
     before[borders.ahead[edges]] = edges
@@ -145,7 +145,7 @@ def maxima(edges: Edges) -> Ints:
 
 
 def _facets(hull: Hull, twins: Ints) -> Ints:
-    """Facet of each triangle: triangles joined across flat edges."""
+    """Return the facet of each triangle: triangles joined across flat edges."""
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
     # how far the corner off each edge, of the neighbour, lies below the triangle's plane
     corners = np.ascontiguousarray(hull.vertices.T)[:, hull.triangles.ravel()[twins]]
@@ -171,7 +171,7 @@ def _facets(hull: Hull, twins: Ints) -> Ints:
 
 
 def _facet_normals(hull: Hull, facets: Ints) -> Floats:
-    """(M, 3) unit normals of the facets, by the areas of their triangles."""
+    """Return unit normals (M, 3) of the facets, by the areas of their triangles."""
     if len(hull.triangles) == facets.max() + 1:
         return hull.normals[np.argsort(facets)]
     weighted = hull.areas[:, None] * hull.normals
@@ -192,10 +192,29 @@ class Borders(NamedTuple):
 def facet_borders(hull: Hull, origins: Ints, targets: Ints, twins: Ints, facets: Ints) -> Borders:
     """Return the borders between facets, as a convex body has them.
 
-    ``origins`` and ``targets`` and ``twins`` (H,) int: its half-edges: 3 t to 3 t + 2 run around triangle t;
-    ``facets`` (H,) int: facet of coplanar triangles each half-edge belongs to. Returns every corner with
-    three edges or more, every facet likewise and convex; facets are numbered without gaps. A facet that would
-    not be convex is left in triangles, and one left with two edges (a needle) becomes part of its neighbour.
+    Every corner has three edges or more, every facet likewise and is convex. A facet that would not be convex
+    is left in triangles. A facet left with two edges (a needle) becomes part of its neighbour.
+
+    Parameters
+    ----------
+    hull : Hull
+    origins : (H,) int
+        Corner each half-edge starts from; half-edges 3 t to 3 t + 2 run around triangle t.
+    targets : (H,) int
+        Corner it ends at.
+    twins : (H,) int
+        The same edge seen from the other side.
+    facets : (H,) int
+        Facet of coplanar triangles that each half-edge belongs to.
+
+    Returns
+    -------
+    Borders
+        Facets are numbered without gaps.
+
+    References
+    ----------
+    Own.
     """
     single, reflex = np.arange(len(facets)) // 3, np.ones(1, bool)
     while reflex.any():  # take facets with a reflex corner apart
@@ -220,6 +239,7 @@ def facet_borders(hull: Hull, origins: Ints, targets: Ints, twins: Ints, facets:
 
 
 def _find_borders(targets: Ints, twins: Ints, facets: Ints) -> Borders:
+    """Return the borders between facets before corners of two facets are removed."""
     part = facets != facets[twins]
     # next border along each facet, over the edges within it; meaningless off the borders
     following = np.arange(len(twins)).reshape(-1, 3)[:, [1, 2, 0]].ravel()
@@ -232,12 +252,12 @@ def _find_borders(targets: Ints, twins: Ints, facets: Ints) -> Borders:
 
 
 def _number_facets(facets: Ints) -> Ints:
-    """(H,) facets numbered without gaps."""
+    """Return facets (H,) numbered without gaps."""
     return np.unique(facets, return_inverse=True)[1].ravel()
 
 
 def _straighten_borders(origins: Ints, borders: Borders) -> Borders:
-    """Borders with one edge where several met at corners of two facets."""
+    """Return borders with one edge where several met at corners of two facets."""
     valence = np.bincount(origins[borders.part], minlength=origins.max() + 1)
     # passing half-edges end at a corner of two facets
     passing = borders.part & (valence[borders.targets] < MIN_FACETS_AT_CORNER)

@@ -35,17 +35,22 @@ class InertiaProducts:
 def find_products(aspects: Aspects, inertia: Floats) -> InertiaProducts:
     """Return the products of inertia of each aspect, and PMI by the nearest principal moments.
 
+    With z along a normal n the products are I n without its component along n.
+
     Parameters
     ----------
     aspects : Aspects
         Of a part with a shape: their normals are known.
-    inertia : (3, 3) [kg m2]
+    inertia : (3, 3) float [kg m2]
         Of the part, about its centre of mass, in the axes of the normals.
 
     Returns
     -------
     InertiaProducts
-        With z along a normal n the products are I n without its component along n.
+
+    References
+    ----------
+    Chapter 6.2 of the thesis recommends the study; the measure is own.
     """
     turned = vectors.product(aspects.normals, inertia)
     along = vectors.dot(turned, aspects.normals)

@@ -8,7 +8,6 @@ Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -29,7 +28,19 @@ def find_roots(forest: Ints) -> Ints:
 
 @compiled
 def find_root(forest: Ints, k: int) -> int:
-    """Return the root of a member of a forest (N,), and cut the way to it short."""
+    """Return the root of a member of a forest, and cut the way to it short.
+
+    Parameters
+    ----------
+    forest : (N,) int
+        Place of each member's parent; a root names itself. Changed: members on the way point nearer to the
+        root.
+    k : int
+
+    Returns
+    -------
+    int
+    """
     while forest[k] != k:
         forest[k] = forest[forest[k]]
         k = forest[k]
@@ -49,9 +60,33 @@ def join_trees(
 ) -> None:
     """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
 
-    A way between sinks that lower ways have led to each other is passed over. ``heights`` and ``limits`` (B,)
-    [m]; ``lefts`` and ``rights`` (W,) int; ``tops`` (W,) [m]; filled are ``region`` and ``basin`` (B,) int
-    and ``stands`` (W,) bool. Source: own; docs/resting.md, "Exact tumbling".
+    This is union and find: a way between sinks that lower ways have led to each other is passed over.
+
+    Parameters
+    ----------
+    heights : (B,) float [m]
+        Of the sinks.
+    limits : (B,) float [m]
+        Rise up to which the shallower side is joined.
+    lefts : (W,) int
+        Sink on one side of each way.
+    rights : (W,) int
+    tops : (W,) float [m]
+        Height of each way, ascending.
+    region : (B,) int
+        Filled: forest of all sinks that ways so far have led to each other.
+    basin : (B,) int
+        Filled: forest of the sinks that are joined.
+    stands : (W,) bool
+        Filled: ways that rise by more than the limit.
+
+    Returns
+    -------
+    None
+
+    References
+    ----------
+    Own; docs/resting.md, "Exact tumbling".
     """
     for k in range(len(tops)):
         i, j = lefts[k], rights[k]
@@ -71,14 +106,39 @@ def join_trees(
 
 @compiled
 def adopt_tree(pairs: Ints, tops: Floats, tie: float, names: Ints, parent: Ints, claims: Ints) -> int:
-    """Let every nameless sink be claimed by what lies behind its lowest saddle, or saddles where they tie.
+    """Let every nameless sink be claimed by the face behind its lowest saddle, or saddles where they tie.
 
-    ``pairs`` (E, 2); ``tops`` (E,) [m]; ``tie`` [m]; ``names`` (S,) int; ``parent`` (S,) int; ``claims`` (E,
-    2). Returns the number of claims. Source: own; docs/resting.md, "Exact tumbling".
+    Parameters
+    ----------
+    pairs : (E, 2) int
+        Sinks on both sides of each saddle.
+    tops : (E,) float [m]
+        Heights of the saddles, ascending.
+    tie : float [m]
+        Difference within which saddles are as low as each other.
+    names : (S,) int
+        Face of each sink; changed where a sink is claimed.
+    parent : (S,) int
+        Changed: forest of nameless sinks that saddles join.
+    claims : (E, 2) int
+        Filled: root of the claimed sinks, and the sink that claims them.
+
+    Returns
+    -------
+    int
+        Number of claims.
+
+    References
+    ----------
+    Own; docs/resting.md, "Exact tumbling".
     """
     count = start = 0
     while start < len(pairs):
         stop = start
+        # saddles that tie are looked at together: first nameless sinks on both sides join, then each of their
+        # trees takes every name beside it
+        # saddles that tie are looked at together: first nameless sinks on both sides join, then each of their
+        # trees takes every name beside it
         while stop == start or (stop < len(pairs) and tops[stop] - tops[start] <= tie):
             i, j = find_root(parent, pairs[stop, 0]), find_root(parent, pairs[stop, 1])
             if names[i] == NAMELESS and names[j] == NAMELESS:
@@ -123,10 +183,24 @@ class Landscape:
 def passes(hull: Hull, pairs: Ints, ends: Ints) -> Floats:
     """Return the height of the centre of mass at the highest point of the way over each edge.
 
-    Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
-    if that happens on the way, else the way is downhill and its top is the higher side. ``pairs`` and
-    ``ends`` (E, 2) int: triangles on either side and corners of each edge. Returns (E,) [m].
-    Source: docs/resting.md, "Barriers and the tipping graph".
+    Tipping over an edge turns the part about it. The centre of mass climbs until it stands over the edge, if
+    that happens on the way; else the way is downhill and its top is the higher side.
+
+    Parameters
+    ----------
+    hull : Hull
+    pairs : (E, 2) int
+        Triangles on either side of each edge.
+    ends : (E, 2) int
+        Corners of each edge.
+
+    Returns
+    -------
+    (E,) float [m]
+
+    References
+    ----------
+    docs/resting.md, "Barriers and the tipping graph".
     """
     p, q = vectors.columns_at(hull.vertices, ends)
     n1, n2 = vectors.columns_at(hull.normals, pairs)
@@ -135,6 +209,8 @@ def passes(hull: Hull, pairs: Ints, ends: Ints) -> Floats:
     foot = p - along * (vectors.dot_columns(p, along) / square)  # of the centre
     sides = ((n1, n2), (n1, foot), (foot, n2))
     turn, before, after = (vectors.dot_columns(vectors.cross_columns(*side), along) for side in sides)
+    # the foot on the edge is passed where it lies between the two normals, in the sense of the turn
+    # the foot on the edge is passed where it lies between the two normals, in the sense of the turn
     between = (before * turn > 0.0) & (after * turn > 0.0)
     higher = np.maximum(*hull.heights[pairs.T])
     return np.where(between, np.maximum(np.sqrt(vectors.dot_columns(foot, foot)), higher), higher)
@@ -181,26 +257,50 @@ def landscape(hull: Hull) -> Landscape:
     )
 
 
-def angle(u: Floats, v: Floats) -> Any:
-    """Return angles between vectors (..., 3) [rad], true down to the smallest.
+def angle(u: Floats, v: Floats) -> Floats:
+    """Return angles between vectors, true down to the smallest.
 
-    Source: its sine and cosine are the cross and the scalar product over one and the same length.
+    Parameters
+    ----------
+    u : (..., 3) float [any]
+    v : (..., 3) float [any]
+
+    Returns
+    -------
+    (...) float [rad]
+        From 0 to pi. The arc cosine of the scalar product would lose half the digits of a small angle.
+
+    References
+    ----------
+    Its sine and cosine are the cross and the scalar product over one and the same length.
     """
     along = u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1] + u[..., 2] * v[..., 2]
     return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
 
 
 def gentle(normals: Floats, pairs: Ints) -> Bools:
-    """Return whether two planes meet in a bend so gentle that it may be part of a curve: (E,) bool.
+    """Return whether two planes meet in a bend so gentle that it may be part of a curve.
 
-    ``normals`` (N, 3) [1]: unit vectors; ``pairs`` (E, 2) int: of planes.
-    Source: own; docs/resting.md, "The drop test": turns of less than 25 degrees.
+    Parameters
+    ----------
+    normals : (N, 3) float [1]
+        Unit vectors.
+    pairs : (E, 2) int
+        Planes, by their rows.
+
+    Returns
+    -------
+    (E,) bool
+
+    References
+    ----------
+    Own; docs/resting.md, "The drop test": turns of less than 25 degrees.
     """
     return vectors.dot_columns(*vectors.columns_at(normals, pairs)) > GENTLE_COSINE
 
 
 def _broad_normals(hull: Hull, below: Ints) -> Floats:
-    """(T, 3) normal of each triangle, of a sliver that of the first broad one on its way down.
+    """Return the normal (T, 3) of each triangle, of a sliver that of the first broad one on its way down.
 
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
     """
@@ -224,9 +324,9 @@ def _broad_normals(hull: Hull, below: Ints) -> Floats:
 
 
 def _join_basins(hull: Hull, basins: Ints, pairs: Ints, tops: Floats, limit: Floats) -> tuple[Ints, Ints]:
-    """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
+    """Return basins (T,) joined where the way between them rises by no more than the shallower one's limit.
 
-    Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
+    Returned too are the edges (indices) of the lowest ways that rise by more.
     """
     sinks = _sinks(basins)
     place = np.searchsorted(sinks, basins)
@@ -242,5 +342,5 @@ def _join_basins(hull: Hull, basins: Ints, pairs: Ints, tops: Floats, limit: Flo
 
 
 def _sinks(basins: Ints) -> Ints:
-    """(B,) triangles at the bottom of their own basins."""
+    """Return the triangles (B,) at the bottom of their own basins."""
     return np.flatnonzero(basins == np.arange(len(basins)))

@@ -50,21 +50,21 @@ class Posture(ReadableRecord):
 
     @property
     def surface(self) -> Floats:
-        """Every corner (V, 3) of the part's mesh as it stands [m], z from the floor."""
+        """Return every corner (V, 3) [m] of the part's mesh as it stands, z from the floor."""
         body, axes = cast(Part, self.solid).corners, cast(Floats, self.axes)
         return np.einsum("ij,vj->vi", axes, body) + np.array([0.0, 0.0, self.height])
 
     @property
     def facets(self) -> Triangles:
-        """The facets (F, 3) int of the part's mesh: corners by their rows in ``surface``."""
+        """Return the facets (F, 3) int of the part's mesh: corners by their rows in ``surface``."""
         return cast(Triangles, cast(Part, self.solid).faces)
 
     @cached_property
     def on_floor(self) -> Bools:
-        """Which corners (V,) of its mesh touch the floor; None where those that are low do not carry it.
+        """Return which corners (V,) of the mesh touch the floor.
 
-        So it is where the contact polygon is of facets not quite in one plane, or the file has noise: the
-        part stands on the whole polygon then.
+        Where the low corners do not carry the part, none is taken and the part stands on its whole contact
+        polygon: the polygon is of facets not quite in one plane, or the file has noise.
         """
         points = self.surface
         low = points[:, 2] < TOUCHING_SHARE * np.ptp(self.outline, axis=0).max()
@@ -72,9 +72,10 @@ class Posture(ReadableRecord):
 
     @cached_property
     def feet(self) -> Floats:
-        """Edges (E, 2, 2) of the mesh that lie on the floor [m]; single corners are edges of no length.
+        """Return the edges (E, 2, 2) [m] of the mesh on the floor; single corners are edges of no length.
 
-        Of a part that rolls, of a card and where no corners carry it the sides of the contact polygon.
+        Of a part that rolls, of a card and where no corners carry it they are the sides of the contact
+        polygon.
         """
         if self.solid is None or self.kind == "rolling" or not self.on_floor.any():
             return np.stack([self.contact, np.roll(self.contact, -1, axis=0)], axis=1)
@@ -82,12 +83,12 @@ class Posture(ReadableRecord):
 
     @property
     def turning_inertia(self) -> float:
-        """Moment of inertia about the vertical through the centre of mass [kg m2]."""
+        """Return the moment of inertia [kg m2] about the vertical through the centre of mass."""
         return float(self.inertia[2, 2])
 
 
 def _borders(faces: Triangles, low: Bools) -> Ints:
-    """Ends (E, 2) of the edges between low corners but for those within low facets; lone corners twice."""
+    """Return ends (E, 2) of edges between low corners, not those within low facets; lone corners twice."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     lying = np.tile(low[faces].all(axis=1), 3)
     low_edges = low[ends].all(axis=1)
@@ -134,6 +135,7 @@ def posture(part: Part, aspects: Aspects, aspect: str) -> Posture:
 
 @lru_cache(maxsize=32)
 def _of_mesh(part: Part, aspects: Aspects, row: int) -> Posture:
+    """Return the posture of a part with a mesh on the aspect of a row."""
     hull = convex_hull(cast(Points, part.vertices), part.centre_of_mass, part.source)
     # some axes x, y, z as rows, with z up
     up = -aspects.normals[row]
@@ -173,7 +175,7 @@ def _of_mesh(part: Part, aspects: Aspects, row: int) -> Posture:
 
 
 def _forward(contact: Floats, shape: Floats, corners: Floats, size: float) -> Floats:
-    """Unit vector of heading 0 in the floor."""
+    """Return the unit vector of heading 0 in the floor."""
     towards = centroid(contact)
     if np.hypot(*towards) > COINCIDE * size:
         return towards / np.hypot(*towards)
@@ -183,7 +185,7 @@ def _forward(contact: Floats, shape: Floats, corners: Floats, size: float) -> Fl
     unit = longest / np.hypot(*longest.T)[:, None]
 
     def lopsidedness(along: Floats) -> tuple[float, ...]:
-        """Odd moments of the corners about one direction: tells equal sides however a file is turned."""
+        """Return odd moments of the corners about one direction: they tell equal sides of any file apart."""
         across = np.column_stack([along, (-along[1], along[0])])
         x, y = vectors.product(corners[:, :2] / size, across).T
         z = corners[:, 2] / size
@@ -194,7 +196,7 @@ def _forward(contact: Floats, shape: Floats, corners: Floats, size: float) -> Fl
 
 
 def _of_card(part: Part, aspects: Aspects, row: int) -> Posture:
-    """What the card prints; NaN where it is silent."""
+    """Return the posture that the card prints; NaN where it is silent."""
     name, blocks = aspects.names[row], part.printed or {}
     printed = (blocks.get(block, {}) for block in ("floor", "track"))
     floor, track = (dict(block) if block.get("aspect") == name else {} for block in printed)
@@ -220,12 +222,29 @@ def _of_card(part: Part, aspects: Aspects, row: int) -> Posture:
 def choose_posture(
     part: Part, aspect: str | None, block: str, find_answer: Callable[[Part], Aspects] = find_aspects
 ) -> tuple[Posture, str | None]:
-    """Return the part on an aspect, and why on this one; None where it was asked for.
+    """Return the part on an aspect, and why on this one.
 
-    ``aspect``: its name; None for the one that a card's block is of, else for the likeliest, of a card the
-    first; ``block``: of a part card: 'floor' or 'track'; ``find_answer``: from a part to its Aspects with the
-    answer that says which is the likeliest; asked only for that. Raises FeederError if there is no such
-    aspect.
+    Parameters
+    ----------
+    part : Part
+    aspect : str or None
+        Name of the aspect. None takes the one that a card's block is about, else the likeliest, of a card the
+        first.
+    block : str
+        Block of a part card: 'floor' or 'track'.
+    find_answer : function of Part
+        Returns its Aspects with the answer that says which is the likeliest; called only if that is needed.
+
+    Returns
+    -------
+    Posture
+    str or None
+        Reason of the choice; None where the aspect was asked for.
+
+    Raises
+    ------
+    FeederError
+        If there is no such aspect.
     """
     if aspect is not None:
         return posture(part, find_aspects(part), aspect), None

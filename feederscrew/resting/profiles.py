@@ -53,7 +53,7 @@ class Head:
 
     @property
     def reading(self) -> dict[str, Any]:
-        """What the part file is read with, as keywords of ``feederscrew.part.load``."""
+        """Return the keywords of ``feederscrew.part.load`` with which the part file is read."""
         values = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass", "body")}
         return {name: value for name, value in values.items() if value}
 
@@ -109,10 +109,25 @@ def read_count_text(path: str | PathLike[str]) -> tuple[str, str]:
 
 
 def parse_count_sheet(text: str, where: str) -> CountSheet:
-    """Split the text of a file of counts into its head and its rows; ``where`` names it in fault lines.
+    """Split the text of a file of counts into its head and its rows.
 
-    Lines that begin with '#' are comments; above the header they may be its head. Raises FeederError if it is
-    empty, not CSV or has too many rows or columns; faults of the head.
+    Lines that begin with '#' are comments. Above the header a comment '# key: value' with a key of ``Head``
+    is part of the head.
+
+    Parameters
+    ----------
+    text : str
+    where : str
+        Name of the file in fault lines.
+
+    Returns
+    -------
+    CountSheet
+
+    Raises
+    ------
+    FeederError
+        If the text is empty, not CSV, or has too many rows or columns, or for faults of the head.
     """
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
     table = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
@@ -155,7 +170,28 @@ def parse_count_sheet(text: str, where: str) -> CountSheet:
 
 
 def split_cells(where: str, number: int, line: str, mend: str = COUNTS_EXAMPLE) -> list[str]:
-    """Return the cells of one line of CSV; raises a FeederError that ends in ``mend`` if it is none."""
+    """Return the cells of one line of CSV.
+
+    Parameters
+    ----------
+    where : str
+        Name of the file in a fault line.
+    number : int
+        Number of the line.
+    line : str
+    mend : str
+        How to mend the fault.
+
+    Returns
+    -------
+    list of str
+        Without spaces around them.
+
+    Raises
+    ------
+    FeederError
+        If the line is not CSV.
+    """
     try:
         return [cell.strip() for cell in next(csv.reader([line]), [])]
     except csv.Error as error:
@@ -165,7 +201,7 @@ def split_cells(where: str, number: int, line: str, mend: str = COUNTS_EXAMPLE) 
 SUM_TOLERANCE = 0.005  # of the whole: how far printed fractions may miss their sum
 COLUMN_SUM = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
 DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
-# first column: what it counts by
+# the first column says what a table counts by
 BY_ASPECT = "aspect"
 BY_ORIENTATION = "orientation"
 BY_DEVICE = "device"
@@ -187,7 +223,7 @@ class AspectProfile:
 
     @property
     def has_counts(self) -> bool:
-        """Whether the values are counts, which a test needs."""
+        """Return whether the values are counts, which a test needs."""
         return self.kind == "counts"
 
 
@@ -203,12 +239,12 @@ class CountFile:
     by_orientation: Floats | None = None  # (M, profiles) as given
 
     def warnings(self, part: Part) -> tuple[str, ...]:
-        """Say, a sentence each, where the head was not written for a part."""
+        """Return a sentence each where the head was not written for a part."""
         return mesh_warnings(self.source, self.head, part)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the columns were taken for, a line a kind."""
+        """Return how the columns were understood, a line a kind."""
         notes = []
         for kind, whole in COLUMN_SUM.items():
             sums = {profile.name: profile.values.sum() for profile in self.profiles if profile.kind == kind}
@@ -218,7 +254,20 @@ class CountFile:
 
 
 def mesh_warnings(source: str, head: Head, part: Part) -> tuple[str, ...]:
-    """Say, a sentence each, where the head of a file was not written for a part."""
+    """Return a sentence where the head of a file was not written for a part.
+
+    Parameters
+    ----------
+    source : str
+        Name of the file.
+    head : Head
+    part : Part
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or no sentence.
+    """
     digest = part.file_sha256 if head.body and part.file_sha256 else part.sha256
     if digest.startswith(head.mesh):
         return ()
@@ -229,14 +278,30 @@ def mesh_warnings(source: str, head: Head, part: Part) -> tuple[str, ...]:
 def rule_profiles(aspects: Aspects) -> tuple[AspectProfile, ...]:
     """Return the profile of every rule over the stable aspects, as the thesis names it: 'PMI', 'CSA'.
 
-    A rule that a part card gives no data for is left out.
+    A rule for which a part card gives no data is left out.
     """
     chosen = {rule: p[aspects.stable] for rule, p in aspects.probabilities.items()}
     return tuple(profile_of(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())
 
 
 def read_profile(path: str | PathLike[str], names: Sequence[str]) -> CountFile:
-    """Read the profiles of a CSV file: the aspect, then one column a profile; as ``parse_profiles``."""
+    """Read the profiles of a CSV file: the aspect, then one column a profile; as in ``parse_profiles``.
+
+    Parameters
+    ----------
+    path : str or Path
+    names : sequence of str
+        Aspects of the part.
+
+    Returns
+    -------
+    CountFile
+
+    Raises
+    ------
+    FeederError
+        If the file cannot be read, or for faults of its text.
+    """
     text, sha256 = read_count_text(path)
     return parse_profiles(parse_count_sheet(text, str(path)), str(path), sha256, names)
 
@@ -244,13 +309,32 @@ def read_profile(path: str | PathLike[str], names: Sequence[str]) -> CountFile:
 def parse_profiles(
     table: CountSheet, where: str, sha256: str, names: Sequence[str], rule_names: Sequence[str] = ()
 ) -> CountFile:
-    """Understand the table of a file of counts: orientations summed up by aspect, and as they are.
+    """Return the profiles of a table of counts: orientations summed up by aspect, and as they are.
 
     Whole numbers are counts; fractions sum to 1 and percents to 100, both within ``SUM_TOLERANCE`` of the
     whole. Of a table of ``feeder drop`` only the counts are taken. Rows are aspects or, where the first
-    column is 'orientation', aspects at a heading in degrees: 'A@180'. The profiles come in the order of
-    ``names``, the part's aspects; ``rule_names`` are names no column may have: the rules'. Raises
-    FeederError: faults of the text, each with its line at ``where``; the first of many.
+    column is 'orientation', aspects at a heading in degrees: 'A@180'.
+
+    Parameters
+    ----------
+    table : CountSheet
+    where : str
+        Name of the file in fault lines.
+    sha256 : str
+        Of the file's bytes.
+    names : sequence of A str
+        Aspects of the part; the profiles come in this order.
+    rule_names : sequence of str
+        Names that no column may have: those of the rules.
+
+    Returns
+    -------
+    CountFile
+
+    Raises
+    ------
+    FeederError
+        For faults of the text, each with its line; the first of many.
     """
     header, rows = table.header, table.rows
     if header[1:3] == DROPPED:  # of our own drop.csv its first column and its counts
@@ -258,7 +342,7 @@ def parse_profiles(
         rows = tuple((number, [row[0], *row[2:3]]) for number, row in rows)
     line = f"{where}:{table.first}"
     columns = _columns(line, header, rule_names)
-    cells: dict[Any, tuple[int, list[str]]] = {}  # by aspect and heading: line and texts
+    cells: dict[tuple[str, float | None], tuple[int, list[str]]] = {}  # by aspect and heading: line and texts
     by, faults = header[0].lower(), FaultList(where)
     for number, (name, *values) in rows:
         place, aspect, heading = f"{where}:{number}", name, None
@@ -302,16 +386,17 @@ def parse_profiles(
     if by == BY_ASPECT:
         return CountFile(where, sha256, profiles, table.head)
     own = np.array([names.index(name) for name, _ in orientations])
+    headings = tuple((name, turn) for name, turn in orientations if turn is not None)
     as_given = np.column_stack([profile.values for profile in profiles])
     together = []  # summed up over the headings of each aspect
     for profile in profiles:
         sums = (np.bincount(own, of, minlength=len(names)) for of in (profile.values, profile.fractions))
         together.append(AspectProfile(profile.name, profile.kind, *map(check.frozen, sums)))
-    return CountFile(where, sha256, tuple(together), table.head, tuple(orientations), check.frozen(as_given))
+    return CountFile(where, sha256, tuple(together), table.head, headings, check.frozen(as_given))
 
 
 def _columns(where: str, header: Sequence[str], rule_names: Sequence[str]) -> list[str]:
-    """The profiles' names."""
+    """Return the profiles' names."""
     first, *columns = header
     if ";" in first or "\t" in first:
         raise FeederError(where, "the columns are not separated by commas", "separate them by commas")
@@ -333,7 +418,7 @@ def _columns(where: str, header: Sequence[str], rule_names: Sequence[str]) -> li
 
 
 def _profile_of_column(where: str, name: str, texts: Sequence[str], faults: FaultList) -> AspectProfile:
-    """One column as a profile; what keeps it from being one is added to ``faults``."""
+    """Return one column as a profile; faults that keep it from being one are added to ``faults``."""
     values = np.array([float(text) for text in texts])
     total = values.sum()
     if total == 0.0:
@@ -351,7 +436,22 @@ def _profile_of_column(where: str, name: str, texts: Sequence[str], faults: Faul
 
 
 def profile_of(name: str, kind: str, values: Floats, whole: float = 1.0) -> AspectProfile:
-    """Return a profile of ``values`` (A,) that are shares of ``whole``; ``kind`` as in ``AspectProfile``."""
+    """Return a profile of values that are shares of a whole.
+
+    Parameters
+    ----------
+    name : str
+    kind : str
+        As in ``AspectProfile``.
+    values : (A,) float [any]
+    whole : float [any]
+        Sum of all shares.
+
+    Returns
+    -------
+    AspectProfile
+        Its fractions are ``values`` / ``whole`` [1].
+    """
     return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))
 
 
@@ -375,16 +475,16 @@ class DeviceCounts:
 
     @property
     def shares(self) -> Floats:
-        """(D,) [1] share that passed, of the parts that came."""
+        """Return the share (D,) [1] that passed, of the parts that came."""
         return self.passed / (self.passed + self.rejected)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the file was taken for, one line."""
+        """Return how the file was understood, one line."""
         return (f"{self.source}: parts at {counted(len(self.names), 'device')}",)
 
     def warnings(self, part: Part) -> tuple[str, ...]:
-        """Say, a sentence each, where the head was not written for a part."""
+        """Return a sentence each where the head was not written for a part."""
         return mesh_warnings(self.source, self.head, part)
 
 
@@ -394,9 +494,25 @@ def counts_by_device(table: CountSheet) -> bool:
 
 
 def device_counts(table: CountSheet, where: str, sha256: str) -> DeviceCounts:
-    """Understand the table of a feeding test: a device a row, whole numbers of the parts that passed or not.
+    """Return the parts of a feeding test: a device a row, whole numbers of the parts that passed or not.
 
-    Raises FeederError: faults of the text, each with its line at ``where``; the first of many.
+    Parameters
+    ----------
+    table : CountSheet
+    where : str
+        Name of the file in fault lines.
+    sha256 : str
+        Of the file's bytes.
+
+    Returns
+    -------
+    DeviceCounts
+        D devices.
+
+    Raises
+    ------
+    FeederError
+        For faults of the text, each with its line; the first of many.
     """
     columns = tuple(name.lower() for name in table.header[1:])
     if sorted(columns) != [PASSED, REJECTED]:

@@ -18,24 +18,57 @@ LOST_WALK = -1  # a walk that ends nowhere: the hull is not closed and convex
 
 @compiled
 def row(array: Points, k: int) -> Triple:
-    """Return a row of an (N, 3) array as a tuple."""
+    """Return a row of an array as a tuple, which compiled code handles without memory of its own.
+
+    Parameters
+    ----------
+    array : (N, 3) float [any]
+    k : int
+
+    Returns
+    -------
+    (3,) float [any]
+    """
     return array[k, 0], array[k, 1], array[k, 2]
 
 
 @compiled
 def dot(a: Triple, b: Triple) -> float:
-    """Return the scalar product of two triples in the product of their units [any].
+    """Return the scalar product of two triples in the product of their units.
 
-    Source: its definition.
+    Parameters
+    ----------
+    a : (3,) float [any]
+    b : (3,) float [any]
+
+    Returns
+    -------
+    float [any]
+
+    References
+    ----------
+    Its definition.
     """
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @compiled
 def triple(a: Triple, b: Triple, c: Triple) -> float:
-    """Return a . (b x c) of triples: of unit vectors, a volume [1].
+    """Return a . (b x c): of unit vectors, a volume.
 
-    Source: its definition.
+    Parameters
+    ----------
+    a : (3,) float [1]
+    b : (3,) float [1]
+    c : (3,) float [1]
+
+    Returns
+    -------
+    float [1]
+
+    References
+    ----------
+    Its definition.
     """
     return (
         a[0] * (b[1] * c[2] - b[2] * c[1])
@@ -46,9 +79,21 @@ def triple(a: Triple, b: Triple, c: Triple) -> float:
 
 @compiled
 def toward(a: Triple, b: Triple, step: float) -> Triple:
-    """Return the unit vector [1] along a + step b, of triples (3,).
+    """Return the unit vector along a + step b.
 
-    Source: a point of the great circle through both.
+    Parameters
+    ----------
+    a : (3,) float [any]
+    b : (3,) float [any]
+    step : float [1]
+
+    Returns
+    -------
+    (3,) float [1]
+
+    References
+    ----------
+    A point of the great circle through both.
     """
     x, y, z = a[0] + step * b[0], a[1] + step * b[1], a[2] + step * b[2]
     n = 1.0 / math.sqrt(x * x + y * y + z * z)
@@ -59,9 +104,30 @@ def toward(a: Triple, b: Triple, step: float) -> Triple:
 def next_corner(edges: Edges, x: Triple, corner: int, sign: float) -> tuple[int, Triple]:
     """Return where the great circle through direction x and a corner leaves the corner's region.
 
-    ``sign`` is -1 down the flow, away from the corner, and +1 up it, towards the corner. Returns the
-    half-edge to the corner that takes over, or LOST_WALK, and the direction there.
+    Parameters
+    ----------
+    edges : Edges
+    x : (3,) float [1]
+        Direction down.
+    corner : int
+    sign : float [1]
+        -1 down the flow, away from the corner; +1 up it, towards the corner.
+
+    Returns
+    -------
+    int
+        Half-edge to the corner that takes over, or LOST_WALK.
+    (3,) float [1]
+        Direction there.
+
+    References
+    ----------
+    Own; docs/resting.md, "Exact tumbling".
     """
+    # Along x + t v the corner's depth x . v and a neighbour's change at different rates. The neighbour takes
+    # over where both are as deep; the first of them counts.
+    # Along x + t v the corner's depth x . v and a neighbour's change at different rates. The neighbour takes
+    # over where both are as deep; the first of them counts.
     v = row(edges.vertices, corner)
     here = dot(x, v)
     start = h = edges.vertex_edges[corner]
@@ -80,7 +146,21 @@ def next_corner(edges: Edges, x: Triple, corner: int, sign: float) -> tuple[int,
 
 @compiled
 def support(edges: Edges, x: Triple, corner: int) -> int:
-    """Return the corner furthest along direction ``x`` (3,) [1], climbing from ``corner``."""
+    """Return the corner furthest along a direction, climbing from a corner.
+
+    On a convex body a corner that is further out than its neighbours is the furthest of all.
+
+    Parameters
+    ----------
+    edges : Edges
+    x : (3,) float [1]
+    corner : int
+        Where to begin; nearer is faster.
+
+    Returns
+    -------
+    int
+    """
     while True:
         height = dot(x, row(edges.vertices, corner))
         start = h = edges.vertex_edges[corner]
@@ -99,9 +179,21 @@ def support(edges: Edges, x: Triple, corner: int) -> int:
 
 @compiled
 def roll_from_corner(edges: Edges, x: Triple, corner: int) -> int:
-    """Return the facet first reached by a part rolling over a corner from ``x`` (3,) [1]; LOST_WALK if none.
+    """Return the facet first reached by a part rolling over a corner.
 
     A corner in the middle of a facet or an edge gives way to the lowest corner of the facet.
+
+    Parameters
+    ----------
+    edges : Edges
+    x : (3,) float [1]
+        Direction down.
+    corner : int
+
+    Returns
+    -------
+    int
+        LOST_WALK if there is none.
     """
     near = edges.origins[edges.vertex_edges[corner]]
     if near != corner:
@@ -119,7 +211,18 @@ def roll_from_corner(edges: Edges, x: Triple, corner: int) -> int:
 
 @compiled
 def next_facet(edges: Edges, facet: int) -> int:
-    """Return the facet to which a part first rolls from ``facet``: itself at rest, LOST_WALK for none."""
+    """Return the facet to which a part first rolls from a facet.
+
+    Parameters
+    ----------
+    edges : Edges
+    facet : int
+
+    Returns
+    -------
+    int
+        The facet itself where the part rests; LOST_WALK if the walk ends nowhere.
+    """
     start = h = edges.facet_edges[facet]
     corner, nearest = -1, math.inf
     leaves = False
@@ -139,7 +242,18 @@ def next_facet(edges: Edges, facet: int) -> int:
 
 @compiled
 def roll_from_facet(edges: Edges, facet: int) -> int:
-    """Return the facet on which a part comes to rest that is set down on ``facet``; LOST_WALK if none."""
+    """Return the facet on which a part comes to rest that is set down on a facet.
+
+    Parameters
+    ----------
+    edges : Edges
+    facet : int
+
+    Returns
+    -------
+    int
+        LOST_WALK if the walk ends nowhere.
+    """
     for _ in range(len(edges.normals) + 1):
         if facet == LOST_WALK:
             return LOST_WALK
@@ -152,7 +266,19 @@ def roll_from_facet(edges: Edges, facet: int) -> int:
 
 @compiled
 def rolls(edges: Edges, directions: Floats, ends: Ints) -> None:
-    """Fill (N,) ends with the facet a part set down with each of (N, 3) directions down comes to rest on."""
+    """Fill in the facet on which a part comes to rest that is set down with each direction down.
+
+    Parameters
+    ----------
+    edges : Edges
+    directions : (N, 3) float [1]
+    ends : (N,) int
+        Filled.
+
+    Returns
+    -------
+    None
+    """
     corner = edges.origins[edges.facet_edges[0]]
     for n in range(len(directions)):
         x = row(directions, n)
@@ -162,10 +288,24 @@ def rolls(edges: Edges, directions: Floats, ends: Ints) -> None:
 
 @compiled
 def triangle_area(a: Triple, b: Triple, c: Triple) -> float:
-    """Signed area [sr] of a spherical triangle of unit vectors, positive counter-clockwise from outside.
+    """Return the signed area of a triangle of unit vectors on the sphere; counter-clockwise is positive.
 
-    Source: A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed.
-    Eng. BME-30(2), 125-126, 1983.
+        tan(area / 2) = a . (b x c) / (1 + a . b + b . c + c . a)
+
+    Parameters
+    ----------
+    a : (3,) float [1]
+    b : (3,) float [1]
+    c : (3,) float [1]
+
+    Returns
+    -------
+    float [sr]
+
+    References
+    ----------
+    A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. BME-30(2),
+    125-126, 1983.
     """
     return 2.0 * math.atan2(triple(a, b, c), 1.0 + dot(a, b) + dot(b, c) + dot(c, a))
 
@@ -174,9 +314,32 @@ def triangle_area(a: Triple, b: Triple, c: Triple) -> float:
 def climb(
     edges: Edges, tops: Bools, x: Triple, corner: int, left: Triple, right: Triple
 ) -> tuple[int, float, float]:
-    """Follow the flow back from direction x over a corner up to a maximum, one of the corners ``tops``.
+    """Follow the flow back from a direction over a corner up to a maximum.
 
-    Returns the maximum and the fans [sr] swept on the way, seen from ``left`` and from ``right``.
+    Parameters
+    ----------
+    edges : Edges
+    tops : (V,) bool
+        Corners that are maxima.
+    x : (3,) float [1]
+        Direction down.
+    corner : int
+    left : (3,) float [1]
+        Point of the sphere from which the fan on the left is seen.
+    right : (3,) float [1]
+
+    Returns
+    -------
+    int
+        Corner of the maximum, or LOST_WALK.
+    float [sr]
+        Fan swept on the way, seen from ``left``.
+    float [sr]
+        The same, seen from ``right``.
+
+    References
+    ----------
+    The area of a basin as a sum of triangles from one point to the pieces of its border.
     """
     area_left = area_right = 0.0
     for _ in range(len(edges.vertices)):
@@ -202,10 +365,33 @@ def trace_saddles(
     peaks: Ints,
     areas: Floats,
 ) -> None:
-    """Sinks joined by each saddle, and the boundary integral of every facet's basin.
+    """Find the sinks joined by each saddle, and the boundary integral of every facet's basin.
 
-    ``tops`` (V,) bool; ``saddles`` (E,); ``directions`` (E, 3); ``gauges`` (M, 3); ``pairs`` (E, 2);
-    ``peaks`` (E, 2); ``areas`` (M,) [sr].
+    Parameters
+    ----------
+    edges : Edges
+    tops : (V,) bool
+        Corners that are maxima.
+    saddles : (E,) int
+        Half-edge of each saddle.
+    directions : (E, 3) float [1]
+        Direction down on each saddle.
+    gauges : (M, 3) float [1]
+        Point of the sphere from which the border of each facet's basin is seen.
+    pairs : (E, 2) int
+        Filled: facets on which the part comes to rest on both sides.
+    peaks : (E, 2) int
+        Filled: maxima at both ends of the border.
+    areas : (M,) float [sr]
+        Added to: boundary integrals.
+
+    Returns
+    -------
+    None
+
+    References
+    ----------
+    Own; docs/resting.md, "Exact tumbling".
     """
     for e in range(len(saddles)):
         h, x = saddles[e], row(directions, e)
@@ -215,6 +401,8 @@ def trace_saddles(
         peaks[e, 0] = peaks[e, 1] = LOST_WALK
         if s == LOST_WALK or t == LOST_WALK:
             continue
+        # the border between the two basins runs from the saddle up to a maximum, both ways
+        # the border between the two basins runs from the saddle up to a maximum, both ways
         left, right = row(gauges, s), row(gauges, t)
         peaks[e, 0], back_s, back_t = climb(edges, tops, x, edges.origins[h], left, right)
         peaks[e, 1], ahead_s, ahead_t = climb(edges, tops, x, edges.targets[h], left, right)

@@ -89,9 +89,39 @@ WASHERS_MM = {  # ISO 7089: hole, across, thickness (nominal)
     "M20": (21, 37, 3),
 }
 LENGTHS_MM = (  # ISO 888, of bolts and screws
-    2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 80, 90, 100, 110, 120,
-    130, 140, 150, 160, 180, 200,
-)  # fmt: skip
+    2,
+    2.5,
+    3,
+    4,
+    5,
+    6,
+    8,
+    10,
+    12,
+    16,
+    20,
+    25,
+    30,
+    35,
+    40,
+    45,
+    50,
+    55,
+    60,
+    65,
+    70,
+    80,
+    90,
+    100,
+    110,
+    120,
+    130,
+    140,
+    150,
+    160,
+    180,
+    200,
+)
 MINOR_OUTSIDE = 1.2269  # [1] of the pitch, major less minor diameter of a bolt's thread (ISO 724, d3)
 MINOR_INSIDE = 1.0825  # [1] the same of a nut's thread (ISO 724, D1)
 BEVEL_ANGLE_RAD = np.radians(30.0)  # of a hexagon's corners

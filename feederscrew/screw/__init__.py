@@ -9,21 +9,36 @@ Source: the thesis by the numbers of its equations; docs/method/screws.md and do
 """
 
 from dataclasses import dataclass
-from typing import Any, Self
+from types import EllipsisType
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Floats
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.geometry.vectors import dot, ratio
+
+Choice = int | slice | EllipsisType | Ints | Bools  # along one axis of a batch
 
 
 def vectors(name: str, value: ArrayLike) -> Floats:
-    """Return a finite float copy of an array of 3-vectors (..., 3) [any], closed to writing.
+    """Return a copy of an array of 3-vectors that nobody can write to.
 
-    Raises ValueError, which calls the array ``name``, if the last axis is not of length 3 or an entry
-    is not finite.
+    Parameters
+    ----------
+    name : str
+        Name of the array, used in the fault.
+    value : (..., 3) array_like of float [any]
+
+    Returns
+    -------
+    (..., 3) float [any]
+
+    Raises
+    ------
+    ValueError
+        If the last axis does not have length 3, or an entry is not finite.
     """
     array = np.array(value, dtype=float)
     if array.ndim == 0 or array.shape[-1] != 3:
@@ -34,7 +49,17 @@ def vectors(name: str, value: ArrayLike) -> Floats:
 
 
 def length(u: Floats) -> Floats:
-    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows. Source: own."""
+    """Return the length of vectors in their own unit; no square overflows.
+
+    Parameters
+    ----------
+    u : (..., 3) float [any]
+
+    Returns
+    -------
+    (...,) float [any]
+        sqrt(x^2 + y^2 + z^2), computed by two calls of ``hypot``. Source: own.
+    """
     return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
 
 
@@ -55,13 +80,13 @@ class Dual:
         return Dual(self.real - other.real, self.dual - other.dual)
 
     def __mul__(self, other: "Dual") -> "Dual":
-        """Product a c + eps (a d + b c); a screw is multiplied by its own rule."""
+        """Return a c + eps (a d + b c); a screw is multiplied by its own rule."""
         if not isinstance(other, Dual):
             return NotImplemented
         return Dual(self.real * other.real, self.real * other.dual + self.dual * other.real)
 
     def __truediv__(self, other: "Dual") -> "Dual":
-        """Quotient a / c + eps (b c - a d) / c^2; not finite where c = 0, which has no inverse."""
+        """Return a / c + eps (b c - a d) / c^2; not finite where c = 0, which has no inverse."""
         with np.errstate(divide="ignore", invalid="ignore"):
             quotient = np.divide(self.real, other.real)
             return Dual(quotient, np.divide(self.dual - quotient * other.dual, other.real))
@@ -82,7 +107,7 @@ class Point:
         object.__setattr__(self, "coordinates", vectors(f"point {self.name}", self.coordinates))
 
     def __sub__(self, other: "Point") -> Floats:
-        """The vector from the other point to this one, (..., 3) [m]."""
+        """Return the vector from the other point to this one, (..., 3) [m]."""
         return self.coordinates - other.coordinates
 
 
@@ -131,13 +156,33 @@ class Screw:
         pitch: ArrayLike = 0.0,
         reference: Point = ORIGIN,
     ) -> Self:
-        """Return the screw of a given line, magnitude and pitch; infinite pitch makes it a free vector.
+        """Return the screw of a given line, magnitude and pitch, expressed at ``reference``.
 
-        ``foot`` (..., 3) [m], any point of the line, is not looked at where the pitch is infinite;
-        ``direction`` (..., 3) [1] has any length but zero; ``magnitude`` (...,) is |s|, or |s0| where the
-        pitch (...,) [m] is infinite; zero is the pitch of a pure force or rotation. The result is expressed
-        at ``reference``. Raises ValueError if the direction has no length, a shape is wrong or an entry is
-        not finite.
+        The pitch is the length along the axis that belongs to one radian about it. Pitch zero gives a pure
+        force or a pure rotation. An infinite pitch gives a free vector: a couple or a translation, which has
+        no line.
+
+        Parameters
+        ----------
+        foot : (..., 3) float [m]
+            Any point of the line; not used where the pitch is infinite.
+        direction : (..., 3) float [1]
+            Direction of the line, of any length but zero.
+        magnitude : (...,) float [any]
+            |s|, or |s0| where the pitch is infinite.
+        pitch : (...,) float [m]
+        reference : Point
+            Point about which the moment part is taken.
+
+        Returns
+        -------
+        Screw
+            s + eps (h s + OF x s), with the foot F and the pitch h.
+
+        Raises
+        ------
+        ValueError
+            If the direction has no length, a shape is wrong, or an entry is not finite.
         """
         direction, pitch = vectors("direction", direction), np.asarray(pitch, dtype=float)[..., None]
         size, free = length(direction)[..., None], np.isinf(pitch)
@@ -150,11 +195,11 @@ class Screw:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The leading axes: () for one screw."""
+        """Leading axes; () for one screw."""
         return self.resultant.shape[:-1]
 
-    def __getitem__(self, index: Any) -> Self:
-        """Part of a batch, indexed as an array over the leading axes is."""
+    def __getitem__(self, index: Choice | tuple[Choice, ...]) -> Self:
+        """Return a part of a batch; the index acts on the leading axes, as in an array."""
         index = (*index, slice(None)) if isinstance(index, tuple) else index
         place = np.broadcast_to(self.reference.coordinates, self.resultant.shape)
         moving = self.reference.coordinates.ndim > 1
@@ -167,12 +212,12 @@ class Screw:
         return type(self)(self.resultant, moment, point)
 
     def sum(self) -> Self:
-        """Sum over the last leading axis; where the reference point differs along it, at the origin."""
+        """Return the sum over the last leading axis; at the origin where the reference points differ."""
         common = self if self.reference.coordinates.ndim == 1 else self.at(ORIGIN)
         return type(self)(common.resultant.sum(axis=-2), common.moment.sum(axis=-2), common.reference)
 
     def __add__(self, other: Self) -> Self:
-        """Sum by parts, at the first screw's reference point."""
+        """Return the sum by parts, at the first screw's reference point."""
         self._same_kind(other, "add")
         other = other.at(self.reference)
         return type(self)(self.resultant + other.resultant, self.moment + other.moment, self.reference)
@@ -185,7 +230,7 @@ class Screw:
         return self * -1.0
 
     def __mul__(self, factor: "ArrayLike | Dual | Screw") -> Self:
-        """Times an ordinary number or a dual one; arrays (...,) scale screw by screw."""
+        """Return the product with a real or a dual number; arrays (...,) scale screw by screw."""
         if isinstance(factor, Dual):
             real, dual = np.asarray(factor.real)[..., None], np.asarray(factor.dual)[..., None]
             moment = real * self.moment + dual * self.resultant
@@ -198,7 +243,7 @@ class Screw:
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: ArrayLike) -> Self:
-        """Over an ordinary number; arrays (...,) screw by screw."""
+        """Return the screw divided by a real number; arrays (...,) divide screw by screw."""
         divisor = np.asarray(divisor, dtype=float)[..., None]
         with np.errstate(divide="ignore", invalid="ignore"):  # a zero is refused below, as not finite
             return type(self)(self.resultant / divisor, self.moment / divisor, self.reference)
@@ -297,7 +342,7 @@ class Momentum(Screw):
 
 
 def _has_line(screw: Screw) -> Bools:
-    """Where s is not zero, so that there is an axis."""
+    """Return where s is not zero, so that there is an axis."""
     return np.any(screw.resultant != 0.0, axis=-1)
 
 
@@ -330,11 +375,24 @@ class Body:
         object.__setattr__(self, "inertia", inertia)
 
     def momentum(self, twist: Twist) -> Momentum:
-        """Return the momentum screw q + eps H_A, eq. [2.4], of the body moving with a twist omega + eps v_A.
+        """Return the momentum screw q + eps H_A of the body that moves with a twist omega + eps v_A.
 
-        q = m (v_A + omega x AG) [2.2] and H_A = I_A omega + m AG x v_A [2.3] are at the twist's reference
-        point A; I_A is about it by Huygens and Steiner. The thesis writes it out, eqs. [4.8], [4.39], for the
-        twists of eqs. [4.7], [4.38].
+            q   = m (v_A + omega x AG)         eq. [2.2]
+            H_A = I_A omega + m AG x v_A       eq. [2.3]
+
+        G is the centre of mass, A the twist's reference point, and I_A the inertia about A by Huygens and
+        Steiner: I_A = I_G + m (|AG|^2 E - AG AG^T). Together they are eq. [2.4]. The thesis writes the screw
+        out in eqs. [4.8], [4.39], for the twists of eqs. [4.7], [4.38].
+
+        Parameters
+        ----------
+        twist : Twist
+            Components in axes fixed to the body.
+
+        Returns
+        -------
+        Momentum
+            [kg m/s] and [kg m2/s], at the twist's reference point.
         """
         spin, speed, lever = twist.resultant, twist.moment, self.centre - twist.reference
         mass = np.asarray(self.mass)[..., None]
@@ -346,14 +404,33 @@ class Body:
 
 
 def force_screw(body: Body, twist: Twist, twist_rate: Twist) -> Wrench:
-    """Return the wrench at A, twist (x) momentum + d/dt momentum of a moving body: the dual Euler equation.
+    """Return the wrench that a moving body needs: the dual Euler equation.
 
-    ``twist`` (...,) is omega + eps v_A about a point A of the body, components along body axes;
-    ``twist_rate`` (...,) time derivatives of those, re-expressed at A where given elsewhere on the body.
-    The thesis, eq. [4.4] and eq. [4.6]; written out for its parts on the floor, eqs. [4.9] to [4.12],
-    eqs. [4.40] to [4.42], and on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
-    Source: G. R. Pennock, B. A. Oncu, "Application of screw theory to rigid body dynamics", J. Dynamic
-    Systems, Measurement, and Control 114(2), 262-269, 1992.
+        wrench = twist (x) momentum + d/dt momentum        eq. [4.6]
+
+    The components are those along axes that turn with the body. The derivative of such components misses the
+    turning of the axes themselves; the term twist (x) momentum, eq. [4.4], adds it. The thesis writes the
+    wrench out for its parts on the floor, eqs. [4.9] to [4.12], eqs. [4.40] to [4.42], and on the track,
+    eqs. [4.30], [4.31], eqs. [4.55], [4.56].
+
+    Parameters
+    ----------
+    body : Body
+    twist : Twist
+        (...,) omega + eps v_A [rad/s, m/s] about a point A of the body, along body axes.
+    twist_rate : Twist
+        (...,) time derivatives of those components [rad/s2, m/s2]; given about another point of the body,
+        they are re-expressed at A.
+
+    Returns
+    -------
+    Wrench
+        [N, N m] at A.
+
+    References
+    ----------
+    G. R. Pennock, B. A. Oncu, "Application of screw theory to rigid body dynamics", J. Dynamic Systems,
+    Measurement, and Control 114(2), 262-269, 1992.
     """
     rate = body.momentum(twist_rate.at(twist.reference))  # linear in the twist, so its rate has its form
     carried = twist.cross(body.momentum(twist))  # eq. [4.4]
@@ -364,12 +441,28 @@ def force_screw(body: Body, twist: Twist, twist_rate: Twist) -> Wrench:
 def tipping_twists(wrenches: Wrench) -> Twist:
     """Return for each of six contacts the unit twist reciprocal to the other five.
 
-    A body about to leave contact i, all others kept, moves with twist i: ``axis`` is the line it tips about.
-    The sense is the one that opens the contact: the reciprocal product with its own wrench is positive.
+    A body that is about to leave contact i, and keeps all others, moves with twist i: its ``axis`` is the
+    line about which the body tips. The sense is the one that opens the contact, so the reciprocal product
+    with the contact's own wrench is positive.
 
-    ``wrenches`` (..., 6) push on the body. Returned is (..., 6), column i of the inverse of the six wrenches,
-    at the first wrench's reference point. Raises ValueError if there are not six wrenches, or they are not
-    independent. Source: K. H. Hunt, "Kinematic Geometry of Mechanisms", Oxford University Press, 1978.
+    Parameters
+    ----------
+    wrenches : Wrench
+        (..., 6) wrenches with which the contacts push on the body.
+
+    Returns
+    -------
+    Twist
+        (..., 6) [1], column i of the inverse of the six wrenches, at the first wrench's reference point.
+
+    Raises
+    ------
+    ValueError
+        If there are not six wrenches, or they are not independent.
+
+    References
+    ----------
+    K. H. Hunt, "Kinematic Geometry of Mechanisms", Oxford University Press, 1978.
     """
     if len(wrenches.shape) < 1:
         raise ValueError("wrenches need an axis that counts them: (..., k)")
@@ -378,7 +471,7 @@ def tipping_twists(wrenches: Wrench) -> Twist:
     point = wrenches.reference
     if point.coordinates.ndim > 1:
         point = Point(point.name, point.coordinates[..., :1, :])
-    wrenches = wrenches.at(point)
+    wrenches = wrenches.at(point)  # moments about different points cannot stand in one matrix
     # Rows (f, m / arm) of length 1. The arm (...,) [m], a typical lever, makes force and moment comparable:
     # no answer depends on the unit of length.
     force, moment = (length(part).max(axis=-1, initial=0.0) for part in (wrenches.resultant, wrenches.moment))
@@ -391,7 +484,8 @@ def tipping_twists(wrenches: Wrench) -> Twist:
     dependent = values[..., -1] <= INDEPENDENCE_TOLERANCE * values[..., 0]
     if dependent.any():
         raise ValueError(f"{dependent.sum()} of {dependent.size} sets of six wrenches are not independent")
-    # unit twists of the columns (v, arm times omega) of the inverse; a turn lost in rounding is none
+    # Column i of the inverse has product 1 with row i and 0 with the others: it is the reciprocal twist, as
+    # (v, arm times omega). A turn lost in rounding is set to zero, so that the twist is a translation.
     columns = np.swapaxes(np.linalg.inv(rows), -1, -2)
     speed, spin = columns[..., :3], columns[..., 3:]
     lost = length(spin) <= INDEPENDENCE_TOLERANCE * length(speed)
@@ -401,12 +495,34 @@ def tipping_twists(wrenches: Wrench) -> Twist:
 def reactions(wrenches: Wrench, external: Wrench) -> Floats:
     """Return how hard each of six contacts pushes: the solution of sum_i lambda_i w_i = -external.
 
-    Each equals -(external o t_i) / (w_i o t_i) with t_i of ``tipping_twists``. ``wrenches`` (..., 6) are each
-    for a reaction of 1; ``external`` (...,) is all else that acts: weight, inertia, drive. Returned is
-    (..., 6) [1], negative where the contact would have to pull. Raises ValueError as ``tipping_twists`` does.
-    Source: reciprocal screws, Ball 1900; docs/method/screws.md, "Contacts: reciprocal screws".
+        lambda_i = -(external o t_i) / (w_i o t_i)
+
+    The twist t_i of ``tipping_twists`` is reciprocal to all contacts but i. Its product with the sum
+    therefore leaves lambda_i alone, and no system of equations is solved here.
+
+    Parameters
+    ----------
+    wrenches : Wrench
+        (..., 6) wrenches of the contacts, each for a reaction of 1.
+    external : Wrench
+        (...,) [N, N m] everything else that acts on the body: weight, inertia, drive.
+
+    Returns
+    -------
+    (..., 6) float [1]
+        Multiples of the wrenches; negative where the contact would have to pull.
+
+    Raises
+    ------
+    ValueError
+        As in ``tipping_twists``.
+
+    References
+    ----------
+    Reciprocal screws: R. S. Ball 1900; docs/method/screws.md, "Contacts: reciprocal screws".
     """
     twists, place = tipping_twists(wrenches), external.reference
+    # The external wrench gets an axis of length one, on which it meets each of the six twists.
     if place.coordinates.ndim > 1:
         place = Point(place.name, place.coordinates[..., None, :])
     acting = Wrench(external.resultant[..., None, :], external.moment[..., None, :], place)

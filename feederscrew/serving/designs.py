@@ -25,7 +25,8 @@ from feederscrew.serving.refusal import in_words_of_the_page
 MOST_DESIGNS = 100  # of one run: each keeps its folder
 LINES_SHOWN = 400  # of what a design says
 STOPPED = (130, 143)  # exit statuses of a design that was stopped, as the command line has them
-STOP_WITHIN_S, KILL_WITHIN_S = 20.0, 5.0  # after an interrupt and after a termination
+STOP_WITHIN_S = 20.0  # after an interrupt
+KILL_WITHIN_S = 5.0  # after a termination
 OTHERWISE = "choose another rate, machine or material, or give this part to feeder design on the command line"
 
 
@@ -45,9 +46,12 @@ class Guard:
     def __init__(self, folder: Path) -> None:
         self._process = subprocess.Popen(
             [sys.executable, "-I", "-S", guard.__file__, str(folder)],
-            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            text=True,
             start_new_session=True,
-        )  # fmt: skip
+        )
         self._turn = threading.Lock()
 
     def tell(self, word: str, process: int) -> None:
@@ -70,9 +74,13 @@ class DesignJob:
     """A command that designs, with what it says and the files it leaves in a folder of results."""
 
     def __init__(
-        self, key: str, program: Sequence[str], order: PageOrder, folder: Path,
+        self,
+        key: str,
+        program: Sequence[str],
+        order: PageOrder,
+        folder: Path,
         tell_guard: Callable[[str, int], None],
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.id, self.order, self.folder, self._tell_guard = key, order, folder, tell_guard
         self.results, self._stage_file = folder / "results", folder / "stage.json"
         self._lines: deque[str] = deque(maxlen=LINES_SHOWN)

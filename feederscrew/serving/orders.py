@@ -18,11 +18,14 @@ MACHINES = {  # what a reader chooses: label, and the options of the design
     "any": ("any drive", ("--drive", "any")),
 }
 OUTCOMES = {  # of --outcome, by what the page calls them
-    "any": "lying or hanging", "lying": "lying on the track", "hanging": "hanging by the head between rails",
-}  # fmt: skip
+    "any": "lying or hanging",
+    "lying": "lying on the track",
+    "hanging": "hanging by the head between rails",
+}
 RATES = (0.1, 3000.0)  # [1/min] that may be asked for
 DIAMETERS_MM = (20.0, 2000.0)  # of a bowl at hand
-ANY_HEADING, BEST_HEADING = "any", "best"
+ANY_HEADING = "any"
+BEST_HEADING = "best"
 
 
 class MayUse(StrEnum):

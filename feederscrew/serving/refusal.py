@@ -5,8 +5,11 @@ import re
 from feederscrew.bowl.schema import BOWL_SECTIONS
 
 OFFERED = {  # arguments and options that the page has, by its words for them
-    "units": "length unit", "density": "material", "target": "parts a minute", "drive": "machine",
-}  # fmt: skip
+    "units": "length unit",
+    "density": "material",
+    "target": "parts a minute",
+    "drive": "machine",
+}
 NAMED = re.compile(r"`([a-z_]+)`|--([a-z][a-z-]*)")  # an argument of the library, an option of the command
 CALLED = re.compile(r"\b(?:pass|give|write|set|use)\s+(?:`([a-z_]+)`|--([a-z][a-z-]*))")
 BOWL_KEY = re.compile(rf"\b(?:{'|'.join(BOWL_SECTIONS)})\.[a-z_]+")  # a page has no field for it

@@ -38,10 +38,14 @@ TOKEN_PATH = "/token/"  # begins the path of a link, before the token
 VALUES_BYTES = 4096  # that the values of a request may have
 WAIT_S = 60.0  # for a request before this one
 KINDS = {  # of the files of a result, by their ending; others are saved
-    "html": "text/html; charset=utf-8", "png": "image/png", "svg": "image/svg+xml",
-    "pdf": "application/pdf", "csv": "text/csv; charset=utf-8", "json": "application/json",
+    "html": "text/html; charset=utf-8",
+    "png": "image/png",
+    "svg": "image/svg+xml",
+    "pdf": "application/pdf",
+    "csv": "text/csv; charset=utf-8",
+    "json": "application/json",
     "yaml": "text/plain; charset=utf-8",
-}  # fmt: skip
+}
 GUARD = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "SAMEORIGIN",

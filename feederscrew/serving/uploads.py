@@ -24,7 +24,8 @@ from feederscrew.units import MM
 
 PART_BYTES = 64 * 2**20  # that a part file may have
 KEPT_BYTES = 1024 * 2**20  # of all part files that are kept: the oldest that no design needs go
-BOWL_BYTES, BOWL_ENDINGS = 256 * 2**10, ("yaml", "yml")
+BOWL_BYTES = 256 * 2**10
+BOWL_ENDINGS = ("yaml", "yml")
 MOST_UPLOADS = 200  # part files of one run
 ENDINGS = tuple(
     suffix for name, form in MESH_FORMATS.items() if name != CARD_FORMAT for suffix in form.suffixes
@@ -52,9 +53,14 @@ class Upload:
     def document(self) -> dict[str, object]:
         """What the page is told of it."""
         return {
-            "id": self.id, "name": self.name, "units": self.units, "size_mm": self.size_mm,
-            "aspects": self.aspects, "lies": self.lies, "headings": self.headings,
-        }  # fmt: skip
+            "id": self.id,
+            "name": self.name,
+            "units": self.units,
+            "size_mm": self.size_mm,
+            "aspects": self.aspects,
+            "lies": self.lies,
+            "headings": self.headings,
+        }
 
     def view(self) -> str:
         """Return the page of its resting aspects."""

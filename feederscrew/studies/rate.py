@@ -147,7 +147,7 @@ def shares(
 
 
 def check_wanted(part: Part, aspect: str | None, heading: float | None = None) -> None:
-    """Refuse an aspect that a part does not have, or a heading of none, before anything is simulated.
+    """Refuse an aspect that a part does not have, or a heading without one, before anything is simulated.
 
     Raises ArgumentError.
     """

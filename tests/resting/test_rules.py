@@ -35,7 +35,7 @@ def test_each_rule_divides_its_quantity_by_the_height(rule):
     """Eqs. [section 3.1], [Table 3-2], [Table 3-3]."""
     weights = rule(np.array([1, 2]), np.array([3.0, 4.0]), np.array([2.0, 5.0]))
     np.testing.assert_allclose(weights, [1.5, 1.6])
-    assert "Source:" in rule.__doc__ or "thesis" in rule.__doc__
+    assert "References" in rule.__doc__ or "thesis" in rule.__doc__
 
 
 def test_unstable_aspects_are_left_out_and_an_unknown_weight_leaves_no_probability():

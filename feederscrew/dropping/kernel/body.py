@@ -10,8 +10,16 @@ from feederscrew.arrays import Floats, Ints, Points, Triple
 from feederscrew.dropping.rounded_hull import RoundedHull
 from feederscrew.geometry.compiled import compiled
 
-X, Y, Z, VX, VY, VZ, Q, W = 0, 1, 2, 3, 4, 5, 6, 10
-STATE = 13
+# places in a state; of a vector, that of its first number
+X = 0  # [L] of the centre of mass
+Y = 1
+Z = 2
+VX = 3  # [sqrt(g L)] of the centre of mass
+VY = 4
+VZ = 5
+Q = 6  # attitude, a unit quaternion w x y z
+W = 10  # [sqrt(g / L)] angular velocity along the body's axes
+STATE = 13  # numbers in a state
 Moves = tuple[float, float, float, float, float, float]  # velocity and rates of a body
 
 

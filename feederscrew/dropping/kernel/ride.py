@@ -85,7 +85,7 @@ def _held_fast(shape: Shape, state: Floats, turn: Floats, corner: int, kick: flo
 
 @compiled
 def _calm_enough(shape: Shape, thrown: bool, face: int, calm: int, kick: float) -> bool:
-    """Whether a part that lay on a face for so many periods stays."""
+    """Return whether a part that lay on a face for so many periods stays."""
     if face == UNSETTLED:
         return False
     if shape.rolls[face]:

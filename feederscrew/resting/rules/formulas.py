@@ -18,9 +18,21 @@ from feederscrew.resting.faces import Face
 def pmi(faces: Array, polar_inertia: Floats, height: Floats) -> Floats:
     """Return polar moment of inertia over height: the thesis's rule, eq. [section 3.1].
 
-    ``faces`` (A,) int: equal aspects in the class; Tables 3-8 and 3-9 count each class once;
-    ``polar_inertia`` (A,) [kg m2]: about the aspect's normal through the centre of mass; ``height`` (A,) [m]:
-    of the centre of mass over the aspect. Returns (A,) [kg m].
+        w = n I / h
+
+    Parameters
+    ----------
+    faces : (A,) int
+        n, equal aspects in the class. Tables 3-8 and 3-9 count each class once.
+    polar_inertia : (A,) float [kg m2]
+        I about the aspect's normal through the centre of mass.
+    height : (A,) float [m]
+        h of the centre of mass over the aspect.
+
+    Returns
+    -------
+    (A,) float [kg m]
+        Weights, not normalised.
     """
     return faces * polar_inertia / height
 
@@ -28,9 +40,24 @@ def pmi(faces: Array, polar_inertia: Floats, height: Floats) -> Floats:
 def csa(faces: Array, solid_angle: Floats, height: Floats) -> Floats:
     """Return centroid solid angle over height, eq. [Table 3-2].
 
-    ``faces`` and ``height``: as in `pmi`; ``solid_angle`` (A,) [sr]: of one face, seen from the centre of
-    mass. Returns (A,) [sr/m].
-    Source: B. K. A. Ngoi, L. E. N. Lim, S. S. G. Lee, J. Electronics Manufacturing 5(3), 1995.
+        w = n Q / h
+
+    Parameters
+    ----------
+    faces : (A,) int
+        n, as in ``pmi``.
+    solid_angle : (A,) float [sr]
+        Q of one face, seen from the centre of mass.
+    height : (A,) float [m]
+        h.
+
+    Returns
+    -------
+    (A,) float [sr/m]
+
+    References
+    ----------
+    B. K. A. Ngoi, L. E. N. Lim, S. S. G. Lee, J. Electronics Manufacturing 5(3), 1995.
     """
     return faces * solid_angle / height
 
@@ -38,19 +65,47 @@ def csa(faces: Array, solid_angle: Floats, height: Floats) -> Floats:
 def stability(faces: Array, contact_area: Floats, height: Floats) -> Floats:
     """Return contact area over height, eq. [Table 3-3].
 
-    ``faces`` and ``height``: as in `pmi`; ``contact_area`` (A,) [m2]: of one face. Returns (A,) [m].
-    Source: P. S. K. Chua, M. L. Tay, "Modelling the natural resting aspect of small regular shaped parts", J.
+        w = n A / h
+
+    Parameters
+    ----------
+    faces : (A,) int
+        n, as in ``pmi``.
+    contact_area : (A,) float [m2]
+        A of one face.
+    height : (A,) float [m]
+        h.
+
+    Returns
+    -------
+    (A,) float [m]
+
+    References
+    ----------
+    P. S. K. Chua, M. L. Tay, "Modelling the natural resting aspect of small regular shaped parts", J.
     Manufacturing Science and Engineering 120(3), 1998.
     """
     return faces * contact_area / height
 
 
 def normalise(weights: Floats, stable: Bools) -> Floats:
-    """Return the probabilities (A,) [1] of the stable aspects from their weights; the others have none.
+    """Return the probabilities of the stable aspects from their weights; the others have none.
 
-    ``weights`` (A,) [any one unit]; ``stable`` (A,) bool. The sum is 1; NaN throughout where a weight is not
-    known, or none is above 0.
-    Source: docs/resting.md, "How were the parts launched?".
+        p_i = w_i / sum over the stable j of w_j
+
+    Parameters
+    ----------
+    weights : (A,) float [any one unit]
+    stable : (A,) bool
+
+    Returns
+    -------
+    (A,) float [1]
+        They sum to 1; NaN throughout where a weight is not known, or none is above 0.
+
+    References
+    ----------
+    docs/resting.md, "How were the parts launched?".
     """
     weights = np.where(stable, weights, 0.0)
     total = weights.sum()
@@ -69,15 +124,36 @@ def surface_name(exponent: float) -> str:
 
 
 def surface_weights(shares: Floats, heights: Floats, radius: float, exponent: float) -> Floats:
-    """Return the shares (F,) [1] of a part that bounces before it settles, not normalised.
+    """Return the shares of a part that bounces before it settles, not normalised.
 
-    They are share (1 - height / radius)^exponent: a bouncing part visits every face and stays where it lies
-    deep. ``shares`` (F,) [1]: quasi-static probabilities; ``heights`` (F,) [m]: of the centre of mass on each
-    face; NaN where the share is zero; ``radius`` [m]: largest distance from the centre of mass to a corner;
-    ``exponent`` [1]: 0 for a dead landing; larger for harder surfaces and livelier launches. Where radius -
-    height is nearly zero for all faces (a nearly round body) the weight means nothing. Raises ValueError if
-    an argument is not finite or the radius not positive.
-    Source: own; docs/resting.md, "Surface-weighted tumbling".
+        w = share (1 - height / radius)^exponent
+
+    A bouncing part visits every face and stays where it lies deep. Where radius - height is nearly zero for
+    all faces (a nearly round body) the weight means nothing.
+
+    Parameters
+    ----------
+    shares : (F,) float [1]
+        Quasi-static probabilities.
+    heights : (F,) float [m]
+        Of the centre of mass on each face; NaN where the share is zero.
+    radius : float [m]
+        Largest distance from the centre of mass to a corner.
+    exponent : float [1]
+        0 for a dead landing; larger for harder surfaces and livelier launches.
+
+    Returns
+    -------
+    (F,) float [1]
+
+    Raises
+    ------
+    ValueError
+        If the exponent is not finite or the radius not positive.
+
+    References
+    ----------
+    Own; docs/resting.md, "Surface-weighted tumbling".
     """
     radius, exponent = check.positive("radius", radius), float(exponent)
     if not np.isfinite(exponent):
@@ -87,9 +163,22 @@ def surface_weights(shares: Floats, heights: Floats, radius: float, exponent: fl
 
 
 def surface_shares(shares: Floats, heights: Floats, radius: float, exponent: float) -> Floats:
-    """Return ``surface_weights`` (F,) [1] that sum to 1.
+    """Return ``surface_weights`` that sum to 1.
 
-    Source: own; docs/resting.md, "Surface-weighted tumbling".
+    Parameters
+    ----------
+    shares : (F,) float [1]
+    heights : (F,) float [m]
+    radius : float [m]
+    exponent : float [1]
+
+    Returns
+    -------
+    (F,) float [1]
+
+    References
+    ----------
+    Own; docs/resting.md, "Surface-weighted tumbling".
     """
     weights = surface_weights(shares, heights, radius, exponent)
     return weights / weights.sum()
@@ -122,19 +211,40 @@ def critical(faces: Sequence[Face]) -> Floats:
 
 
 def hop_shares(tips: Tipping, radius: float) -> Floats:
-    """Return the shares (F,) [1] in which hops of falling energy leave a part on its faces.
-
-    They sum to 1; zero for faces without a sink. ``radius`` [m]: largest distance from the centre of mass to
-    a corner: the energy, as a height, at which every attitude is open and the cascade begins. Raises
-    ValueError if the radius is not positive. Source: own; docs/resting.md, "The cascade of hops".
+    """Return the shares in which hops of falling energy leave a part on its faces.
 
     Energies e are heights, h those of the faces, t those of the saddles, A the shares of the basins. A hop of
-    energy e from face i ends on i or on a neighbour j whose saddle lies below e, with weights A_i (e - h_i)
-    and A_j (e - h_j) (e - t_ij) / (e - h_i): the room a face offers at that energy, times the share of the
-    hops that are high enough. Then the part keeps a random share of its energy over the face it is on, and
-    once no saddle lies below, it stays. Deep faces hold what comes, high and shallow ones pass it on.
-    KEPT_ENERGY_EXPONENT and the powers of one were chosen by eye: docs/resting.md says on what,
+    energy e from face i ends on i or on a neighbour j whose saddle lies below e, with the weights
+
+        A_i (e - h_i)   and   A_j (e - h_j) (e - t_ij) / (e - h_i)
+
+    that is, the room a face offers at that energy times the share of the hops that are high enough. Then the
+    part keeps a random share of its energy over the face it is on; once no saddle lies below, it stays. Deep
+    faces hold the part, high and shallow ones pass it on.
+
+    ``KEPT_ENERGY_EXPONENT`` and the powers of one were chosen by eye: docs/resting.md says on what data, and
     ``benchmarks/accuracy.py`` compares.
+
+    Parameters
+    ----------
+    tips : Tipping
+    radius : float [m]
+        Largest distance from the centre of mass to a corner: the energy, as a height, at which every attitude
+        is open and the cascade begins.
+
+    Returns
+    -------
+    (F,) float [1]
+        They sum to 1; zero for faces without a sink.
+
+    Raises
+    ------
+    ValueError
+        If the radius is not positive.
+
+    References
+    ----------
+    Own; docs/resting.md, "The cascade of hops".
     """
     present = np.flatnonzero(np.isfinite(tips.heights) & (tips.shares > 0.0))
     between = np.isin(tips.pairs, present).all(axis=1)
@@ -147,7 +257,7 @@ def hop_shares(tips: Tipping, radius: float) -> Floats:
 
 
 def _cascade(shares: Floats, heights: Floats, pairs: Ints, tops: Floats) -> Floats:
-    """(F,) where the parts end; lengths in units of the radius."""
+    """Return the share (F,) [1] of the parts that ends on each face; lengths in units of the radius."""
     if not len(tops):
         return shares
     levels = np.linspace(1.0, tops.min(), ENERGY_LEVELS + 1)
@@ -159,7 +269,7 @@ def _cascade(shares: Floats, heights: Floats, pairs: Ints, tops: Floats) -> Floa
     end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
 
     def way_parts(energies: Floats) -> Floats:
-        """(K, W) part of the mass at its start that goes each way in a hop of each energy (K,)."""
+        """Return the part (K, W) of the mass at its start that goes each way in a hop of each energy (K,)."""
         depth = np.maximum(energies[:, None] - heights, np.finfo(float).eps)
         rates = (shares * depth)[:, end]
         high = np.maximum(energies[:, None] - both, 0.0)  # of the hops, those high enough

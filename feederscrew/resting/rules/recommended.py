@@ -64,10 +64,26 @@ def closed_form(
 ) -> Recommended:
     """Return the answer of the closed form nearest to drop tests of a launch, with its calibrated interval.
 
-    ``chances`` (A,) [1]: by every rule; ``stable`` (A,) bool; ``kinds``: 'rolling' among them, where the part
-    has a rolling class; ``launch``: a key of ``launch_conditions.PRESETS``; ``surface``: the user's own,
-    'soft': then the surface-weighted rule is the answer whatever the launch.
-    Source: own; docs/resting.md, "The recommended answer".
+    Parameters
+    ----------
+    chances : dict of str to (A,) float [1]
+        By every rule.
+    stable : (A,) bool
+    kinds : sequence of A str
+        'rolling' among them, where the part has a rolling class.
+    launch : str
+        One of ``LAUNCH_NAMES``.
+    surface : str or None
+        The user's own, such as 'soft'. With it the surface-weighted rule is the answer whatever the launch.
+
+    Returns
+    -------
+    Recommended
+        Shares with the ends of their interval, A rows.
+
+    References
+    ----------
+    Own; docs/resting.md, "The recommended answer".
     """
     rolling = bool((np.array(kinds)[stable] == "rolling").any())
     if surface:
@@ -85,14 +101,30 @@ def closed_form(
 
 
 def temper_shares(chances: dict[str, Floats], share: float) -> tuple[str, Floats]:
-    """Return the name and the shares (A,) [1], of sum 1, of exact tumbling and the cascade of hops together.
+    """Return exact tumbling and the cascade of hops together: their weighted geometric mean.
 
-    They are the weighted geometric mean of both.
+        p_i = q_i^(1 - w) c_i^w / sum over j of q_j^(1 - w) c_j^w
 
-    ``chances`` (A,) [1]: by every rule; ``share`` [1]: weight of the hops: 0 for parts that fall dead, 1 for
-    parts that bounce until they can hop no more. Drop tests of gentle launches lie between the two, and their
-    logarithms about as far from either on every face; a mean of the shares themselves is nearly as good.
-    Source: own; docs/resting.md, "The recommended answer".
+    Drop tests of gentle launches lie between the two, and their logarithms about as far from either on every
+    face. A mean of the shares themselves is nearly as good.
+
+    Parameters
+    ----------
+    chances : dict of str to (A,) float [1]
+        By every rule: q is 'quasistatic', c is 'hops'.
+    share : float [1]
+        w, weight of the hops: 0 for parts that fall dead, 1 for parts that bounce until they can hop no more.
+
+    Returns
+    -------
+    str
+        Name of the answer.
+    (A,) float [1]
+        Shares, which sum to 1.
+
+    References
+    ----------
+    Own; docs/resting.md, "The recommended answer".
     """
     if share in (0.0, 1.0):
         rule = "hops" if share else "quasistatic"
@@ -102,12 +134,29 @@ def temper_shares(chances: dict[str, Floats], share: float) -> tuple[str, Floats
 
 
 def widen_for_launch(p: Floats, low: Floats, high: Floats, possible: Bools) -> tuple[Floats, Floats]:
-    """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
+    """Return the ends of an interval of simulated shares with the doubt that the name of a launch leaves.
 
-    ``p`` (A,) [1]; ``low`` and ``high`` (A,) [1]: ends of the interval of what is known of the simulation:
-    its sampling and its numerical error; ``possible`` (A,) bool: classes that a part can rest on; of a single
-    one nothing is in doubt. Both errors are taken as independent, within 0 and 1.
-    Source: own; docs/resting.md, "The recommended answer".
+    Both errors are taken as independent, so their squares add.
+
+    Parameters
+    ----------
+    p : (A,) float [1]
+    low : (A,) float [1]
+        Lower end of the interval of the simulation: its sampling and its numerical error.
+    high : (A,) float [1]
+    possible : (A,) bool
+        Classes that a part can rest on. If there is a single one, nothing is in doubt.
+
+    Returns
+    -------
+    (A,) float [1]
+        Lower ends, at least 0.
+    (A,) float [1]
+        Upper ends, at most 1.
+
+    References
+    ----------
+    Own; docs/resting.md, "The recommended answer".
     """
     open_ = np.where(possible & (np.count_nonzero(possible) > 1), LAUNCH_WIDTH * shape(p), 0.0)
     return np.clip(p - np.hypot(open_, p - low), 0.0, 1.0), np.clip(p + np.hypot(open_, high - p), 0.0, 1.0)
@@ -116,7 +165,7 @@ def widen_for_launch(p: Floats, low: Floats, high: Floats, possible: Bools) -> t
 def shape(p: Floats) -> Floats:
     """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
 
-    It falls as the scatter of a count does, but for WIDTH_FLOOR.
-    Source: own; docs/resting.md, "The recommended answer".
+    It falls as the scatter of a count does, 2 sqrt(p (1 - p)), but for WIDTH_FLOOR. Source: own;
+    docs/resting.md, "The recommended answer".
     """
     return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + WIDTH_FLOOR) / (1.0 + WIDTH_FLOOR)
