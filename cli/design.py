@@ -67,6 +67,13 @@ REQUEST = (  # what shall leave, and what may be used
         "--alternatives",
         "Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
     ),
+    options.quantity(
+        "--agreed-jams",
+        "rate",
+        "1/h",
+        "Jams that the buyer tolerates: what acceptance.csv demands.",
+        positive=True,
+    ),
     options.whole(
         "--draws",
         1,
@@ -82,7 +89,7 @@ OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_m
 
 @grouped.command(
     short_help="From a part and a rate to a bowl that its own trial confirms.",
-    rare=("heading", "budget", "draws", "tolerance"),
+    rare=("heading", "budget", "draws", "tolerance", "agreed_jams"),
 )
 @options.part
 @click.argument("more_parts", metavar="[PART...]", nargs=-1, type=options.FILE)

@@ -22,6 +22,7 @@ SHARED = {field.name for field in fields(Device)}  # what every device has
 RATE_KEPT = 0.9  # [1] of the target
 PURE = 0.98  # [1] of what leaves
 DRAWS_HELD = 0.95  # [1] of the draws
+AGREED_JAMS = 1.0 / units.HOUR  # [1/s] that a buyer tolerates where nothing else is agreed
 VERIFIED_TOLERANCE = 1e-3  # [1] of a number as the file writes it
 NOTHING_LEFT = "none"  # the purity of a queue that nothing left
 MAX_RATE = 1e6 / units.MINUTE  # [1/s]

@@ -45,6 +45,7 @@ class DesignSearch:
     alternatives: bool = DesignRequest.alternatives
     # trials of the answer with part, friction, drive and cuts drawn from their spread
     draws: int = DesignRequest.draws
+    agreed_jams: Quantity = DesignRequest.agreed_jams  # that the buyer tolerates, '1/h'
 
 
 class DesignOptions(TypedDict, total=False):
@@ -132,7 +133,8 @@ def design(
     aspect_shares : Shares, optional
         Of ``shares``; what lies on the moving floor of the designed bowl without it.
     search : DesignSearch, optional
-        Rule, number of short trials and of draws, and whether dearer chains are proved too.
+        Rule, number of short trials and of draws, whether dearer chains are proved too, and the jams that a
+        buyer tolerates.
     seed : int
         Of everything that is drawn.
     jobs : int
@@ -162,6 +164,7 @@ def design(
         budget=arguments.whole("budget", looked.budget),
         alternatives=bool(looked.alternatives),
         draws=arguments.whole("draws", looked.draws),
+        agreed_jams=arguments.amount("agreed_jams", looked.agreed_jams, "rate", MIN_POSITIVE),
         seed=arguments.whole("seed", seed, 0),
         jobs=arguments.whole("jobs", jobs),
     )

@@ -10,9 +10,10 @@ from feederscrew import check
 from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.devices import shank_remarks
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, Status
+from feederscrew.bowl.verified import AGREED_JAMS, DRAWS_HELD, PURE, RATE_KEPT, Status
 from feederscrew.designing import texts
 from feederscrew.designing.calm_drive import DriveKind
+from feederscrew.designing.evidence import rate_at_most, share_at_least
 from feederscrew.designing.findings import (
     Cause,
     Fault,
@@ -36,7 +37,7 @@ from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial.long_ride import RideOfTrack, join_rides, ride_of_track
 from feederscrew.trial.result import TrialRun
-from feederscrew.units import counted
+from feederscrew.units import HOUR, counted
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class DesignRequest:
     seed: int = 1
     jobs: int = 1
     alternatives: bool = False  # whether dearer cost classes are searched too where one holds
+    agreed_jams: float = AGREED_JAMS  # [1/s] that the buyer tolerates
 
     @property
     def run(self) -> RunSettings:
@@ -449,11 +451,12 @@ class DesignStudy(ReadableRecord):
 
     @property
     def purity(self) -> tuple[float, float]:
-        """Share of the wanted orientation in what left all queues [1], and its lower end; NaN of nothing."""
+        """Share of the wanted orientation in what left all queues [1], and its lower bound; NaN of nothing.
+
+        The bound is one-sided, for 95 % confidence (``evidence.share_at_least``).
+        """
         right, left = self._sum("right"), self._sum("left")
-        if not left:
-            return np.nan, 0.0
-        return right / left, float(wilson([right], left)[0][0])
+        return right / left if left else np.nan, share_at_least(right, left)
 
     @property
     def efficiency(self) -> float:
@@ -473,8 +476,8 @@ class DesignStudy(ReadableRecord):
 
     @property
     def jams_per_hour_high(self) -> float:
-        """Upper end of the jams an hour: three more than were seen, in the time they were looked for."""
-        return 3600.0 * (self.jams + 3.0) / self.queue_seconds if self.queue_seconds else np.inf
+        """Upper bound of the jams an hour, one-sided for 95 % confidence: 3 / T after T hours without one."""
+        return HOUR * rate_at_most(self.jams, self.queue_seconds)
 
     @property
     def trial_parts(self) -> int:
@@ -524,8 +527,8 @@ class DesignStudy(ReadableRecord):
         followed = bool(self.queues) or self.robust.share >= DRAWS_HELD  # draws that fail end a proof
         if followed and low < RATE_KEPT * self.request.target:
             lines.append(
-                f"delivers {minute * rate:.3g}/min (at least {minute * low:.3g}) of the "
-                f"{minute * self.request.target:.3g}/min asked for"
+                f"delivers {minute * rate:.3g}/min (lower end of its 95 % interval {minute * low:.3g}) of "
+                f"the {minute * self.request.target:.3g}/min asked for"
             )
         for queue in self.queues:
             if queue.ends[1] < RATE_KEPT * self.request.target:

@@ -14,6 +14,7 @@ from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignStudy
 from feederscrew.output import designs, machine, marking, solidbowl, solidbowl_views, tables, tooling
 from feederscrew.output import offers as offer
+from feederscrew.output.designs import LOWER_BOUND
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Block,
@@ -72,11 +73,12 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     d = designs.document(study)
     value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
     purity = "-" if d["purity"] is None else f"{100.0 * d['purity']:.3g} %"
+    purity_low = f"seen in the queues; {LOWER_BOUND} {100.0 * d['purity_low']:.3g} %"
     rates = f"{low:.3g} to {high:.3g}, asked {d['target_per_minute']:.3g}"
     tiles = (
         Tile("status", d["status"], d["wanted"] or "no orientation"),
         Tile("parts per minute", f"{value:.3g}", rates),
-        Tile("purity", purity, "of what left the queue"),
+        Tile("purity", purity, purity_low),
         Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
     )
     chapters = [Chapter(tuple(_answer(study, d)), tiles, study.warnings, "answer", "The answer")]
@@ -119,7 +121,12 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     if study.delivers:  # else there is nothing to build from, nothing to accept
         sheet = designs.acceptance(study)
         blocks = (
-            Text("Computed values, with empty cells for what is measured at the machine."),
+            Text(
+                "Each line has its demand (low, high) and the plan that shows it for 95 % confidence. Beside "
+                "it stands what the computation expects, with its bounds: of a rate the 95 % interval, of "
+                "yield and jams one-sided bounds (95 %). Write what was measured, and in 'sample' on how "
+                "many parts (of a yield) or in how many seconds (of a rate and of jams)."
+            ),
             Table(sheet),
             CsvSheet("acceptance.csv", tables.text(sheet, "csv"), on_page=False),
             Heading("What to measure"),
@@ -134,9 +141,9 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
     if study.status == Status.HOLDS:
         least, draws = 60.0 * RATE_KEPT * study.request.target, 100.0 * DRAWS_HELD
         yield Text(
-            f"Status: {study.status}. The lower end of the rate is at least {least:.3g} a minute, the purity "
-            f"at least {100.0 * PURE:.3g} %; nothing jams, and at least {draws:.3g} % of the draws "
-            "sort."
+            f"Status: {study.status}. The lower end of the rate's 95 % interval is at least {least:.3g} a "
+            f"minute, and the purity that was seen at least {100.0 * PURE:.3g} %. Nothing jams, and "
+            f"at least {draws:.3g} % of the draws sort."
         )
     else:
         yield Text(f"Status: {study.status}. {study.why}.")
@@ -286,7 +293,7 @@ def family_summary(study: FamilyStudy) -> Frame:
     for member in study.members:
         rate, low, _ = (value / units.PER_MINUTE for value in member.delivered)
         text = f"{member.status}, {member.wanted or '-'}"
-        text += "" if member.partial else f", {rate:.4g} a minute (at least {low:.4g})"
+        text += "" if member.partial else f", {rate:.4g} a minute (95 % interval from {low:.4g})"
         rows.append((member.part.name, text + (f": {member.why}" if member.why else "")))
         facts = designs.machine_facts(member)
         if facts is not None:

@@ -3,6 +3,7 @@
 import datetime
 import textwrap
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -17,7 +18,7 @@ from feederscrew.bowl.record import Bowl, Drive, Machine, Sizing, Track
 from feederscrew.bowl.verified import NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import texts
+from feederscrew.designing import acceptance_sheet, texts
 from feederscrew.designing.acceptance_sheet import SheetLine
 from feederscrew.designing.record import Alternative, DesignStudy, Pair, Risk
 from feederscrew.errors import FeederError
@@ -50,6 +51,7 @@ ATTEMPT_COLUMNS = (
     "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
     "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
 )  # fmt: skip
+LOWER_BOUND, UPPER_BOUND = (f"{side} bound (95 %, one-sided)" for side in ("lower", "upper"))
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
 
 
@@ -313,16 +315,15 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
     rows.append(("asked for [1/min]", f"{d['target_per_minute']:.4g}"))
     if d["status"] != Status.NOT_PROVED:
         value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
-        purity, hourly = "-", d["jams_per_hour_high"]
-        if d["purity"] is not None:
-            purity = f"{100.0 * d['purity']:.4g} (at least {100.0 * d['purity_low']:.4g})"
-        at_most = "" if hourly is None else f", at most {hourly:.3g} an hour"
+        purity, purity_low, hourly = (d[name] for name in ("purity", "purity_low", "jams_per_hour_high"))
+        shares = ("-" if share is None else f"{100.0 * share:.4g}" for share in (purity, purity_low))
         rows += [
-            ("delivered at the lowest fill [1/min]", f"{value:.4g} ({low:.4g} to {high:.4g})"),
+            ("delivered at the lowest fill [1/min]", f"{value:.4g} (95 % interval {low:.4g} to {high:.4g})"),
             ("the same at the worst friction [1/min]", f"{d['worst_friction_per_minute']:.4g}"),
             ("promised by the static rule [1/min]", f"{d['static_per_minute']:.4g}"),
-            ("purity [%]", purity),
-            ("jams", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue{at_most}"),
+            *zip(("purity that was seen [%]", f"purity, {LOWER_BOUND} [%]"), shares, strict=True),
+            ("jams that were seen", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue"),
+            (f"jams an hour, {UPPER_BOUND}", "-" if hourly is None else f"{hourly:.3g}"),
             ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
         ]
     chain = [f"{item.full_name}: {item.value_words}" for item in devices] or ["none"]
@@ -339,17 +340,11 @@ def dimensions(d: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def acceptance(study: DesignStudy) -> Frame:
-    """Return the acceptance sheet: what a buyer measures, the computed values beside empty cells."""
-    rows: list[tuple[str, str, str, str, str, str]] = []  # quantity, fill, computed, low, high, unit
+    """Return the acceptance sheet: demand, plan and computed values of each line beside empty cells."""
+    request = study.request
+    lines: list[SheetLine] = []
     for filled in study.queues:
-        value, low, high = (f"{end / PER_MINUTE:.4g}" for end in (filled.rate, *filled.ends))
-        good = f"{100.0 * filled.right / filled.left:.4g}" if filled.left else ""
-        hourly = f"{3600.0 * (filled.jams + 3) / filled.seconds:.3g}"
-        rows += [
-            ("good parts at the discharge", filled.fill, value, low, high, "1/min"),
-            ("yield, good of what leaves", filled.fill, good, "", "", "%"),
-            ("jams", filled.fill, f"{filled.jams}", "", hourly, "1/h"),
-        ]
+        lines += acceptance_sheet.lines_of_fill(filled, request.target, request.agreed_jams)
     if study.bowl is not None:
         facts: Any = machine_facts(study)
         drive, controller = study.bowl.drive, study.bowl.sizing.controller
@@ -361,13 +356,23 @@ def acceptance(study: DesignStudy) -> Frame:
             ("vibration angle at the springs", facts["vibration_angle_at_the_springs_deg"], "deg"),
             ("phase of the drive", facts["phase_deg"] or None, "deg"),
             ("drive setting", 100.0 * controller, "%"),
-        ]
-        rows += [(name, "", f"{x:.4g}", "", "", unit) for name, x, unit in single if x is not None]
-        reserve, tilt = 100.0 * (1.0 / controller - 1.0), np.degrees(np.arctan(study.bowl.friction.static))
-        rows.append(("reserve of the drive", "", f"{reserve:.3g}", "", "", "%"))
-        rows.append(("angle at which a part slides down a tilted strip", "", f"{tilt:.3g}", "", "", "deg"))
-    names = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
-    return tables.of_cells(names, ((*row, "", "") for row in rows))
+            ("reserve of the drive", 100.0 * (1.0 / controller - 1.0), "%"),
+            (
+                "angle at which a part slides down a tilted strip",
+                np.degrees(np.arctan(study.bowl.friction.static)), "deg",
+            ),
+        ]  # fmt: skip
+        for name, value, unit in single:
+            if value is not None:
+                line = SheetLine(name, "", unit, None, None, float(value))
+                lines.append(replace(line, low=line.demand[0], high=line.demand[1]))
+    cells = ([_cell(getattr(line, name)) for name in acceptance_sheet.SHEET_COLUMNS] for line in lines)
+    return tables.of_cells(acceptance_sheet.SHEET_COLUMNS, cells)
+
+
+def _cell(value: str | float | None) -> str:
+    """Return a cell of the sheet."""
+    return "" if value is None else value if isinstance(value, str) else f"{value:.5g}"
 
 
 SET_KEYS = {  # keys of the bowl file that a design sets, by section
@@ -471,33 +476,35 @@ def trial_of(study: DesignStudy) -> Verified | None:
 
 
 def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
-    """Return one row a line of the sheet."""
-    words = {True: "agrees", False: "does not", None: "not measured"}
-    names = ("quantity", "fill", "computed", "from", "to", "measured", "unit", "verdict")
+    """Return one row a line of the sheet: the demand, what was measured, and what that says."""
+    names = ("quantity", "fill", "from", "to", "unit", "measured", "sample", "computed", "verdict", "why")
     rows = []
     for line in lines:
-        values = (line.computed, *line.ends, line.measured)
-        numbers = ("" if value is None else f"{value:.4g}" for value in values)
-        rows.append((line.quantity, line.fill, *numbers, line.unit, words[line.agrees]))
+        verdict, why = line.judged
+        ends = (end if np.isfinite(end) else None for end in line.demand)
+        low, high, *others = map(_cell, (*ends, line.measured, line.sample, line.computed))
+        rows.append((line.quantity, line.fill, low, high, line.unit, *others, verdict.value, why))
     return tables.of_cells(names, rows)
 
 
 def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
-    """Return the sheet as the JSON document."""
-    listed = [line.agrees for line in lines if line.agrees is not None]
-    return {
-        "accepted": all(listed),
-        "measured": len(listed),
-        "lines": [
+    """Return the sheet as the JSON document; ``accepted`` where every demand that was measured is shown."""
+    judged = [line.agrees for line in lines if line.agrees is not None]
+    rows = []
+    for line in lines:
+        verdict, why = line.judged
+        low, high = (float(end) if np.isfinite(end) else None for end in line.demand)
+        rows.append(
             {
-                **row_of(line, "quantity fill unit computed"),
-                "low": line.ends[0],
-                "high": line.ends[1] if line.ends[1] < float("inf") else None,
+                **row_of(line, "quantity fill unit computed computed_low computed_high"),
+                "low": low,
+                "high": high,
                 **row_of(line, "measured sample agrees"),
+                "verdict": verdict.value,
+                "why": why or None,
             }
-            for line in lines
-        ],
-    }
+        )
+    return {"accepted": all(judged), "measured": len(judged), "lines": rows}
 
 
 def history_figure(study: DesignStudy, ax: "style.Axes | None" = None) -> "style.Figure":
