@@ -21,6 +21,7 @@ VERIFIED_SECTION = "verified"
 SHARED = {field.name for field in fields(Device)}  # what every device has
 RATE_KEPT = 0.9  # [1] of the target
 PURE = 0.98  # [1] of what leaves
+SHOWN_PURITY = 0.97  # [1] that the lower bound (95 %, one-sided) of the purity is above
 DRAWS_HELD = 0.95  # [1] of the draws
 AGREED_JAMS = 1.0 / units.HOUR  # [1/s] that a buyer tolerates where nothing else is agreed
 VERIFIED_TOLERANCE = 1e-3  # [1] of a number as the file writes it
@@ -36,6 +37,7 @@ MAX_CLOCK_SKEW = datetime.timedelta(days=1)  # by which the clock of another mac
 # how parts leave
 LYING = "lying"
 HANGING = "hanging"
+FILLS = ("low", "normal", "high")  # of a queue
 AMONG = " or "  # between the names of what counts as one
 
 
@@ -81,6 +83,7 @@ class Verified:
     up: str = ""  # aspects that counted as the wanted one, whatever their heading: 'A, B'
     body: str = ""  # of ``body_fingerprint``; '' where the file does not say
     outcome: str = ""  # LYING or HANGING; '' where the file does not say
+    fill: str = ""  # the worst one, of which rate and purity are; '' where the file does not say
 
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
         """Say what is other than was tried, a sentence each; nothing where the block holds.
@@ -120,9 +123,10 @@ class Verified:
         minute = units.PER_MINUTE
         purity = "nothing left" if self.purity is None else f"purity {100.0 * self.purity:.3g} %"
         counted = f", {self.up} at any heading counted in: a rule counts one orientation" if self.up else ""
+        at = f" at {self.fill} fill, the worst" if self.fill else ""
         return (
             f"its trial delivers {self.delivered / minute:.4g}/min ({self.low / minute:.3g} "
-            f"to {self.high / minute:.3g}) of {self.wanted}{counted}, {purity}, "
+            f"to {self.high / minute:.3g}) of {self.wanted}{counted}, {purity}{at}, "
             f"{self.jams} jams in {self.queue_seconds:.3g} s of queue, "
             f"{self.held} of {self.draws} draws sort: {self.status}"
         )
@@ -266,6 +270,8 @@ READERS: dict[str, tuple[Callable[[str], Any], str]] = {  # by key: how it is re
 OPTIONAL: dict[str, tuple[Callable[[str], Any], str]] = {
     "up": (_TEXT, "names of aspects"),
     "outcome": (_form((LYING, HANGING).__contains__, MAX_TEXT), f"{LYING} or {HANGING}"),
+    "fill": (_form(FILLS.__contains__, MAX_TEXT), f"one of {', '.join(FILLS)}"),
+    "purity_low": (_SHARE, "a share from 0 to 1"),
     "trial_parts": (_number("count", 1, MAX_COUNT), "a whole number from 1 to 1000000"),
     "seed": (_number("count", 0, MAX_SEED), "a whole number"),
     "tried": (_date, "a date up to today"),

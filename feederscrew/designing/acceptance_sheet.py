@@ -16,9 +16,9 @@ from pathlib import Path
 from feederscrew import documents, units
 from feederscrew.bowl.verified import AGREED_JAMS, PURE
 from feederscrew.designing import evidence
-from feederscrew.designing.record import FilledQueue
 from feederscrew.errors import Faults, FeederError
 from feederscrew.heavy import heavy
+from feederscrew.trial.fills import FilledQueue
 from feederscrew.units import HOUR, PER_MINUTE, counted
 
 stats = heavy("scipy.stats")

@@ -8,7 +8,7 @@ import math
 
 from feederscrew.heavy import heavy
 
-stats = heavy("scipy.stats")
+special = heavy("scipy.special")
 
 CONFIDENCE = 0.95  # [1] of every one-sided bound
 MAX_SAMPLE = 10**9  # parts: no sample that is asked for is larger
@@ -38,7 +38,7 @@ def share_at_least(right: int, total: int, confidence: float = CONFIDENCE) -> fl
     """
     if right <= 0:
         return 0.0
-    return float(stats.beta.ppf(1.0 - confidence, right, total - right + 1))
+    return float(special.betaincinv(right, total - right + 1, 1.0 - confidence))
 
 
 def share_at_most(right: int, total: int, confidence: float = CONFIDENCE) -> float:
@@ -72,7 +72,7 @@ def rate_at_most(count: int, time: float, confidence: float = CONFIDENCE) -> flo
 
 
 def _mean_at_most(count: int, confidence: float) -> float:
-    return 0.5 * float(stats.chi2.ppf(confidence, 2 * (count + 1)))
+    return float(special.gammaincinv(count + 1, confidence))  # half of chi-square
 
 
 def parts_to_look_at(demand: float, wrong: int, confidence: float = CONFIDENCE) -> int:
@@ -102,7 +102,7 @@ def parts_to_look_at(demand: float, wrong: int, confidence: float = CONFIDENCE) 
         raise ValueError(f"a share of {demand:g} is shown by no sample")
 
     def is_enough(sample: int) -> bool:
-        return bool(stats.binom.cdf(wrong, sample, 1.0 - demand) <= 1.0 - confidence)
+        return bool(special.bdtr(wrong, sample, 1.0 - demand) <= 1.0 - confidence)
 
     few, many = wrong, wrong + 1  # the first is too small a sample, the second grows until it is enough
     while not is_enough(many):

@@ -4,7 +4,6 @@ The search decides on these. ``designing.texts`` makes the sentences that people
 """
 
 import enum
-from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -115,31 +114,3 @@ class Move:
     device: str = ""  # kind of the device that is changed or added
     device_name: str = ""
     device_text: str = ""  # its value as a bowl file writes it
-
-
-class PoseKind(enum.Enum):
-    """How well the pose in which a part left is known."""
-
-    ORIENTATION = enum.auto()
-    HEADING_OFF = enum.auto()  # on an aspect, at a heading that is none of the listed ones
-    UNKNOWN = enum.auto()
-
-
-@dataclass(frozen=True)
-class LeavingPose:
-    """A pose, other than wanted, in which parts left a queue."""
-
-    kind: PoseKind
-    aspect: str = ""  # '' of parts that hang, or lie in no known pose
-    name: str = ""  # of the orientation; '' of the other kinds
-
-
-LeavingCounts = tuple[tuple[LeavingPose, int], ...]  # the most first
-
-
-def join_leaving_counts(*counts: LeavingCounts) -> LeavingCounts:
-    """Return poses with their numbers of parts added up, the most first."""
-    total = Counter[LeavingPose]()
-    for count in counts:
-        total.update(dict(count))
-    return tuple(total.most_common())

@@ -12,7 +12,7 @@ from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.bowl import default
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing.record import FilledQueue, Pair, Risk
+from feederscrew.designing.record import Pair, Risk
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import zero_rows
@@ -22,6 +22,7 @@ from feederscrew.part.record import Part
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial import part_poses, queue, runs, staging
+from feederscrew.trial.fills import FilledQueue
 from feederscrew.trial.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
 from feederscrew.trial.shape import solid_of
 from feederscrew.units import counted

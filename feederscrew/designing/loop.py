@@ -20,6 +20,7 @@ from feederscrew.designing import (
     short_trials,
     texts,
 )
+from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind
 from feederscrew.designing.progress import Progress, SearchProgress, SearchStage
 from feederscrew.designing.record import (
@@ -29,10 +30,8 @@ from feederscrew.designing.record import (
     Attempt,
     DesignRequest,
     DesignStudy,
-    FilledQueue,
     NearestDesign,
     RobustRun,
-    long_ride,
 )
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.designing.short_trials import robust_run
@@ -45,7 +44,10 @@ from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating import chain as static
 from feederscrew.tooling.isolating.chain import DesignConstraints
+from feederscrew.trial.fills import FilledQueue
+from feederscrew.trial.long_ride import long_ride
 from feederscrew.trial.result import TrialRun
+from feederscrew.trial.wanted import wanted_rows
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -138,7 +140,9 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
     def prove(other: Search, candidate: Candidate) -> DesignStudy:
         # its queue ends where it is impure or jams, however slow it is
         at_any_rate = replace(other, request=replace(other.request, target=ANY_RATE))
-        return replace(prove_design(at_any_rate, candidate, whole=False), request=other.request)
+        longest = longest_time(other.request.target)
+        study = prove_design(at_any_rate, candidate, whole=False, longest=longest)
+        return replace(study, request=other.request)
 
     return nearest.nearest(_best(search, proofs), search, proofs, prove)
 
@@ -220,7 +224,8 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
             return lively
         changed = proposals.add_pressure_break(candidate)
     elif nearest.only_slow(study):
-        state.reserve *= policy.slow_reserve * RATE_KEPT * search.request.target / study.delivered[1]
+        lacking = policy.slow_reserve * search.request.target / study.delivered[0]
+        state.reserve *= min(lacking, policy.slow_reserve_limit)
         return _faster(search, candidate)
     elif study.robust.share < DRAWS_HELD:
         worst = study.robust.worst
@@ -248,11 +253,17 @@ def _faster(search: Search, candidate: Candidate) -> Candidate | None:
 
 
 def prove_design(
-    search: Search, candidate: Candidate, *, whole: bool, robust: RobustRun | None = None
+    search: Search,
+    candidate: Candidate,
+    *,
+    whole: bool,
+    robust: RobustRun | None = None,
+    longest: float | None = None,
 ) -> DesignStudy:
     """Return the design with its draws and its queue; unless ``whole``, only as far as it holds.
 
     ``robust`` are all draws of that candidate, where they were made: they would come out the same.
+    ``longest`` is the time [s] of each fill at the most, without it that of the target.
     """
     request, name, shares = search.request, candidate.attempt.wanted, search.arrivals
     if search.given_shares is None:  # the search took what arrives from one drive: here from the bowl's own
@@ -266,7 +277,7 @@ def prove_design(
     # a ride along the track to the tooling, where another mix arrives
     search.tell(f"ride along the track: {name}")
     oriented, proposal = candidate.orientations, candidate.proposal
-    wanted = short_trials.wanted_rows(oriented, candidate.trial.states)
+    wanted = wanted_rows(oriented, candidate.trial.states)
     ride = long_ride(search.part, candidate.bowl, oriented.lying, candidate.weights, wanted, request.run)
     candidate = replace(candidate, weights=ride.arriving)
     study = replace(_study_of(search, candidate, shares), long_ride=ride)
@@ -283,16 +294,17 @@ def prove_design(
     study = replace(study, robust=robust, partial=robust.partial)
     if robust.partial or not (whole or robust.share >= DRAWS_HELD):
         return study
-    # queues, the slowest for longer; parts that touch on their way come as they enter the track
+    # queues; parts that touch on their way come as they enter the track
     line = queues.FollowedRow(
         search.part, candidate.bowl, shares.aspects, oriented, candidate.weights,
-        candidate.trial.states, request.seed, search.tell, RATE_KEPT * request.target,
-        proposal.any_heading, search.run(SearchStage.QUEUE).progress, ride.entering, request.jobs,
+        candidate.trial.states, proposal.any_heading, ride.entering,
+        seed=request.seed, tell=search.tell, least=RATE_KEPT * request.target,
+        longest=longest_time(request.target) if longest is None else longest,
+        progress=search.run(SearchStage.QUEUE).progress, jobs=request.jobs,
     )  # fmt: skip
     try:
         search.tell(f"queue: {name}, {proposal.sentence}")
         study = _with_queues(study, queues.follow_fills(line, whole=whole))
-        study = _with_queues(study, queues.follow_longer(line, study))
     except KeyboardInterrupt:
         return replace(study, partial=True)
     frequent = [oriented.lying[k] for k in short_trials.frequent_rows(candidate.weights)]

@@ -4,18 +4,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from feederscrew.designing.findings import (
-    End,
-    Fault,
-    FaultKind,
-    LeavingCounts,
-    LeavingPose,
-    Move,
-    MoveKind,
-    PoseKind,
-)
+from feederscrew.designing.fill_verdicts import DifferenceKind, FillDifference
+from feederscrew.designing.findings import End, Fault, FaultKind, Move, MoveKind
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.trial.course import Fate
+from feederscrew.trial.fills import LeavingCounts, LeavingPose, PoseKind
 
 
 def end_text(end: End) -> str:
@@ -100,6 +93,26 @@ def pose_text(pose: LeavingPose) -> str:
             return f"{pose.aspect}, heading off"
         case PoseKind.UNKNOWN:
             return "in no known pose"
+
+
+def difference_text(difference: FillDifference) -> str:
+    """Return a fill that is worse than the others, with its cause, as a sentence."""
+    d = difference
+    counts = f"{d.right} of {d.total} parts", f"{d.right_elsewhere} of {d.total_elsewhere}"
+    chance = f"p = {d.chance:.1g}, Fisher's exact test"
+    place = f"at the {d.device}" if d.device else "on the bare track"
+    match d.kind:
+        case DifferenceKind.PURITY:
+            text = f"at {d.fill} fill {counts[0]} that left are as wanted, elsewhere {counts[1]} ({chance})"
+            if d.pose is None:
+                return text
+            through = f", past the {d.device}" if d.device else ""
+            return f"{text}: {pose_text(d.pose)} leaves there ({d.count}{through})"
+        case DifferenceKind.YIELD:
+            text = f"at {d.fill} fill {counts[0]} leave as wanted, elsewhere {counts[1]} ({chance})"
+            if not d.count:
+                return f"{text}: fewer come as wanted there"
+            return f"{text}: parts that came as wanted fall back {place} ({d.count})"
 
 
 def leaving_texts(counts: LeavingCounts) -> dict[str, int]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.reading import Setting
-from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, Status
+from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignStudy
@@ -73,8 +73,8 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     d = designs.document(study)
     value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
     purity = "-" if d["purity"] is None else f"{100.0 * d['purity']:.3g} %"
-    purity_low = f"seen in the queues; {LOWER_BOUND} {100.0 * d['purity_low']:.3g} %"
-    rates = f"{low:.3g} to {high:.3g}, asked {d['target_per_minute']:.3g}"
+    purity_low = f"seen at the worst fill; {LOWER_BOUND} {100.0 * d['purity_low']:.3g} %"
+    rates = f"{low:.3g} to {high:.3g} (95 %) at the worst fill, asked {d['target_per_minute']:.3g}"
     tiles = (
         Tile("status", d["status"], d["wanted"] or "no orientation"),
         Tile("parts per minute", f"{value:.3g}", rates),
@@ -104,7 +104,8 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     if study.queues:
         lead = Text(
             "A queue of parts that push each other, at three fills, and draws of part, friction, drive and "
-            "cuts, each tried with parts of its own."
+            "cuts, each tried with parts of its own. The worst fill counts: each was followed until it held "
+            "or was refused."
         )
         proof: list[Block] = [lead]
         if d["long_ride"] and study.long_ride is not None:
@@ -116,7 +117,10 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
             proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
         worst = f"; most often: {study.robust.worst_text}" if study.robust.worst else ""
         draws = Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")
-        proof += [Table(tables.of_rows(d["queues"])), draws]
+        proof.append(Table(tables.of_rows(d["queues"])))
+        if d["differences"]:
+            proof.append(Notes(tuple(item["text"] for item in d["differences"]), loud=True))
+        proof.append(draws)
         chapters.append(Chapter(tuple(proof), anchor="proof", title="The proof"))
     if study.delivers:  # else there is nothing to build from, nothing to accept
         sheet = designs.acceptance(study)
@@ -141,9 +145,10 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
     if study.status == Status.HOLDS:
         least, draws = 60.0 * RATE_KEPT * study.request.target, 100.0 * DRAWS_HELD
         yield Text(
-            f"Status: {study.status}. The lower end of the rate's 95 % interval is at least {least:.3g} a "
-            f"minute, and the purity that was seen at least {100.0 * PURE:.3g} %. Nothing jams, and "
-            f"at least {draws:.3g} % of the draws sort."
+            f"Status: {study.status}. At each fill the lower end of the rate's 95 % interval is at least "
+            f"{least:.3g} a minute, the purity that was seen at least {100.0 * PURE:.3g} %, and its "
+            f"{LOWER_BOUND} above {100.0 * SHOWN_PURITY:.3g} %. Nothing jams, and at least {draws:.3g} % of "
+            "the draws sort."
         )
     else:
         yield Text(f"Status: {study.status}. {study.why}.")

@@ -20,6 +20,7 @@ from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import acceptance_sheet, texts
 from feederscrew.designing.acceptance_sheet import SheetLine
+from feederscrew.designing.evidence import share_at_least
 from feederscrew.designing.record import Alternative, DesignStudy, Pair, Risk
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
@@ -31,6 +32,7 @@ from feederscrew.output.tooling import settings_lines
 from feederscrew.part.record import Part
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.tooling.devices.base import Device
+from feederscrew.trial.fills import FilledQueue
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -103,6 +105,17 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "cause": study.cause or None,
         "nearest": nearest(study),
         "left_instead": texts.leaving_texts(study.left_instead),
+        "differences": [
+            {
+                **row_of(
+                    item, "fill kind right of=total right_elsewhere of_elsewhere=total_elsewhere chance"
+                ),
+                "leaves_instead": None if item.pose is None else texts.pose_text(item.pose),
+                **row_of(item, "parts=count device"),
+                "text": texts.difference_text(item),
+            }
+            for item in study.differences
+        ],
         "risks": [item.text for item in study.risks],
         "findings": findings,
         **row_of(study, "trial_parts answer=source seed=request.seed partial"),
@@ -110,10 +123,11 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "machine": facts,
         "bowl": bowl,
         "long_ride": [] if study.long_ride is None else study.long_ride.rows(),
+        "worst_fill": None if study.worst_fill is None or not is_proved else study.worst_fill.fill,
         "queues": [
             {
                 **row_of(filled, "fill free_way=gaps parts seconds"),
-                "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
+                **_rates_of(filled),
                 **row_of(filled, "left right returned jams climbs"),
                 "left_instead": ", ".join(
                     f"{name}: {n} of {filled.left}"
@@ -125,6 +139,16 @@ def document(study: DesignStudy) -> dict[str, Any]:
         ],
         "attempts": attempts(study).rows(),
     }
+
+
+def _rates_of(filled: FilledQueue) -> dict[str, float | None]:
+    """Return rate and purity of one fill with their bounds; None of one that was stopped."""
+    names = ("delivered_per_minute", "delivered_low", "delivered_high", "purity", "purity_low")
+    if filled.partial:
+        return dict.fromkeys(names)
+    rates = (rate / PER_MINUTE for rate in (filled.rate, *filled.ends))
+    purity = filled.right / filled.left if filled.left else None
+    return dict(zip(names, (*rates, purity, share_at_least(filled.right, filled.left)), strict=True))
 
 
 def _alternative(option: Alternative) -> dict[str, Any]:
@@ -318,13 +342,15 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
         purity, purity_low, hourly = (d[name] for name in ("purity", "purity_low", "jams_per_hour_high"))
         shares = ("-" if share is None else f"{100.0 * share:.4g}" for share in (purity, purity_low))
         rows += [
-            ("delivered at the lowest fill [1/min]", f"{value:.4g} (95 % interval {low:.4g} to {high:.4g})"),
+            ("the worst fill", d["worst_fill"] or "-"),
+            ("delivered at the worst fill [1/min]", f"{value:.4g} (95 % interval {low:.4g} to {high:.4g})"),
             ("the same at the worst friction [1/min]", f"{d['worst_friction_per_minute']:.4g}"),
             ("promised by the static rule [1/min]", f"{d['static_per_minute']:.4g}"),
-            *zip(("purity that was seen [%]", f"purity, {LOWER_BOUND} [%]"), shares, strict=True),
+            *zip(("purity of the worst fill, seen [%]", f"purity, {LOWER_BOUND} [%]"), shares, strict=True),
             ("jams that were seen", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue"),
             (f"jams an hour, {UPPER_BOUND}", "-" if hourly is None else f"{hourly:.3g}"),
             ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
+            *(("a fill that differs", item["text"]) for item in d["differences"]),
         ]
     chain = [f"{item.full_name}: {item.value_words}" for item in devices] or ["none"]
     return [*rows, *((f"device {k}", item) for k, item in enumerate(chain, start=1))]
@@ -449,8 +475,9 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
         verified = {
             "status": tried.status, "wanted": tried.wanted, "up": f'"{tried.up}"' if tried.up else None,
             "outcome": tried.outcome, "target": f"{tried.target / PER_MINUTE:.6g}/min",
-            "delivered": value, "delivered_low": low, "delivered_high": high,
+            "fill": tried.fill or None, "delivered": value, "delivered_low": low, "delivered_high": high,
             "purity": NOTHING_LEFT if np.isnan(study.purity[0]) else f"{study.purity[0]:.4g}",
+            "purity_low": f"{study.purity[1]:.4g}",
             "jams": tried.jams, "queue_seconds": f"{tried.queue_seconds:.6g} s",
             "trial_parts": study.trial_parts or None, "draws": tried.draws, "draws_held": tried.held,
             "seed": study.request.seed,
@@ -472,6 +499,7 @@ def trial_of(study: DesignStudy) -> Verified | None:
         study.status, study.wanted, study.request.target, value, low, high, study.purity[0], study.jams,
         study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
         fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part), study.outcome,
+        "" if study.worst_fill is None else study.worst_fill.fill,
     )  # fmt: skip
 
 

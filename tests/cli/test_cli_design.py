@@ -11,9 +11,10 @@ import shapes
 from command_lines import called, rows
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import design, queues
+from feederscrew.designing import design, fill_verdicts, loop
 from feederscrew.output import report
 from feederscrew.output.report import CHAPTERS
+from feederscrew.trial import fills
 
 FIELDS = {
     "status", "wanted", "outcome", "target_per_minute", "delivered_per_minute", "delivered_low",
@@ -26,9 +27,10 @@ TARGET = ("--target", "40/min")
 @pytest.fixture(scope="module", autouse=True)
 def short_queues():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(queues, "TOUCHING_PARTS", 4)
-        patch.setattr(queues, "FILL_SECONDS", 2.0)
-        patch.setattr(queues, "FILLS", queues.FILLS[1:])
+        patch.setattr(fills, "TOUCHING_PARTS", 4)
+        patch.setattr(loop, "longest_time", lambda target: 8.0)
+        patch.setattr(fill_verdicts, "FIRST_LOOK_S", 2.0)
+        patch.setattr(fill_verdicts, "SHOWN_PURITY", 0.0)  # which the parts of two seconds do not show
         yield
 
 

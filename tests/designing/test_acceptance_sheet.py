@@ -91,8 +91,8 @@ def test_a_yield_is_a_whole_number_of_good_parts_the_fewest_that_round_to_it(sha
 
 
 def test_the_sheet_has_the_demand_the_plan_and_what_the_computation_expects():
-    rate, good, jams = acceptance_sheet.lines_of_fill(queue(188, 189, seconds=220.0), 0.5)
-    assert (rate.low, rate.high, rate.computed) == (30.0, None, pytest.approx(188.0))
+    rate, good, jams = acceptance_sheet.lines_of_fill(queue(188, 189, seconds=220.0, counted=220.0), 0.5)
+    assert (rate.low, rate.high, rate.computed) == (30.0, None, pytest.approx(188.0 * 60.0 / 220.0))
     assert rate.computed_low < rate.computed < rate.computed_high
     assert (good.low, good.computed) == (98.0, pytest.approx(99.47, abs=0.01))
     assert good.computed_low == pytest.approx(100.0 * evidence.share_at_least(188, 189))
