@@ -527,7 +527,7 @@ def _instead(study: DesignStudy, queue: FilledQueue) -> str:
         # through which device that should return it
         device = next((cut.device.name for cut in reversed(study.cuts) if pose.name in cut.returns), "")
         through = f" (through the {device})" if device else ""
-        lines.append(f"{texts.pose_text(pose)}: {count} of {queue.left}{through}")
+        lines.append(f"{pose.text}: {count} of {queue.left}{through}")
     own = study.wanted_aspect
     offer = f" (--up {own} counts {own} at any heading)" if own in study.aspects_heading_off else ""
     return f"; what left instead: {', '.join(lines)}{offer}"

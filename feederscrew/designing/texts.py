@@ -8,7 +8,7 @@ from feederscrew.designing.fill_verdicts import DifferenceKind, FillDifference
 from feederscrew.designing.findings import End, Fault, FaultKind, Move, MoveKind
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import LeavingCounts, LeavingPose, PoseKind
+from feederscrew.trial.fills import LeavingCounts
 
 
 def end_text(end: End) -> str:
@@ -84,17 +84,6 @@ def move_text(move: Move) -> str:
             return f"livelier drive, {1e3 * move.value:.3g} mm peak to peak"
 
 
-def pose_text(pose: LeavingPose) -> str:
-    """Return a pose in which parts left: 'A@90', 'C, heading off', 'in no known pose'."""
-    match pose.kind:
-        case PoseKind.ORIENTATION:
-            return pose.name
-        case PoseKind.HEADING_OFF:
-            return f"{pose.aspect}, heading off"
-        case PoseKind.UNKNOWN:
-            return "in no known pose"
-
-
 def difference_text(difference: FillDifference) -> str:
     """Return a fill that is worse than the others, with its cause, as a sentence."""
     d = difference
@@ -107,7 +96,7 @@ def difference_text(difference: FillDifference) -> str:
             if d.pose is None:
                 return text
             through = f", past the {d.device}" if d.device else ""
-            return f"{text}: {pose_text(d.pose)} leaves there ({d.count}{through})"
+            return f"{text}: {d.pose.text} leaves there ({d.count}{through})"
         case DifferenceKind.YIELD:
             text = f"at {d.fill} fill {counts[0]} leave as wanted, elsewhere {counts[1]} ({chance})"
             if not d.count:
@@ -117,4 +106,4 @@ def difference_text(difference: FillDifference) -> str:
 
 def leaving_texts(counts: LeavingCounts) -> dict[str, int]:
     """Return how many parts left in each pose, by its text, the most first."""
-    return {pose_text(pose): count for pose, count in counts}
+    return {pose.text: count for pose, count in counts}

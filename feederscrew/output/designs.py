@@ -20,7 +20,6 @@ from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import acceptance_sheet, texts
 from feederscrew.designing.acceptance_sheet import SheetLine
-from feederscrew.designing.evidence import share_at_least
 from feederscrew.designing.record import Alternative, DesignStudy, Pair, Risk
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
@@ -29,10 +28,10 @@ from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS,
 from feederscrew.output import columns, style, tables
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.tooling import settings_lines
+from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.tooling.devices.base import Device
-from feederscrew.trial.fills import FilledQueue
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -110,7 +109,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
                 **row_of(
                     item, "fill kind right of=total right_elsewhere of_elsewhere=total_elsewhere chance"
                 ),
-                "leaves_instead": None if item.pose is None else texts.pose_text(item.pose),
+                "leaves_instead": None if item.pose is None else item.pose.text,
                 **row_of(item, "parts=count device"),
                 "text": texts.difference_text(item),
             }
@@ -124,31 +123,9 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "bowl": bowl,
         "long_ride": [] if study.long_ride is None else study.long_ride.rows(),
         "worst_fill": None if study.worst_fill is None or not is_proved else study.worst_fill.fill,
-        "queues": [
-            {
-                **row_of(filled, "fill free_way=gaps parts seconds"),
-                **_rates_of(filled),
-                **row_of(filled, "left right returned jams climbs"),
-                "left_instead": ", ".join(
-                    f"{name}: {n} of {filled.left}"
-                    for name, n in texts.leaving_texts(filled.left_instead).items()
-                ),
-                "partial": filled.partial,
-            }
-            for filled in study.queues
-        ],
+        "queues": [filled_entry(filled) for filled in study.queues],
         "attempts": attempts(study).rows(),
     }
-
-
-def _rates_of(filled: FilledQueue) -> dict[str, float | None]:
-    """Return rate and purity of one fill with their bounds; None of one that was stopped."""
-    names = ("delivered_per_minute", "delivered_low", "delivered_high", "purity", "purity_low")
-    if filled.partial:
-        return dict.fromkeys(names)
-    rates = (rate / PER_MINUTE for rate in (filled.rate, *filled.ends))
-    purity = filled.right / filled.left if filled.left else None
-    return dict(zip(names, (*rates, purity, share_at_least(filled.right, filled.left)), strict=True))
 
 
 def _alternative(option: Alternative) -> dict[str, Any]:

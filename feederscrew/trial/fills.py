@@ -59,6 +59,17 @@ class LeavingPose:
     aspect: str = ""  # '' of parts that hang, or lie in no known pose
     name: str = ""  # of the orientation; '' of the other kinds
 
+    @property
+    def text(self) -> str:
+        """The pose in words: 'A@90', 'C, heading off', 'in no known pose'."""
+        match self.kind:
+            case PoseKind.ORIENTATION:
+                return self.name
+            case PoseKind.HEADING_OFF:
+                return f"{self.aspect}, heading off"
+            case PoseKind.UNKNOWN:
+                return "in no known pose"
+
 
 LeavingCounts = tuple[tuple[LeavingPose, int], ...]  # the most first
 

@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from feederscrew.arrays import Ints
+from feederscrew.arrays import Floats, Ints
+from feederscrew.bowl.verified import AMONG
 from feederscrew.mechanics.headings import rests
 from feederscrew.rates import stream
 from feederscrew.tooling.orientations import Hanging, Orientation
@@ -54,3 +55,46 @@ def equivalent_rows(orientations: Sequence[Orientation], row: int, up: Iterable[
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
     named = {name.strip().casefold() for name in up}
     return tuple(k for k, one in enumerate(orientations) if k != row and one.aspect.casefold() in named)
+
+
+def states_of_name(
+    orientations: stream.Orientations, shares: Floats, name: str, up: Sequence[str] = ()
+) -> tuple[tuple[int, ...], tuple[str, ...]]:
+    """Return what counts as wanted by the name that a bowl file gives it.
+
+    Parameters
+    ----------
+    orientations : stream.Orientations
+        M of them.
+    shares : (M,) array [1]
+        In which they come.
+    name : str
+        'A@188', 'hanging', 'A@0 or B': the first one is the wanted orientation or aspect, others are aspects
+        that count as it.
+    up : sequence of str
+        Further aspects that count as it, whatever their heading.
+
+    Returns
+    -------
+    tuple of int
+        The states in which parts leave as wanted, the first one first.
+    tuple of str
+        The aspects on which they do so at any heading.
+
+    Raises
+    ------
+    ValueError
+        If no orientation of that name can leave.
+    """
+    first, *more = (text.strip().casefold() for text in name.split(AMONG))
+    up = tuple(dict.fromkeys([*(aspect.strip() for aspect in up if aspect.strip()), *more]))
+    rows = [
+        k
+        for k, state in enumerate(orientations.leaves_as)
+        if first in (orientations.states[state].name.casefold(), orientations.states[state].aspect.casefold())
+    ]
+    if not rows:
+        raise ValueError(f"no orientation leaves as {name}")
+    row = max(rows, key=lambda k: shares[k])
+    states = wanted_states(orientations, (row, *equivalent_rows(orientations.lying, row, up)))
+    return states, aspects_at_any_heading(orientations.lying, row, up)

@@ -17,8 +17,10 @@ from feederscrew.output import designs
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
+from feederscrew.studies.trial import TrialQueue, trial
 from feederscrew.trial import fills, long_ride
 from feederscrew.trial.long_ride import LEFT, RideOfTrack
+from feederscrew.trial.wanted import states_of_name
 
 NAMES = ("A@0", "A@180", "B@0")
 CUBE = shapes.part(shapes.box(10, 10, 10))
@@ -197,3 +199,33 @@ def test_every_command_refuses_an_aspect_alike(line, run):
     done = run(*line.split(), "cube.stl", "--aspect", "Q", "--rule", "csa")
     assert done.exit_code == 2 and done.stdout == ""
     assert "Error: --aspect of cube.stl: there is no aspect 'Q' - choose one of A" in done.stderr
+
+
+def test_a_trial_at_one_fill_is_the_queue_of_the_design(monkeypatch):
+    """The same gaps, the same arrivals, the same that is wanted: the same parts leave."""
+    rows = []
+    follow = queues.follow_fills
+    monkeypatch.setattr(
+        queues, "follow_fills", lambda row, *, whole: rows.append(row) or follow(row, whole=whole)
+    )
+    request = replace(REQUEST, up=("A",))
+    found = loop.design(CUBE, bowls.default(), frozenset(), request, shares=SHARES, with_nearest=False)
+    level = fills.FillLevel.HIGH
+    proved = next(queue for queue in found.queues if queue.fill == level)
+    own = {"aspect_shares": SHARES, "rule": "csa", "parts": 1, "seconds": proved.seconds}
+    again = TrialQueue("high", wanted=found.wanted, up=request.up)
+    run = trial(CUBE, found.bowl, queue=again, **own).runs[0]
+    assert run.filled == proved and run.filled.parts == level.parts == run.queue.parts
+    assert (rows[-1].states, rows[-1].any_heading) == states_of_name(
+        run.orientations, run.shares, found.wanted, request.up
+    )
+    fewer = trial(CUBE, found.bowl, queue=TrialQueue("low", 2), **own | {"seconds": 0.2}).runs[0]
+    assert (fewer.filled.fill, fewer.filled.parts, fewer.filled_wanted) == ("low", 2, "A@0")
+    for wrong, poured in (
+        (("full",), False),
+        (("low",), True),
+        (("low", 2, "Q@3"), False),
+        (("low", 0), False),
+    ):
+        with pytest.raises(FeederError):
+            trial(CUBE, found.bowl, queue=TrialQueue(*wrong), poured=poured, **own)
