@@ -14,7 +14,7 @@ from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.reading import Setting, of_device
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
-from feederscrew.bowl.verified import Status
+from feederscrew.bowl.verified import HELD
 from feederscrew.designing import families, loop
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.families import FamilyStudy
@@ -318,7 +318,7 @@ def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
         machine_warnings=tuple(dict.fromkeys(warnings)),
         machine_lacks=tuple(lacking),
     )
-    if study.status != Status.HOLDS or not lacking or other is None:
+    if study.status not in HELD or not lacking or other is None:
         return completed
     change = f"springs that stand at {np.degrees(other.wanted.spring_angle):.3g} deg"
     changed_springs = nearest_from_study(study, study.request.target, change, trials=len(study.attempts))

@@ -114,3 +114,13 @@ class Move:
     device: str = ""  # kind of the device that is changed or added
     device_name: str = ""
     device_text: str = ""  # its value as a bowl file writes it
+
+
+@dataclass(frozen=True)
+class Hooking:
+    """How two parts of one kind hold each other."""
+
+    pulls: int
+    held: int  # of them that do not part the two
+    opening: float  # [m] the mouth through which they come to hook; NaN of none
+    section: float  # [m] the thinnest limb of the part

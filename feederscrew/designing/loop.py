@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import Status
+from feederscrew.bowl.verified import HELD, Status
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import (
     calm_drive,
@@ -92,15 +92,15 @@ def design(
                 own, last = proofs[first:], proofs[-1][0]
                 queued = sum(bool(study.queues) for study, _ in own)
                 enough = queued >= policy.queued_designs or len(own) >= policy.drawn_designs
-                if last.status == Status.HOLDS or last.partial or enough:
+                if last.status in HELD or last.partial or enough:
                     break
             if any(study.partial for study, _ in proofs):
                 break
-            if any(study.status == Status.HOLDS for study, _ in proofs) and not request.alternatives:
+            if any(study.status in HELD for study, _ in proofs) and not request.alternatives:
                 break  # no dearer one is searched
         near, nearby = _nearest(search, proofs) if with_nearest else (None, None)
         # the best design is proved to the end, though it does not hold
-        if nearby is None and not any(study.status == Status.HOLDS or study.partial for study, _ in proofs):
+        if nearby is None and not any(study.status in HELD or study.partial for study, _ in proofs):
             if proofs:
                 study, candidate = max(proofs, key=lambda proof: merit(proof[0]))
                 if not nearest.whole(study):
@@ -112,7 +112,7 @@ def design(
     best = _list_alternatives(search, proofs, classes, nearby or _best(search, proofs))
     if any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
-    return best if best.status == Status.HOLDS else replace(best, nearest=near)
+    return best if best.status in HELD else replace(best, nearest=near)
 
 
 def _list_alternatives(search: Search, proofs: Proofs, classes: list[int], best: DesignStudy) -> DesignStudy:
@@ -128,7 +128,7 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
 
     None where a design holds, or was stopped.
     """
-    if any(study.status == Status.HOLDS or study.partial for study, _ in proofs):
+    if any(study.status in HELD or study.partial for study, _ in proofs):
         return None, None
     slow = [proof for proof in proofs if nearest.only_slow(proof[0]) and not nearest.whole(proof[0])]
     if slow:  # its queue ended as soon as it was too slow
@@ -158,7 +158,7 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
     state = search.state
 
     def cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
-        return -cost_class_of(study.devices) if study.status == Status.HOLDS else -math.inf, merit(study)
+        return -cost_class_of(study.devices) if study.status in HELD else -math.inf, merit(study)
 
     if proofs:
         return max((study for study, _ in proofs), key=cheapest)
@@ -202,7 +202,7 @@ def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
     for _ in range(search.policy.proof_changes + 1):
         study = prove_design(search, candidate, whole=False)
         proofs.append((study, candidate))
-        if study.status == Status.HOLDS or study.partial or search.is_spent:
+        if study.status in HELD or study.partial or search.is_spent:
             return
         other = _change_by_proof(search, study, candidate)
         if other is None or not other.attempt.clean:
@@ -361,7 +361,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
 
 def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
     """Return what of two designs is the better one: holds, then clean, then the most parts."""
-    return study.status == Status.HOLDS, study.jams == 0, study.robust.share, study.delivered[1]
+    return study.status in HELD, study.jams == 0, study.robust.share, study.delivered[1]
 
 
 def alternatives(
@@ -372,7 +372,7 @@ def alternatives(
     The studies are those that were proved, as far as they were, ``attempts`` every short trial, ``classes``
     the cost classes of which chains were looked for.
     """
-    holds = any(study.status == Status.HOLDS for study in studies)
+    holds = any(study.status in HELD for study in studies)
     best_of: list[Alternative] = []
     for number in proposals.COST_CLASSES:
         own = [one for one in studies if one.bowl is not None and cost_class_of(one.devices) == number]
@@ -393,7 +393,7 @@ def alternatives(
                     chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
                     chain_words=words,
                     sees=tuple(device.sees for device in sensors),
-                    why="; ".join(study.shortfalls) if study.status != Status.HOLDS else "",
+                    why="; ".join(study.shortfalls) if study.status not in HELD else "",
                 )
             )
         elif tried:

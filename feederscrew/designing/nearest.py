@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import Status
+from feederscrew.bowl.verified import HELD
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import calm_drive, exploring, proposals, queues, texts
 from feederscrew.designing.fill_verdicts import longest_time
@@ -66,7 +66,7 @@ def rate_that_holds(study: DesignStudy) -> float:
         return 0.0
     rate = min(_rounded_down(MINUTE * study.delivered[1] / RATE_KEPT) / MINUTE, study.request.target)
     slower = replace(study, request=replace(study.request, target=rate))
-    return rate if rate > 0.0 and slower.status == Status.HOLDS else 0.0
+    return rate if rate > 0.0 and slower.status in HELD else 0.0
 
 
 def _rounded_down(value: float) -> float:

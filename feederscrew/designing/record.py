@@ -1,5 +1,6 @@
 """What is asked of a design, and what it stands on."""
 
+import enum
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,7 +9,7 @@ from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import shank_remarks
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import AGREED_JAMS, DRAWS_HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
+from feederscrew.bowl.verified import AGREED_JAMS, DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
 from feederscrew.designing import texts
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.evidence import rate_at_most, share_at_least
@@ -20,7 +21,7 @@ from feederscrew.designing.fill_verdicts import (
     longest_time,
     shows_purity,
 )
-from feederscrew.designing.findings import Cause, Fault, FaultKind, Move
+from feederscrew.designing.findings import Cause, Fault, FaultKind, Hooking, Move
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.records import ReadableRecord
@@ -198,13 +199,24 @@ class Pair:
     walls: float = np.nan  # [m] apart, square to what is across; NaN of two parts
 
 
+class RiskKind(enum.StrEnum):
+    """In which way parts may hinder each other; files print the word."""
+
+    SHINGLES = "shingles"
+    CLIMBS = "climbs"
+    HOOKS = "hooks"
+    NESTS = "nests"
+    WEDGES = "wedges"
+
+
 @dataclass(frozen=True, eq=False)
 class Risk:
     """What may go wrong between parts."""
 
-    kind: str  # 'shingles', 'climbs', 'hooks', 'nests', 'wedges'
+    kind: RiskKind
     text: str
     pair: Pair | None = None  # what is drawn of it
+    hooking: Hooking | None = None  # of parts that hook
 
 
 @dataclass(frozen=True, eq=False)
@@ -344,7 +356,21 @@ class DesignStudy(ReadableRecord):
             return Status.NOT_PROVED
         if self.bowl is None or not self.delivered[0] > 0.0:
             return Status.FALLS_SHORT if self.bowl is not None and self.queues else Status.NONE
-        return Status.HOLDS if not self.shortfalls else Status.FALLS_SHORT
+        if self.shortfalls:
+            return Status.FALLS_SHORT
+        return Status.HOLDS if self.hooking is None else Status.HOLDS_SINGLE
+
+    @property
+    def hooking(self) -> Hooking | None:
+        """How two of its parts hook; None of parts that come apart by themselves."""
+        return next((risk.hooking for risk in self.risks if risk.hooking is not None), None)
+
+    @property
+    def condition(self) -> str:
+        """The condition under which it holds, as a sentence; '' of one that holds without, or does not."""
+        if self.status != Status.HOLDS_SINGLE or self.hooking is None:
+            return ""
+        return texts.condition_text(self.hooking)
 
     @property
     def proved_so_far(self) -> tuple[str, ...]:
@@ -437,7 +463,7 @@ class DesignStudy(ReadableRecord):
     @property
     def _cause(self) -> tuple[Cause, str]:
         """The same with a sentence."""
-        if self.status == Status.HOLDS or self.partial:
+        if self.status in HELD or self.partial:
             return Cause.UNKNOWN, ""
         if self.machine_lacks:
             return Cause.DRIVE, "the springs that are drawn do not make the drive that was tried"
@@ -489,9 +515,9 @@ class DesignStudy(ReadableRecord):
 
     @property
     def why(self) -> str:
-        """Where it falls short, the cause, and the nearest that holds; '' where it holds."""
-        if self.status == Status.HOLDS:
-            return ""
+        """Where it falls short, the cause, and the nearest that holds; the condition of one that has one."""
+        if self.status in HELD:
+            return self.condition
         if self.partial:
             return "; ".join(("stopped before all was tried", *self.proved_so_far))
         return "; ".join((self.reasons, *(() if self.nearest is None else (self.nearest.text,))))

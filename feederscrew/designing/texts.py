@@ -5,10 +5,11 @@ from collections.abc import Iterable
 import numpy as np
 
 from feederscrew.designing.fill_verdicts import DifferenceKind, FillDifference
-from feederscrew.designing.findings import End, Fault, FaultKind, Move, MoveKind
+from feederscrew.designing.findings import End, Fault, FaultKind, Hooking, Move, MoveKind
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.trial.course import Fate
 from feederscrew.trial.fills import LeavingCounts
+from feederscrew.units import counted
 
 
 def end_text(end: End) -> str:
@@ -82,6 +83,29 @@ def move_text(move: Move) -> str:
             return f"calmer drive, {1e3 * move.value:.3g} mm peak to peak"
         case MoveKind.LIVELIER_DRIVE:
             return f"livelier drive, {1e3 * move.value:.3g} mm peak to peak"
+
+
+SEPARATORS = ("a de-tangling drum", "bursts of air", "a magazine that keeps them single")  # before the bowl
+
+
+def condition_text(hooking: Hooking) -> str:
+    """Return under which condition a bowl holds whose parts hook: what separates them, what to change."""
+    return (
+        f"two parts hook into each other ({hooking.held} of {counted(hooking.pulls, 'pull')} do not part "
+        f"them), and no queue was tried with parts that hang together; separate them before the bowl by "
+        f"{', '.join(SEPARATORS[:-1])} or {SEPARATORS[-1]}; {change_text(hooking)}"
+    )
+
+
+def change_text(hooking: Hooking) -> str:
+    """Return what to change on a part so that two of them do not hook."""
+    limb = in_mm(hooking.section)
+    if np.isfinite(hooking.opening):
+        return (
+            f"on the part, close its mouth of {in_mm(hooking.opening)} to less than the {limb} of its "
+            "thinnest limb, or make that limb thicker than the mouth"
+        )
+    return f"on the part, close its openings, or make them narrower than its thinnest limb, {limb}"
 
 
 def difference_text(difference: FillDifference) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.reading import Setting
-from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
+from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignStudy
@@ -142,7 +142,9 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
 
 def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
     """What the status says, what is missing or what all was reached; the machine, the bowl, the risks."""
-    if study.status == Status.HOLDS:
+    if study.status in HELD:
+        if study.condition:
+            yield Notes((f"{study.status}: {study.condition}.",), loud=True)
         least, draws = 60.0 * RATE_KEPT * study.request.target, 100.0 * DRAWS_HELD
         yield Text(
             f"Status: {study.status}. At each fill the lower end of the rate's 95 % interval is at least "
@@ -313,7 +315,7 @@ def family_page(study: FamilyStudy) -> str:
         status = "It was stopped before all parts were designed."
     elif not study.shared:
         status = "The parts do not share one chain: the list below names what is swapped."
-    elif study.status == Status.HOLDS:
+    elif study.status in HELD:
         status = (
             "One track and one chain of devices suit all parts: what is listed below is only set or taught."
         )

@@ -101,6 +101,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
         "alternatives": [_alternative(item) for item in study.alternatives],
         "why": study.why,
+        "condition": _condition(study),
         "cause": study.cause or None,
         "nearest": nearest(study),
         "left_instead": texts.leaving_texts(study.left_instead),
@@ -125,6 +126,18 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "worst_fill": None if study.worst_fill is None or not is_proved else study.worst_fill.fill,
         "queues": [filled_entry(filled) for filled in study.queues],
         "attempts": attempts(study).rows(),
+    }
+
+
+def _condition(study: DesignStudy) -> dict[str, Any] | None:
+    """Return the condition under which a design holds as a dict; None of one that holds without."""
+    if not study.condition or study.hooking is None:
+        return None
+    return {
+        **row_of(study.hooking, "pulls held opening_mm=opening thinnest_mm=section"),
+        "separate_by": list(texts.SEPARATORS),
+        "change_the_part": texts.change_text(study.hooking),
+        "text": study.condition,
     }
 
 
@@ -348,6 +361,8 @@ def acceptance(study: DesignStudy) -> Frame:
     lines: list[SheetLine] = []
     for filled in study.queues:
         lines += acceptance_sheet.lines_of_fill(filled, request.target, request.agreed_jams)
+    if study.hooking is not None:  # else the feeder is judged by parts that hang together
+        lines = [replace(line, plan=f"parts that arrive single: {line.plan}") for line in lines]
     if study.bowl is not None:
         facts: Any = machine_facts(study)
         drive, controller = study.bowl.drive, study.bowl.sizing.controller
@@ -423,6 +438,7 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
         texts = unbalance_texts(sheet.bowl.machine)
         own_lines["machine"] += [f"  {word}: {text}" for word, text in texts.items()]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
+    lines += [f"# {line}" for line in textwrap.wrap(study.condition, 100)]
     if study.drive_mismatch is not None:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]
     set_here |= {s.key.name for s in settings if s.key.field == DEVICES_SECTION}
@@ -450,7 +466,9 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
     else:
         value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
         verified = {
-            "status": tried.status, "wanted": tried.wanted, "up": f'"{tried.up}"' if tried.up else None,
+            "status": tried.status,
+            "condition": f'"{study.condition}"' if study.condition else None,
+            "wanted": tried.wanted, "up": f'"{tried.up}"' if tried.up else None,
             "outcome": tried.outcome, "target": f"{tried.target / PER_MINUTE:.6g}/min",
             "fill": tried.fill or None, "delivered": value, "delivered_low": low, "delivered_high": high,
             "purity": NOTHING_LEFT if np.isnan(study.purity[0]) else f"{study.purity[0]:.4g}",
@@ -476,7 +494,7 @@ def trial_of(study: DesignStudy) -> Verified | None:
         study.status, study.wanted, study.request.target, value, low, high, study.purity[0], study.jams,
         study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
         fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part), study.outcome,
-        "" if study.worst_fill is None else study.worst_fill.fill,
+        "" if study.worst_fill is None else study.worst_fill.fill, study.condition,
     )  # fmt: skip
 
 
