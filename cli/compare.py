@@ -57,8 +57,8 @@ def compare(
     friction, restitution and stroke with their intervals, and what remains of each velocity
     (bowl_fit.csv, velocities.csv). How to measure: docs/validation.md.
 
-    The acceptance.csv of `feeder design`, filled in at the machine, is read back: it says line by line
-    what agrees with what was computed.
+    The acceptance.csv of `feeder design`, filled in at the machine, is judged by its demands, line by
+    line: agrees, does not, or not shown where the sample is too small for 95 % confidence.
     """
     from feederscrew import bowl as bowls
     from feederscrew.designing import acceptance_sheet

@@ -67,6 +67,13 @@ REQUEST = (  # what shall leave, and what may be used
         "--alternatives",
         "Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
     ),
+    options.quantity(
+        "--agreed-jams",
+        "rate",
+        "1/h",
+        "Jams that the buyer tolerates: what acceptance.csv demands.",
+        positive=True,
+    ),
     options.whole(
         "--draws",
         1,
@@ -77,12 +84,13 @@ REQUEST = (  # what shall leave, and what may be used
     options.seed("Seed of everything that is drawn."),
     options.jobs,
 )
+CONDITIONAL = 3  # exit status of a design that holds under a condition only
 OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_mass")  # options
 
 
 @grouped.command(
     short_help="From a part and a rate to a bowl that its own trial confirms.",
-    rare=("heading", "budget", "draws", "tolerance"),
+    rare=("heading", "budget", "draws", "tolerance", "agreed_jams"),
 )
 @options.part
 @click.argument("more_parts", metavar="[PART...]", nargs=-1, type=options.FILE)
@@ -107,8 +115,10 @@ def design(
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
     what its trial denies is changed. What gets through goes through a queue at low, normal and high fill,
     and through draws of part, friction, drive and cuts. Chains of steel come first, then steady air, then
-    cameras with a valve: the first that holds is taken. The answer is one of holds, falls short and none,
-    with the numbers it rests on. What falls short says where, with the nearest design that would hold.
+    cameras with a valve: the first that holds is taken. The answer is one of holds, holds if parts arrive
+    single (two of them hook), falls short and none, with the numbers it rests on. What falls short says
+    where, with the nearest design that would hold. The exit status is 3 where the bowl holds if parts arrive
+    single, and else 0 of a run that came to its end.
 
     The drive is the calmest on one set of leaf springs that is fast enough, at the frequency of the mains
     (machine.mains) or twice that. What --config says of track, drive, machine and friction is kept. Its
@@ -140,6 +150,7 @@ def design(
     orientation.check_heading(request_options)
     with hold_interrupts():
         from feederscrew import bowl as bowls
+        from feederscrew.bowl.verified import Status
         from feederscrew.designing import loop
         from feederscrew.designing.record import DesignRequest
         from feederscrew.output import designs
@@ -178,6 +189,8 @@ def design(
         study = design_part(solid, own, aspect_shares, is_shown=True)
     if study.partial:  # what is not proved is no success
         context.exit(exit_status())
+    if study.status == Status.HOLDS_SINGLE:  # who goes by the exit status must not miss the condition
+        context.exit(CONDITIONAL)
 
 
 def _batch(
@@ -191,6 +204,7 @@ def _batch(
     """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
     from feederscrew import bowl as bowls
     from feederscrew.batch import inputs as lists
+    from feederscrew.bowl.verified import Status
     from feederscrew.errors import FeederError
     from feederscrew.output import designs, offers
 
@@ -218,7 +232,9 @@ def _batch(
     out.show(lists.order_table(rows), {"designs": rows})
     if rows[-1]["status"] == "not proved":
         return exit_status()
-    return int(any(row["status"] == lists.FAILED for row in rows))
+    if any(row["status"] == lists.FAILED for row in rows):
+        return 1
+    return CONDITIONAL if any(row["status"] == Status.HOLDS_SINGLE for row in rows) else 0
 
 
 @contextlib.contextmanager

@@ -175,7 +175,7 @@ class Option(click.Option):
 FILE = Place(allow_dash=True)
 LENGTH_UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
 LAUNCHES = ("place", "drop", "flip", "roll", "feed", "tumble")  # the last: once that of roll
-METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
+METAVARS = {"length": "LENGTH", "number": "SHARE", "rate": "RATE", "time": "TIME"}
 
 
 # how an option is declared: its names, '--gap' or '--limit seconds', then its values and its help

@@ -35,6 +35,11 @@ class FilmFile(Place):
 @options.whole("--parts", 1, 10**6, "Parts that are sent one at a time.  [default: 200; with --queue 60]")
 @options.whole("--landing", 1, 10**6, "Let N parts fall onto the track as well.")
 @options.whole("--queue", 1, 1000, "Send a queue of N parts as well, which push each other.")
+@options.choice(
+    "--fill",
+    ["low", "normal", "high"],
+    "Parts of the queue come as in the proof of feeder design at that fill.",
+)
 @options.flag("--poured", "The parts of the queue fall onto the track; without it they lie in a row.")
 @options.option(
     "--seconds",
@@ -81,7 +86,10 @@ def trial(
     of them. --amplitude gives the greatest drive at which the tooling still sorts. --queue adds parts
     that touch, push and climb each other on the same track. What leaves or falls off enters again at
     the end of the row. Parts per minute are then those that the queue delivers. --with sets what a
-    feeding test counted by aspect (docs/counts.md) beside the profile at its outlet. The same seed
+    feeding test counted by aspect (docs/counts.md) beside the profile at its outlet. --fill runs the
+    queue of `feeder design` again: as far apart, in the mix that a ride along the track leaves, with as
+    many parts where --queue gives no number. What the block verified of the bowl file names as wanted
+    counts, else the orientation in which most parts leave. The same seed
     gives the same numbers whatever the number of jobs. Ctrl-C ends the trial early with
     exit status 130: what is finished is given, marked partial.
 
@@ -91,10 +99,13 @@ def trial(
     decides, then the queue, with the bowl around them, its sensors and their air.
     """
     for option, value in (("--poured", run_options["poured"]), ("--with", run_options["measured"])):
-        if value and not run_options["queue"]:
+        if value and not (run_options["queue"] or run_options["fill"]):
             raise click.UsageError(f"{option} is for a queue - give --queue N as well")
+    if run_options["poured"] and run_options["fill"]:
+        raise click.UsageError("--poured goes with no fill - leave one of them out")
     with hold_interrupts():
-        from feederscrew.bowl import at_strokes
+        from feederscrew.bowl import at_strokes, verified
+        from feederscrew.bowl.verified import Verified
         from feederscrew.output.trial import tables
         from feederscrew.studies import trial as studies
 
@@ -107,6 +118,10 @@ def trial(
     path = run_options.pop("measured")
     measured = studies.at_outlet(path, solid) if path else None
     aspect_shares = orientation.shares(out, solid, driven[0], share_options, run_options)
+    tried = verified(bowl["path"]) if run_options["fill"] else None
+    wanted, up = (tried.wanted, tried.up) if isinstance(tried, Verified) else ("", "")  # by its design
+    if level := run_options.pop("fill"):
+        run_options["queue"] = studies.TrialQueue(level, run_options["queue"], wanted, up)
     inputs = aspect_shares.inputs | ({path: measured.sha256} if measured else {})
     with out.folder_of(solid, inputs, settings=settings) as folder:
         with progress.bar(out, "runs") as bar:

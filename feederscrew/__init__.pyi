@@ -45,6 +45,7 @@ from .studies.slide import slide as slide
 from .studies.tooling import ToolingSearch as ToolingSearch
 from .studies.tooling import tooling as tooling
 from .studies.track import track as track
+from .studies.trial import TrialQueue as TrialQueue
 from .studies.trial import trial as trial
 from .studies.tune import tune as tune
 from .thesis.reproduction import reproduce as reproduce

@@ -21,20 +21,23 @@ VERIFIED_SECTION = "verified"
 SHARED = {field.name for field in fields(Device)}  # what every device has
 RATE_KEPT = 0.9  # [1] of the target
 PURE = 0.98  # [1] of what leaves
+SHOWN_PURITY = 0.97  # [1] that the lower bound (95 %, one-sided) of the purity is above
 DRAWS_HELD = 0.95  # [1] of the draws
+AGREED_JAMS = 1.0 / units.HOUR  # [1/s] that a buyer tolerates where nothing else is agreed
 VERIFIED_TOLERANCE = 1e-3  # [1] of a number as the file writes it
 NOTHING_LEFT = "none"  # the purity of a queue that nothing left
 MAX_RATE = 1e6 / units.MINUTE  # [1/s]
 MAX_QUEUE_S = 1e7  # [s] four months
 MAX_COUNT = 10**6  # of parts, jams and draws
 MAX_SEED = 2**64
-MAX_TEXT = 200  # letters
+MAX_TEXT, MAX_CONDITION = 200, 1000  # letters
 HASH = re.compile(r"[0-9a-f]{16,64}", re.ASCII)
 VERSION = re.compile(r"\d+(\.[0-9A-Za-z]+){1,5}([+-][0-9A-Za-z.]+)?", re.ASCII)
 MAX_CLOCK_SKEW = datetime.timedelta(days=1)  # by which the clock of another machine may be wrong
 # how parts leave
 LYING = "lying"
 HANGING = "hanging"
+FILLS = ("low", "normal", "high")  # of a queue
 AMONG = " or "  # between the names of what counts as one
 
 
@@ -42,10 +45,14 @@ class Status(enum.StrEnum):
     """What a design or its trial comes to; files print the word."""
 
     HOLDS = "holds"
+    HOLDS_SINGLE = "holds if parts arrive single"  # two of them hook, and do not part by themselves
     FALLS_SHORT = "falls short"
     NONE = "none"  # nothing delivers anything
     NOT_PROVED = "not proved"  # stopped by the user
     NOT_TRIED = "not tried"
+
+
+HELD = (Status.HOLDS, Status.HOLDS_SINGLE)  # what a bowl may be built from
 
 
 @dataclass(frozen=True)
@@ -63,7 +70,7 @@ class VoidTrial:
 class Verified:
     """What was tried of a bowl, and what came of it."""
 
-    status: str  # 'holds', 'falls short'
+    status: str  # one of HELD, or 'falls short'
     wanted: str  # 'A@2', 'hanging'
     target: float  # [1/s]
     delivered: float  # [1/s] that the queue of the trial delivered
@@ -80,6 +87,8 @@ class Verified:
     up: str = ""  # aspects that counted as the wanted one, whatever their heading: 'A, B'
     body: str = ""  # of ``body_fingerprint``; '' where the file does not say
     outcome: str = ""  # LYING or HANGING; '' where the file does not say
+    fill: str = ""  # the worst one, of which rate and purity are; '' where the file does not say
+    condition: str = ""  # under which it holds, what meets it and what to change; '' of any other status
 
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
         """Say what is other than was tried, a sentence each; nothing where the block holds.
@@ -119,9 +128,10 @@ class Verified:
         minute = units.PER_MINUTE
         purity = "nothing left" if self.purity is None else f"purity {100.0 * self.purity:.3g} %"
         counted = f", {self.up} at any heading counted in: a rule counts one orientation" if self.up else ""
+        at = f" at {self.fill} fill, the worst" if self.fill else ""
         return (
             f"its trial delivers {self.delivered / minute:.4g}/min ({self.low / minute:.3g} "
-            f"to {self.high / minute:.3g}) of {self.wanted}{counted}, {purity}, "
+            f"to {self.high / minute:.3g}) of {self.wanted}{counted}, {purity}{at}, "
             f"{self.jams} jams in {self.queue_seconds:.3g} s of queue, "
             f"{self.held} of {self.draws} draws sort: {self.status}"
         )
@@ -245,8 +255,8 @@ _TEXT = _form(lambda text: text.strip() and text.isprintable(), MAX_TEXT)
 _HASH = _form(HASH.fullmatch, 64)
 READERS: dict[str, tuple[Callable[[str], Any], str]] = {  # by key: how it is read, and what it must be
     "status": (
-        _form((Status.HOLDS, Status.FALLS_SHORT).__contains__, MAX_TEXT),
-        f"'{Status.HOLDS}' or '{Status.FALLS_SHORT}'",
+        _form((*HELD, Status.FALLS_SHORT).__contains__, MAX_TEXT),
+        " or ".join(f"'{status}'" for status in (*HELD, Status.FALLS_SHORT)),
     ),
     "wanted": (_TEXT, "the name of an orientation"),
     "target": _RATE,
@@ -265,6 +275,9 @@ READERS: dict[str, tuple[Callable[[str], Any], str]] = {  # by key: how it is re
 OPTIONAL: dict[str, tuple[Callable[[str], Any], str]] = {
     "up": (_TEXT, "names of aspects"),
     "outcome": (_form((LYING, HANGING).__contains__, MAX_TEXT), f"{LYING} or {HANGING}"),
+    "condition": (_form(lambda text: text.strip() and text.isprintable(), MAX_CONDITION), "a sentence"),
+    "fill": (_form(FILLS.__contains__, MAX_TEXT), f"one of {', '.join(FILLS)}"),
+    "purity_low": (_SHARE, "a share from 0 to 1"),
     "trial_parts": (_number("count", 1, MAX_COUNT), "a whole number from 1 to 1000000"),
     "seed": (_number("count", 0, MAX_SEED), "a whole number"),
     "tried": (_date, "a date up to today"),
@@ -292,5 +305,7 @@ def _contradictions(block: Verified) -> Iterator[str]:
         "too few draws held": block.held < DRAWS_HELD * block.draws or not block.draws,
     }
     why = " and ".join(text for text, is_so in shortfalls.items() if is_so)
-    if block.status == Status.HOLDS and why:
-        yield f"its status is '{Status.HOLDS}', and {why}"
+    if block.status in HELD and why:
+        yield f"its status is '{block.status}', and {why}"
+    if block.condition and block.status != Status.HOLDS_SINGLE:
+        yield f"its status is '{block.status}', and it has a condition under which it holds"

@@ -14,7 +14,7 @@ from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.reading import Setting, of_device
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
-from feederscrew.bowl.verified import Status
+from feederscrew.bowl.verified import HELD
 from feederscrew.designing import families, loop
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.families import FamilyStudy
@@ -45,6 +45,7 @@ class DesignSearch:
     alternatives: bool = DesignRequest.alternatives
     # trials of the answer with part, friction, drive and cuts drawn from their spread
     draws: int = DesignRequest.draws
+    agreed_jams: Quantity = DesignRequest.agreed_jams  # that the buyer tolerates, '1/h'
 
 
 class DesignOptions(TypedDict, total=False):
@@ -132,7 +133,8 @@ def design(
     aspect_shares : Shares, optional
         Of ``shares``; what lies on the moving floor of the designed bowl without it.
     search : DesignSearch, optional
-        Rule, number of short trials and of draws, and whether dearer chains are proved too.
+        Rule, number of short trials and of draws, whether dearer chains are proved too, and the jams that a
+        buyer tolerates.
     seed : int
         Of everything that is drawn.
     jobs : int
@@ -162,6 +164,7 @@ def design(
         budget=arguments.whole("budget", looked.budget),
         alternatives=bool(looked.alternatives),
         draws=arguments.whole("draws", looked.draws),
+        agreed_jams=arguments.amount("agreed_jams", looked.agreed_jams, "rate", MIN_POSITIVE),
         seed=arguments.whole("seed", seed, 0),
         jobs=arguments.whole("jobs", jobs),
     )
@@ -315,7 +318,7 @@ def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
         machine_warnings=tuple(dict.fromkeys(warnings)),
         machine_lacks=tuple(lacking),
     )
-    if study.status != Status.HOLDS or not lacking or other is None:
+    if study.status not in HELD or not lacking or other is None:
         return completed
     change = f"springs that stand at {np.degrees(other.wanted.spring_angle):.3g} deg"
     changed_springs = nearest_from_study(study, study.request.target, change, trials=len(study.attempts))

@@ -30,6 +30,7 @@ from feederscrew.tooling.devices.base import ComparedValue
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.tooling.orientations import Hanging, Orientation, neck
+from feederscrew.trial.wanted import equivalent_rows, wanted_rows
 
 LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
 
@@ -232,7 +233,7 @@ def _promise(search: Search, track: BankedTrack, row: int, recipe: proposals.Rec
 
 def _share(search: Search, track: BankedTrack, row: int) -> float:
     """Share [1] in which an orientation comes, with those that count as it."""
-    equivalent = proposals.equivalent_rows(track.orientations.lying, row, search.request.up)
+    equivalent = equivalent_rows(track.orientations.lying, row, search.request.up)
     return float(track.weights[[row, *equivalent]].sum())
 
 
@@ -516,7 +517,7 @@ def _short(
         run=search.request.run, aspects=search.arrivals.aspects, any_heading=proposal.any_heading,
     )  # fmt: skip
     rows = short_trials.frequent_rows(weights, (proposal.row,))
-    right = set(short_trials.wanted_rows(orientations, proposal.states(orientations)))
+    right = set(wanted_rows(orientations, proposal.states(orientations)))
     first = [k for k in rows if k in right] or [proposal.row]
     others = [k for k in rows if k not in first]
     trial = single(rows=first, count=policy.trial_parts)

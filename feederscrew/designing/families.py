@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import Status
+from feederscrew.bowl.verified import HELD, Status
 from feederscrew.designing import calm_drive, exploring, loop, proposals
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.loop import merit
@@ -37,7 +37,7 @@ class FamilyStudy(ReadableRecord):
         if self.partial:
             return Status.NOT_PROVED
         words = {member.status for member in self.members}
-        return next(word for word in (Status.NONE, Status.FALLS_SHORT, Status.HOLDS) if word in words)
+        return next(word for word in (Status.NONE, Status.FALLS_SHORT, *reversed(HELD)) if word in words)
 
     @property
     def shared(self) -> bool:
@@ -103,14 +103,14 @@ def family(
 
     def member(part: Part, lead: DesignStudy | None) -> DesignStudy:
         # with what the first one has where it holds so, else its own
-        if lead is None or lead.bowl is None or lead.status != Status.HOLDS:
+        if lead is None or lead.bowl is None or lead.status not in HELD:
             return loop.design(part, plain, keys, request, **own)
         used = {device.kind for device in lead.devices}
         unused = tuple(name for name in PROPOSED if name not in used)
         less = replace(request, without=(*request.without, *unused))
         tracked = replace(plain, track=lead.bowl.track)
         design = loop.design(part, tracked, keys | set(SHARED_TRACK_KEYS), less, **own, with_nearest=False)
-        if design.status == Status.HOLDS or design.partial:
+        if design.status in HELD or design.partial:
             return replace(design, request=request)
         other = loop.design(part, plain, keys, request, **own)
         return replace(max((design, other), key=merit), partial=other.partial)
@@ -139,7 +139,7 @@ def _unify_chains(
 ) -> tuple[DesignStudy, ...]:
     """The members with values that suit all, where there are such and each holds with them."""
     kinds = {tuple(device.kind for device in member.devices) for member in members}
-    if len(kinds) > 1 or any(member.status != Status.HOLDS for member in members):
+    if len(kinds) > 1 or any(member.status not in HELD for member in members):
         return members
     limits = common_limits([member.cuts for member in members])
     if limits is None:
@@ -159,7 +159,7 @@ def _unify_chains(
             changed = prove_with_cuts(member, cuts, request, kept_keys, tell=tell, before=before)
         if changed is not None and changed.partial:
             raise KeyboardInterrupt
-        if changed is None or changed.status != Status.HOLDS:
+        if changed is None or changed.status not in HELD:
             return members
         changed_members.append(changed)
     return tuple(changed_members)

@@ -4,7 +4,6 @@ The search decides on these. ``designing.texts`` makes the sentences that people
 """
 
 import enum
-from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -117,29 +116,11 @@ class Move:
     device_text: str = ""  # its value as a bowl file writes it
 
 
-class PoseKind(enum.Enum):
-    """How well the pose in which a part left is known."""
-
-    ORIENTATION = enum.auto()
-    HEADING_OFF = enum.auto()  # on an aspect, at a heading that is none of the listed ones
-    UNKNOWN = enum.auto()
-
-
 @dataclass(frozen=True)
-class LeavingPose:
-    """A pose, other than wanted, in which parts left a queue."""
+class Hooking:
+    """How two parts of one kind hold each other."""
 
-    kind: PoseKind
-    aspect: str = ""  # '' of parts that hang, or lie in no known pose
-    name: str = ""  # of the orientation; '' of the other kinds
-
-
-LeavingCounts = tuple[tuple[LeavingPose, int], ...]  # the most first
-
-
-def join_leaving_counts(*counts: LeavingCounts) -> LeavingCounts:
-    """Return poses with their numbers of parts added up, the most first."""
-    total = Counter[LeavingPose]()
-    for count in counts:
-        total.update(dict(count))
-    return tuple(total.most_common())
+    pulls: int
+    held: int  # of them that do not part the two
+    opening: float  # [m] the mouth through which they come to hook; NaN of none
+    section: float  # [m] the thinnest limb of the part

@@ -12,7 +12,8 @@ from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.bowl import default
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing.record import FilledQueue, Pair, Risk
+from feederscrew.designing.findings import Hooking
+from feederscrew.designing.record import Pair, Risk, RiskKind
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import zero_rows
@@ -22,6 +23,7 @@ from feederscrew.part.record import Part
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial import part_poses, queue, runs, staging
+from feederscrew.trial.fills import FilledQueue
 from feederscrew.trial.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
 from feederscrew.trial.shape import solid_of
 from feederscrew.units import counted
@@ -89,12 +91,12 @@ def risks(
                 f"and friction holds it up to {math.degrees(math.atan(mu.kinetic)):.3g} deg"
             )
         before = vectors.product(np.array([distance, 0.0, -sign * LIFT]), orientation.axes)
-        listed.append(Risk("shingles", text, Pair(orientation.axes, np.eye(3), check.frozen(before))))
+        listed.append(Risk(RiskKind.SHINGLES, text, Pair(orientation.axes, np.eye(3), check.frozen(before))))
     climbs = sum(queue.climbs for queue in queues)
     if climbs:
         seconds = sum(queue.seconds for queue in queues)
         text = f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue"
-        listed.append(Risk("climbs", text))
+        listed.append(Risk(RiskKind.CLIMBS, text))
     nested = None if part is None else stack(part, mu.static)
     if nested is not None:
         held, side = math.degrees(math.atan(mu.static)), math.degrees(nested.side)
@@ -102,7 +104,7 @@ def risks(
             f"parts may nest: one goes {in_mm(nested.depth)} of {in_mm(nested.height)} into the "
             f"next; its sides are {side:.3g} deg off that way, and friction holds it up to {held:.3g} deg"
         )
-        listed.append(Risk("nests", text, Pair(np.eye(3), np.eye(3), nested.place)))
+        listed.append(Risk(RiskKind.NESTS, text, Pair(np.eye(3), np.eye(3), nested.place)))
     tangled = None if part is None else tangle(part, (mu.static, mu.kinetic), seed)
     if tangled is not None:
         pulls = f"{tangled.held} of {tangled.pulls} pulls do not part two of them"
@@ -112,7 +114,9 @@ def risks(
                 f"parts may hook into each other: {pulls}; {in_mm(tangled.section)} of them come through a "
                 f"mouth of {in_mm(tangled.opening)}"
             )
-        listed.append(Risk("hooks", text, Pair(np.eye(3), tangled.turn, tangled.place)))
+        hooking = Hooking(tangled.pulls, tangled.held, tangled.opening, tangled.section)
+        pair = Pair(np.eye(3), tangled.turn, tangled.place)
+        listed.append(Risk(RiskKind.HOOKS, text, pair, hooking))
     # those that come between the wall and what stands at the free edge, such as the chute's other wall
     width = bowl.track.width
     for other in orientations or (orientation,):
@@ -125,7 +129,9 @@ def risks(
         )
         c, s = math.cos(strut(other, width)), math.sin(strut(other, width))
         x, y, z = other.axes
-        listed.append(Risk("wedges", text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width)))
+        listed.append(
+            Risk(RiskKind.WEDGES, text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width))
+        )
         break
     return tuple(listed)
 

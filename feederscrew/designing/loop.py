@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import Status
+from feederscrew.bowl.verified import HELD, Status
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import (
     calm_drive,
@@ -20,6 +20,7 @@ from feederscrew.designing import (
     short_trials,
     texts,
 )
+from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind
 from feederscrew.designing.progress import Progress, SearchProgress, SearchStage
 from feederscrew.designing.record import (
@@ -29,10 +30,8 @@ from feederscrew.designing.record import (
     Attempt,
     DesignRequest,
     DesignStudy,
-    FilledQueue,
     NearestDesign,
     RobustRun,
-    long_ride,
 )
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.designing.short_trials import robust_run
@@ -45,7 +44,10 @@ from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating import chain as static
 from feederscrew.tooling.isolating.chain import DesignConstraints
+from feederscrew.trial.fills import FilledQueue
+from feederscrew.trial.long_ride import long_ride
 from feederscrew.trial.result import TrialRun
+from feederscrew.trial.wanted import wanted_rows
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -90,15 +92,15 @@ def design(
                 own, last = proofs[first:], proofs[-1][0]
                 queued = sum(bool(study.queues) for study, _ in own)
                 enough = queued >= policy.queued_designs or len(own) >= policy.drawn_designs
-                if last.status == Status.HOLDS or last.partial or enough:
+                if last.status in HELD or last.partial or enough:
                     break
             if any(study.partial for study, _ in proofs):
                 break
-            if any(study.status == Status.HOLDS for study, _ in proofs) and not request.alternatives:
+            if any(study.status in HELD for study, _ in proofs) and not request.alternatives:
                 break  # no dearer one is searched
         near, nearby = _nearest(search, proofs) if with_nearest else (None, None)
         # the best design is proved to the end, though it does not hold
-        if nearby is None and not any(study.status == Status.HOLDS or study.partial for study, _ in proofs):
+        if nearby is None and not any(study.status in HELD or study.partial for study, _ in proofs):
             if proofs:
                 study, candidate = max(proofs, key=lambda proof: merit(proof[0]))
                 if not nearest.whole(study):
@@ -110,7 +112,7 @@ def design(
     best = _list_alternatives(search, proofs, classes, nearby or _best(search, proofs))
     if any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
-    return best if best.status == Status.HOLDS else replace(best, nearest=near)
+    return best if best.status in HELD else replace(best, nearest=near)
 
 
 def _list_alternatives(search: Search, proofs: Proofs, classes: list[int], best: DesignStudy) -> DesignStudy:
@@ -126,7 +128,7 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
 
     None where a design holds, or was stopped.
     """
-    if any(study.status == Status.HOLDS or study.partial for study, _ in proofs):
+    if any(study.status in HELD or study.partial for study, _ in proofs):
         return None, None
     slow = [proof for proof in proofs if nearest.only_slow(proof[0]) and not nearest.whole(proof[0])]
     if slow:  # its queue ended as soon as it was too slow
@@ -138,7 +140,9 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
     def prove(other: Search, candidate: Candidate) -> DesignStudy:
         # its queue ends where it is impure or jams, however slow it is
         at_any_rate = replace(other, request=replace(other.request, target=ANY_RATE))
-        return replace(prove_design(at_any_rate, candidate, whole=False), request=other.request)
+        longest = longest_time(other.request.target)
+        study = prove_design(at_any_rate, candidate, whole=False, longest=longest)
+        return replace(study, request=other.request)
 
     return nearest.nearest(_best(search, proofs), search, proofs, prove)
 
@@ -154,7 +158,7 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
     state = search.state
 
     def cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
-        return -cost_class_of(study.devices) if study.status == Status.HOLDS else -math.inf, merit(study)
+        return -cost_class_of(study.devices) if study.status in HELD else -math.inf, merit(study)
 
     if proofs:
         return max((study for study, _ in proofs), key=cheapest)
@@ -198,7 +202,7 @@ def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
     for _ in range(search.policy.proof_changes + 1):
         study = prove_design(search, candidate, whole=False)
         proofs.append((study, candidate))
-        if study.status == Status.HOLDS or study.partial or search.is_spent:
+        if study.status in HELD or study.partial or search.is_spent:
             return
         other = _change_by_proof(search, study, candidate)
         if other is None or not other.attempt.clean:
@@ -220,7 +224,8 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
             return lively
         changed = proposals.add_pressure_break(candidate)
     elif nearest.only_slow(study):
-        state.reserve *= policy.slow_reserve * RATE_KEPT * search.request.target / study.delivered[1]
+        lacking = policy.slow_reserve * search.request.target / study.delivered[0]
+        state.reserve *= min(lacking, policy.slow_reserve_limit)
         return _faster(search, candidate)
     elif study.robust.share < DRAWS_HELD:
         worst = study.robust.worst
@@ -248,11 +253,17 @@ def _faster(search: Search, candidate: Candidate) -> Candidate | None:
 
 
 def prove_design(
-    search: Search, candidate: Candidate, *, whole: bool, robust: RobustRun | None = None
+    search: Search,
+    candidate: Candidate,
+    *,
+    whole: bool,
+    robust: RobustRun | None = None,
+    longest: float | None = None,
 ) -> DesignStudy:
     """Return the design with its draws and its queue; unless ``whole``, only as far as it holds.
 
     ``robust`` are all draws of that candidate, where they were made: they would come out the same.
+    ``longest`` is the time [s] of each fill at the most, without it that of the target.
     """
     request, name, shares = search.request, candidate.attempt.wanted, search.arrivals
     if search.given_shares is None:  # the search took what arrives from one drive: here from the bowl's own
@@ -266,7 +277,7 @@ def prove_design(
     # a ride along the track to the tooling, where another mix arrives
     search.tell(f"ride along the track: {name}")
     oriented, proposal = candidate.orientations, candidate.proposal
-    wanted = short_trials.wanted_rows(oriented, candidate.trial.states)
+    wanted = wanted_rows(oriented, candidate.trial.states)
     ride = long_ride(search.part, candidate.bowl, oriented.lying, candidate.weights, wanted, request.run)
     candidate = replace(candidate, weights=ride.arriving)
     study = replace(_study_of(search, candidate, shares), long_ride=ride)
@@ -283,16 +294,17 @@ def prove_design(
     study = replace(study, robust=robust, partial=robust.partial)
     if robust.partial or not (whole or robust.share >= DRAWS_HELD):
         return study
-    # queues, the slowest for longer; parts that touch on their way come as they enter the track
+    # queues; parts that touch on their way come as they enter the track
     line = queues.FollowedRow(
         search.part, candidate.bowl, shares.aspects, oriented, candidate.weights,
-        candidate.trial.states, request.seed, search.tell, RATE_KEPT * request.target,
-        proposal.any_heading, search.run(SearchStage.QUEUE).progress, ride.entering, request.jobs,
+        candidate.trial.states, proposal.any_heading, ride.entering,
+        seed=request.seed, tell=search.tell, least=RATE_KEPT * request.target,
+        longest=longest_time(request.target) if longest is None else longest,
+        progress=search.run(SearchStage.QUEUE).progress, jobs=request.jobs,
     )  # fmt: skip
     try:
         search.tell(f"queue: {name}, {proposal.sentence}")
         study = _with_queues(study, queues.follow_fills(line, whole=whole))
-        study = _with_queues(study, queues.follow_longer(line, study))
     except KeyboardInterrupt:
         return replace(study, partial=True)
     frequent = [oriented.lying[k] for k in short_trials.frequent_rows(candidate.weights)]
@@ -349,7 +361,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
 
 def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
     """Return what of two designs is the better one: holds, then clean, then the most parts."""
-    return study.status == Status.HOLDS, study.jams == 0, study.robust.share, study.delivered[1]
+    return study.status in HELD, study.jams == 0, study.robust.share, study.delivered[1]
 
 
 def alternatives(
@@ -360,7 +372,7 @@ def alternatives(
     The studies are those that were proved, as far as they were, ``attempts`` every short trial, ``classes``
     the cost classes of which chains were looked for.
     """
-    holds = any(study.status == Status.HOLDS for study in studies)
+    holds = any(study.status in HELD for study in studies)
     best_of: list[Alternative] = []
     for number in proposals.COST_CLASSES:
         own = [one for one in studies if one.bowl is not None and cost_class_of(one.devices) == number]
@@ -381,7 +393,7 @@ def alternatives(
                     chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
                     chain_words=words,
                     sees=tuple(device.sees for device in sensors),
-                    why="; ".join(study.shortfalls) if study.status != Status.HOLDS else "",
+                    why="; ".join(study.shortfalls) if study.status not in HELD else "",
                 )
             )
         elif tried:

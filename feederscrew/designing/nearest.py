@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import Status
+from feederscrew.bowl.verified import HELD
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import calm_drive, exploring, proposals, queues, short_trials, texts
+from feederscrew.designing import calm_drive, exploring, proposals, queues, texts
+from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind, MoveKind
 from feederscrew.designing.record import (
     DRAWS_HELD,
@@ -22,6 +23,7 @@ from feederscrew.designing.record import (
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.tooling.isolating.chain import OutcomeKind
+from feederscrew.trial.wanted import wanted_states
 
 MINUTE = 60.0
 SLIGHT = 1e-9  # of rounding
@@ -49,7 +51,9 @@ def only_slow(study: DesignStudy) -> bool:
 
 def whole(study: DesignStudy) -> bool:
     """Return whether a design was proved to the end, holding or not: all draws, a queue at each fill."""
-    return study.robust.draws >= study.request.draws and queues.is_complete(study.queues)
+    return study.robust.draws >= study.request.draws and queues.is_complete(
+        study.queues, longest_time(study.request.target)
+    )
 
 
 def rate_that_holds(study: DesignStudy) -> float:
@@ -60,10 +64,9 @@ def rate_that_holds(study: DesignStudy) -> float:
     """
     if study.partial or not study.queues:
         return 0.0
-    least = min(study.delivered[1], *(queue.ends[1] for queue in study.queues))
-    rate = min(_rounded_down(MINUTE * least / RATE_KEPT) / MINUTE, study.request.target)
+    rate = min(_rounded_down(MINUTE * study.delivered[1] / RATE_KEPT) / MINUTE, study.request.target)
     slower = replace(study, request=replace(study.request, target=rate))
-    return rate if rate > 0.0 and slower.status == Status.HOLDS else 0.0
+    return rate if rate > 0.0 and slower.status in HELD else 0.0
 
 
 def _rounded_down(value: float) -> float:
@@ -257,7 +260,7 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
         lying, row = candidate.orientations.lying, candidate.proposal.row
         equivalents, free_headings = proposals.find_equivalents(lying, row, request)
         proposal = replace(candidate.proposal, equivalents=equivalents, any_heading=free_headings)
-        states = short_trials.wanted_states(candidate.orientations, proposal.rows)
+        states = wanted_states(candidate.orientations, proposal.rows)
         trial = replace(candidate.trial, states=states)
         other, free = replace(candidate, proposal=proposal, trial=trial), search.beside(request)
         yield Variant(f"any heading of {aspect} counted, --up {','.join(request.up)}", other, free, False)

@@ -85,7 +85,8 @@ class SearchPolicy:
     proof_changes: int = _chosen(2, MENDED_BY_PROOF)  # of one design, each by what its proof denied
     lively_hop: float = _chosen(1.2e-4, MENDED_BY_PROOF)  # [m] from which jams ask for a device
     faster: float = _chosen(1.3, FASTER_DRIVE)  # [1] times the speed, where draws lose what creeps
-    slow_reserve: float = _chosen(1.1)  # [1] beside the rate that a slow design lacks
+    slow_reserve: float = _chosen(1.2)  # [1] times what the worst fill of a slow design lacks of the target
+    slow_reserve_limit: float = _chosen(3.0)  # [1] by which the reserve grows at most at once
 
     # the nearest that holds
     near_proofs: int = _chosen(3)  # designs beside those of the search that go through draws and queues

@@ -10,7 +10,7 @@ import numpy as np
 from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
-from feederscrew.designing.findings import Fault, FaultKind, LeavingCounts, Move, MoveKind, PoseKind
+from feederscrew.designing.findings import Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import ShortTrial
 from feederscrew.part.record import Part
@@ -27,6 +27,8 @@ from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, ju
 from feederscrew.tooling.isolating.design import RAIL
 from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.tooling.verdicts import DeviceEncounter
+from feederscrew.trial.fills import LeavingCounts, PoseKind
+from feederscrew.trial.wanted import aspects_at_any_heading, equivalent_rows, wanted_rows, wanted_states
 
 PROPOSED_ROWS = 6  # orientations for which chains are proposed, the most frequent first
 HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
@@ -122,7 +124,7 @@ class Proposal:
 
     def states(self, orientations: Orientations) -> tuple[int, ...]:
         """Return the states in which what is wanted leaves, its own first."""
-        return short_trials.wanted_states(orientations, self.rows)
+        return wanted_states(orientations, self.rows)
 
     @property
     def hangs(self) -> bool:
@@ -144,18 +146,12 @@ class Proposal:
         return replace(self, cuts=(*self.cuts[:place], cut, *self.cuts[place + 1 :]), move=move)
 
 
-def equivalent_rows(orientations: Sequence[Orientation], row: int, up: Iterable[str]) -> tuple[int, ...]:
-    """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
-    named = _fold_case(up)
-    return tuple(k for k, one in enumerate(orientations) if k != row and one.aspect.casefold() in named)
-
-
 def find_equivalents(
     orientations: Sequence[Orientation], row: int, request: DesignRequest
 ) -> tuple[tuple[int, ...], tuple[str, ...]]:
     """Return the rows that count as a wanted one beside it, and the aspects that do so at any heading."""
     one_heading = request.heading is not None
-    free = short_trials.aspects_at_any_heading(orientations, row, request.up, heading_given=one_heading)
+    free = aspects_at_any_heading(orientations, row, request.up, heading_given=one_heading)
     return equivalent_rows(orientations, row, request.up), free
 
 
@@ -241,7 +237,7 @@ def propose_chain(
     stops = (through.stops.sum(axis=1) > 0.0) & often
     if not stops.any():
         return proposal
-    wanted = short_trials.wanted_rows(through, proposal.states(through))
+    wanted = wanted_rows(through, proposal.states(through))
     return add_drop(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 

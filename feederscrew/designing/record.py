@@ -1,29 +1,27 @@
 """What is asked of a design, and what it stands on."""
 
-from collections.abc import Iterable, Sequence
+import enum
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Floats
+from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import shank_remarks
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, Status
+from feederscrew.bowl.verified import AGREED_JAMS, DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
 from feederscrew.designing import texts
 from feederscrew.designing.calm_drive import DriveKind
-from feederscrew.designing.findings import (
-    Cause,
-    Fault,
-    FaultKind,
-    LeavingCounts,
-    LeavingPose,
-    Move,
-    PoseKind,
-    join_leaving_counts,
+from feederscrew.designing.evidence import rate_at_most, share_at_least
+from feederscrew.designing.fill_verdicts import (
+    FillDifference,
+    FillState,
+    differing_fills,
+    judge_fill,
+    longest_time,
+    shows_purity,
 )
-from feederscrew.dropping.ensemble import wilson
+from feederscrew.designing.findings import Cause, Fault, FaultKind, Hooking, Move
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.records import ReadableRecord
@@ -33,10 +31,16 @@ from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial.long_ride import RideOfTrack, join_rides, ride_of_track
+from feederscrew.trial.fills import (
+    FilledQueue,
+    LeavingCounts,
+    LeavingPose,
+    PoseKind,
+    join_leaving_counts,
+)
+from feederscrew.trial.long_ride import LongRide
 from feederscrew.trial.result import TrialRun
-from feederscrew.units import counted
+from feederscrew.units import HOUR, counted
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,7 @@ class DesignRequest:
     seed: int = 1
     jobs: int = 1
     alternatives: bool = False  # whether dearer cost classes are searched too where one holds
+    agreed_jams: float = AGREED_JAMS  # [1/s] that the buyer tolerates
 
     @property
     def run(self) -> RunSettings:
@@ -128,78 +133,6 @@ class RobustRun:
 
 
 @dataclass(frozen=True)
-class FilledQueue:
-    """What a queue did at one fill."""
-
-    fill: str  # 'low', 'normal', 'high'
-    gaps: float  # [1] mean free way between parts as they come, over their length
-    parts: int
-    seconds: float  # [s] followed
-    counted: float  # [s] of them since the first part came to the outlet
-    delivered: float  # parts that left
-    right: int  # of the whole ones those in the wanted orientation
-    left: int  # whole ones that left
-    returned: int
-    jams: int
-    climbs: int
-    partial: bool = False  # stopped by the user
-    left_instead: LeavingCounts = ()  # in which poses other parts left, and how many, the most first
-    # by the orientation in which whole parts came: how many something became of, how many left as wanted
-    counts_by_entry: tuple[tuple[int, int], ...] = ()
-
-    @property
-    def rate(self) -> float:
-        """Wanted parts [1/s]."""
-        if not self.counted > 0.0 or not self.left:
-            return 0.0
-        return self.delivered / self.counted * self.right / self.left
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """95 % interval of that rate [1/s]: of the share of what is offered that leaves right."""
-        if not self.pace > 0.0:
-            return 0.0, 0.0
-        low, high = share_interval((self,))
-        return self.pace * low, self.pace * high
-
-    @property
-    def offered(self) -> int:
-        """Whole parts of which something became."""
-        return self.left + self.returned
-
-    @property
-    def pace(self) -> float:
-        """Parts [1/s] that are offered; 0 where none leaves as wanted."""
-        return self.rate * self.offered / self.right if self.right else 0.0
-
-
-def share_interval(queues: Iterable[FilledQueue], growth: float = 1.0) -> tuple[float, float]:
-    """Return the 95 % interval [1] of the share of parts that leave as wanted, of those something became of.
-
-    Parts come in their orientations in exact shares, so only what becomes of each orientation is left to
-    chance. The proportions of the orientations, each with its Wilson interval, are added up by these shares.
-    With a ``growth`` [1] of so many times as many parts, of which as many leave as wanted.
-
-    Source: W. G. Cochran, "Sampling techniques", 3rd ed., 1977, sec. 5.3, for the sum over strata. Its
-    interval: G. Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008.
-    """
-    queues = tuple(queues)
-    right, offered = sum(queue.right for queue in queues), sum(queue.offered for queue in queues)
-    if not offered:
-        return 0.0, 1.0
-    counts = [queue.counts_by_entry for queue in queues]
-    strata = [(offered, right)]
-    if all(counts):
-        strata = [(sum(n for n, _ in entry), sum(k for _, k in entry)) for entry in zip(*counts, strict=True)]
-    parts, wanted = np.array([row for row in strata if row[0]], float).T
-    ends = [wilson([k * growth], n * growth) for n, k in zip(parts, wanted, strict=True)]
-    lows, highs = np.array(ends)[:, :, 0].T
-    share, of_each, weights = right / offered, wanted / parts, parts / offered
-    down, up = (np.sqrt(((weights * (end - of_each)) ** 2).sum()) for end in (lows, highs))
-    return max(float(share - down), 0.0), min(float(share + up), 1.0)
-
-
-@dataclass(frozen=True)
 class Alternative:
     """The best design of a cost class: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
 
@@ -266,95 +199,24 @@ class Pair:
     walls: float = np.nan  # [m] apart, square to what is across; NaN of two parts
 
 
+class RiskKind(enum.StrEnum):
+    """In which way parts may hinder each other; files print the word."""
+
+    SHINGLES = "shingles"
+    CLIMBS = "climbs"
+    HOOKS = "hooks"
+    NESTS = "nests"
+    WEDGES = "wedges"
+
+
 @dataclass(frozen=True, eq=False)
 class Risk:
     """What may go wrong between parts."""
 
-    kind: str  # 'shingles', 'climbs', 'hooks', 'nests', 'wedges'
+    kind: RiskKind
     text: str
     pair: Pair | None = None  # what is drawn of it
-
-
-RIDING_SHARE = 0.05  # [1] share from which an orientation rides
-RIDING_PARTS = 6  # parts of each; as many again where any of them turned or left
-DEPENDS = 0.05  # [1] of what arrives as wanted: a design that owes or loses more to turning says so
-
-
-@dataclass(frozen=True, eq=False)
-class LongRide:
-    """A ride of the orientations that come often, and what it makes of the mix; M orientations."""
-
-    ride: RideOfTrack
-    entering: Floats  # (M,) [1] shares at the track's entry
-    arriving: Floats  # (M,) [1] shares at the tooling
-    wanted: tuple[int, ...]  # orientations that leave as wanted
-
-    @property
-    def _share_wanted(self) -> Floats:
-        """(M,) [1] of what begins so that arrives as wanted; of what was not ridden all or nothing."""
-        counts = self.ride.counts
-        parts, as_wanted = counts.sum(axis=1), counts[:, list(self.wanted)].sum(axis=1)
-        return np.where(parts > 0, as_wanted / np.maximum(parts, 1), self._is_wanted)
-
-    @property
-    def _is_wanted(self) -> Bools:
-        return np.isin(np.arange(len(self.entering)), self.wanted)
-
-    @property
-    def gains(self) -> Floats:
-        """(M,) [1] of all that enters, what began so and arrives as wanted though it was not."""
-        return np.where(self._is_wanted, 0.0, self.entering * self._share_wanted)
-
-    @property
-    def losses(self) -> Floats:
-        """(M,) [1] of all that enters, what began so, as wanted, and arrives otherwise or not at all."""
-        return np.where(self._is_wanted, self.entering * (1.0 - self._share_wanted), 0.0)
-
-    @property
-    def warning(self) -> str:
-        """A sentence where the design depends on an orientation that turns on the way; '' elsewhere."""
-        entering = float(self.entering[list(self.wanted)].sum())
-        moved = self.gains + self.losses
-        if not moved.sum() > DEPENDS * max(entering + self.gains.sum() - self.losses.sum(), 1e-12):
-            return ""
-        row = int(np.argmax(moved))
-        counts = self.ride.counts[row]
-        parts, name = int(counts.sum()), self.ride.names[row]
-        turned = parts - int(counts[row])
-        arrives = float(self.arriving[list(self.wanted)].sum())
-        return (
-            f"{turned} of {parts} parts of {name} turned or left on {1e3 * self.distance:.3g} mm of bare "
-            f"track, so what is wanted changes from {100.0 * entering:.3g} to {100.0 * arrives:.3g} % on the "
-            "way to the tooling; nobody has measured this, so count parts before the tooling of the bowl"
-        )
-
-    @property
-    def distance(self) -> float:
-        """How far the parts rode that arrived [m], the median."""
-        arrived = self.ride.end_rows >= 0
-        return float(np.median(self.ride.distances[arrived])) if arrived.any() else 0.0
-
-    def rows(self) -> list[dict[str, Any]]:
-        """Return a dict of each orientation that rode: parts, how many stay, become another, or left."""
-        lines, counts, names = [], self.ride.counts, self.ride.names
-        for row in self.ride.rows:
-            parts, stays = int(counts[row].sum()), int(counts[row, row])
-            low, high = (float(end[0]) for end in wilson([stays], parts))
-            further = [k for k in range(len(names)) if k != row and counts[row, k]]
-            lines.append(
-                {
-                    "orientation": names[row],
-                    "parts": parts,
-                    "stays": stays,
-                    "stays_low": low,
-                    "stays_high": high,
-                    "becomes": {names[k]: int(counts[row, k]) for k in further},
-                    "left": int(counts[row, -1]),
-                    "share_entering": float(self.entering[row]),
-                    "share_arriving": float(self.arriving[row]),
-                }
-            )
-        return lines
+    hooking: Hooking | None = None  # of parts that hook
 
 
 @dataclass(frozen=True, eq=False)
@@ -425,41 +287,47 @@ class DesignStudy(ReadableRecord):
         return sum(getattr(queue, name) for queue in self.queues)
 
     @property
-    def slowest(self) -> FilledQueue | None:
-        """The queue to which parts come most slowly: the lowest of fill; None without one."""
-        return min(self.queues, key=lambda one: one.pace, default=None)
+    def worst_fill(self) -> FilledQueue | None:
+        """The queue of the fill that brings least; None without one."""
+        return min(self.queues, key=lambda queue: queue.rate, default=None)
 
     @property
     def delivered(self) -> tuple[float, float, float]:
-        """Wanted parts [1/s] at the fill that brings least: value, low and high end.
+        """Wanted parts [1/s] of the worst fill: value, low and high end of the 95 % interval.
 
-        The share that leaves as wanted is that of all fills; the pace at which parts come is that fill's.
+        Each is the least of all fills, so that nothing a cleaner fill does improves it.
         """
-        if self.slowest is None or not self.slowest.pace > 0.0:
+        if not self.queues:
             return 0.0, 0.0, 0.0
-        right, offered = self._sum("right"), self._sum("offered")
-        low, high = share_interval(self.queues)
-        pace = self.slowest.pace
-        return pace * (right / offered), pace * low, pace * high
+        lows, highs = zip(*(queue.ends for queue in self.queues), strict=True)
+        return min(queue.rate for queue in self.queues), min(lows), min(highs)
 
     @property
     def worst(self) -> float:
-        """Wanted parts [1/s] at the fill that brings least and at the worst friction."""
+        """Wanted parts [1/s] of the worst fill at the worst friction."""
         return self.delivered[0] * self.slowed
 
     @property
     def purity(self) -> tuple[float, float]:
-        """Share of the wanted orientation in what left all queues [1], and its lower end; NaN of nothing."""
-        right, left = self._sum("right"), self._sum("left")
-        if not left:
-            return np.nan, 0.0
-        return right / left, float(wilson([right], left)[0][0])
+        """Share [1] of what left that is wanted, and its lower bound, of the worst fill; NaN of nothing.
+
+        The bound is one-sided, for 95 % confidence (``evidence.share_at_least``). Each is the least of all
+        fills.
+        """
+        shares = [queue.right / queue.left for queue in self.queues if queue.left]
+        lows = (share_at_least(queue.right, queue.left) for queue in self.queues)
+        return min(shares, default=np.nan), min(lows, default=0.0)
 
     @property
     def efficiency(self) -> float:
-        """Share [1] of the parts offered in its queues that left as wanted; NaN of none."""
-        right, offered = self._sum("right"), self._sum("offered")
-        return right / offered if offered else np.nan
+        """Share [1] of the parts offered that left as wanted, of the worst fill; NaN of none."""
+        shares = (queue.right / queue.offered for queue in self.queues if queue.offered)
+        return min(shares, default=np.nan)
+
+    @property
+    def differences(self) -> tuple[FillDifference, ...]:
+        """Fills that are worse than the others by more than chance, with what goes wrong there."""
+        return differing_fills(self.queues, self.cuts)
 
     @property
     def jams(self) -> int:
@@ -473,8 +341,8 @@ class DesignStudy(ReadableRecord):
 
     @property
     def jams_per_hour_high(self) -> float:
-        """Upper end of the jams an hour: three more than were seen, in the time they were looked for."""
-        return 3600.0 * (self.jams + 3.0) / self.queue_seconds if self.queue_seconds else np.inf
+        """Upper bound of the jams an hour, one-sided for 95 % confidence: 3 / T after T hours without one."""
+        return HOUR * rate_at_most(self.jams, self.queue_seconds)
 
     @property
     def trial_parts(self) -> int:
@@ -488,7 +356,21 @@ class DesignStudy(ReadableRecord):
             return Status.NOT_PROVED
         if self.bowl is None or not self.delivered[0] > 0.0:
             return Status.FALLS_SHORT if self.bowl is not None and self.queues else Status.NONE
-        return Status.HOLDS if not self.shortfalls else Status.FALLS_SHORT
+        if self.shortfalls:
+            return Status.FALLS_SHORT
+        return Status.HOLDS if self.hooking is None else Status.HOLDS_SINGLE
+
+    @property
+    def hooking(self) -> Hooking | None:
+        """How two of its parts hook; None of parts that come apart by themselves."""
+        return next((risk.hooking for risk in self.risks if risk.hooking is not None), None)
+
+    @property
+    def condition(self) -> str:
+        """The condition under which it holds, as a sentence; '' of one that holds without, or does not."""
+        if self.status != Status.HOLDS_SINGLE or self.hooking is None:
+            return ""
+        return texts.condition_text(self.hooking)
 
     @property
     def proved_so_far(self) -> tuple[str, ...]:
@@ -513,29 +395,17 @@ class DesignStudy(ReadableRecord):
     @property
     def shortfalls(self) -> tuple[str, ...]:
         """Where it does not do what was asked, a sentence each."""
-        minute, purity, (rate, low, _) = 60.0, self.purity[0], self.delivered
         if self.bowl is None:
             denied = (
                 f"{one.wanted}: {', '.join(texts.fault_texts(one.faults, 3)) or 'too slow'}"
                 for one in _asked_for(self)
             )
             return tuple(dict.fromkeys(denied))[:3]
-        lines = []
-        followed = bool(self.queues) or self.robust.share >= DRAWS_HELD  # draws that fail end a proof
-        if followed and low < RATE_KEPT * self.request.target:
-            lines.append(
-                f"delivers {minute * rate:.3g}/min (at least {minute * low:.3g}) of the "
-                f"{minute * self.request.target:.3g}/min asked for"
-            )
-        for queue in self.queues:
-            if queue.ends[1] < RATE_KEPT * self.request.target:
-                lines.append(
-                    f"at {queue.fill} fill {minute * queue.rate:.3g}/min are delivered (at most "
-                    f"{minute * queue.ends[1]:.3g})"
-                )
-        if followed and not purity >= PURE:
-            text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
-            lines.append(f"{text}, {100.0 * PURE:.3g} % are asked for{_instead(self)}")
+        lines = list[str]()
+        for queue in self.undecided_fills if not self.refused_fills else self.refused_fills:
+            lines += self._lacks_of(queue)
+        if not self.queues and self.robust.share >= DRAWS_HELD:  # draws that fail end a proof
+            lines.append("no queue was followed")
         if self.jams:
             lines.append(f"{counted(self.jams, 'jam')} in {self.queue_seconds:.3g} s of queue")
         if self.robust.share < DRAWS_HELD:
@@ -545,6 +415,46 @@ class DesignStudy(ReadableRecord):
             )
         return (*lines, *self.machine_lacks)
 
+    def fills_of(self, state: FillState) -> tuple[FilledQueue, ...]:
+        """Return the queues of the fills of one state, for the rate that is asked for."""
+        least, longest = RATE_KEPT * self.request.target, longest_time(self.request.target)
+        return tuple(queue for queue in self.queues if judge_fill(queue, least, longest) is state)
+
+    @property
+    def refused_fills(self) -> tuple[FilledQueue, ...]:
+        """The queues of the fills that surely do not hold."""
+        return self.fills_of(FillState.REFUSED)
+
+    @property
+    def undecided_fills(self) -> tuple[FilledQueue, ...]:
+        """The queues of the fills whose parts decide nothing yet."""
+        return self.fills_of(FillState.OPEN)
+
+    def _lacks_of(self, queue: FilledQueue) -> list[str]:
+        """What a fill lacks, a sentence each; its jams are counted with those of the others."""
+        minute, (low, high), target = 60.0, queue.ends, self.request.target
+        at, lines = f"at {queue.fill} fill", []
+        if low < RATE_KEPT * target:
+            lines.append(
+                f"{at} {minute * queue.rate:.3g}/min are delivered (95 % interval {minute * low:.3g} to "
+                f"{minute * high:.3g}), {minute * target:.3g}/min are asked for"
+            )
+        if queue.left and queue.right < PURE * queue.left:
+            lines.append(
+                f"{at} the purity is {100.0 * queue.right / queue.left:.3g} % ({queue.right} of "
+                f"{counted(queue.left, 'part')}), {100.0 * PURE:.3g} % are asked for{_instead(self, queue)}"
+            )
+        elif not shows_purity(queue):
+            shown = 100.0 * share_at_least(queue.right, queue.left)
+            lines.append(
+                f"{at} {queue.right} of {counted(queue.left, 'part')} left as wanted, which shows a purity "
+                f"of {shown:.3g} % (lower bound, 95 %, one-sided), and more than "
+                f"{100.0 * SHOWN_PURITY:.3g} % have to be shown"
+            )
+        if not (lines or queue.jams):
+            lines.append(f"{at} parts were followed for {queue.seconds:.3g} s only")
+        return lines
+
     @property
     def cause(self) -> Cause:
         """What keeps it from holding; unknown of one that holds or was stopped."""
@@ -553,7 +463,7 @@ class DesignStudy(ReadableRecord):
     @property
     def _cause(self) -> tuple[Cause, str]:
         """The same with a sentence."""
-        if self.status == Status.HOLDS or self.partial:
+        if self.status in HELD or self.partial:
             return Cause.UNKNOWN, ""
         if self.machine_lacks:
             return Cause.DRIVE, "the springs that are drawn do not make the drive that was tried"
@@ -590,21 +500,24 @@ class DesignStudy(ReadableRecord):
             if fault.kind is FaultKind.CARRIED:
                 return (Cause.DEVICE if self.devices else Cause.PART), self.robust.worst_text
             return Cause.DRIVE, self.robust.worst_text
-        queue = self.slowest
+        queue = self.worst_fill
         if queue is None or not queue.right:
             return Cause.ARRIVAL, "too little of what is wanted leaves its queues"
-        share, need = self.efficiency, self.request.target / queue.pace
+        if self.delivered[1] >= RATE_KEPT * self.request.target:  # the rate is enough
+            return Cause.ARRIVAL, "too few parts left its queues to show that it is pure"
+        share, need = queue.right / queue.offered, self.request.target / queue.pace
         return Cause.ARRIVAL, (
-            f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * share:.3g} % of them "
-            f"leave as {self.wanted}: {60.0 * self.delivered[1] / RATE_KEPT:.2g}/min would hold, or a part "
-            f"of which {100.0 * need:.3g} % come so"
+            f"at {queue.fill} fill {60.0 * queue.pace:.3g} parts a minute come along, and "
+            f"{100.0 * share:.3g} % of them leave as {self.wanted}: "
+            f"{60.0 * self.delivered[1] / RATE_KEPT:.2g}/min would hold, or a part of which "
+            f"{100.0 * need:.3g} % come so"
         )
 
     @property
     def why(self) -> str:
-        """Where it falls short, the cause, and the nearest that holds; '' where it holds."""
-        if self.status == Status.HOLDS:
-            return ""
+        """Where it falls short, the cause, and the nearest that holds; the condition of one that has one."""
+        if self.status in HELD:
+            return self.condition
         if self.partial:
             return "; ".join(("stopped before all was tried", *self.proved_so_far))
         return "; ".join((self.reasons, *(() if self.nearest is None else (self.nearest.text,))))
@@ -613,7 +526,9 @@ class DesignStudy(ReadableRecord):
     def reasons(self) -> str:
         """Where it falls short, and the cause; '' of a design that holds or was stopped."""
         cause, sentence = self._cause
-        return "; ".join((*self.shortfalls, f"the cause is the {cause}: {sentence}")) if cause else ""
+        differences = map(texts.difference_text, self.differences)
+        lines = (*self.shortfalls, *differences, f"the cause is the {cause}: {sentence}")
+        return "; ".join(lines) if cause else ""
 
     @property
     def left_instead(self) -> LeavingCounts:
@@ -629,18 +544,16 @@ class DesignStudy(ReadableRecord):
         return pose.kind is PoseKind.HEADING_OFF and pose.aspect == self.wanted_aspect
 
 
-def _instead(study: DesignStudy) -> str:
-    """What left instead of what is wanted, and the option that counts it where its heading alone is off."""
-    listed, left = study.left_instead, sum(queue.left for queue in study.queues)
-    if not listed:
+def _instead(study: DesignStudy, queue: FilledQueue) -> str:
+    """What left a fill instead of what is wanted, and the option that counts it at any heading."""
+    if not queue.left_instead:
         return ""
     lines = []
-    for pose, count in listed[:3]:
-        # at which fill most of it left, and through which device that should return it
-        fill = max(study.queues, key=lambda queue: dict(queue.left_instead).get(pose, 0)).fill
+    for pose, count in queue.left_instead[:3]:
+        # through which device that should return it
         device = next((cut.device.name for cut in reversed(study.cuts) if pose.name in cut.returns), "")
-        through = f", through the {device}" if device else ""
-        lines.append(f"{texts.pose_text(pose)}: {count} of {left} (most at {fill} fill{through})")
+        through = f" (through the {device})" if device else ""
+        lines.append(f"{pose.text}: {count} of {queue.left}{through}")
     own = study.wanted_aspect
     offer = f" (--up {own} counts {own} at any heading)" if own in study.aspects_heading_off else ""
     return f"; what left instead: {', '.join(lines)}{offer}"
@@ -651,30 +564,3 @@ def _asked_for(study: DesignStudy) -> tuple[Attempt, ...]:
     names = {name.casefold() for name in (*study.request.up, study.request.aspect or "") if name}
     own = [attempt for attempt in study.attempts if attempt.aspect.casefold() in names]
     return tuple(own) or study.attempts
-
-
-def long_ride(
-    part: Part,
-    bowl: Bowl,
-    orientations: Sequence[Orientation],
-    shares: Floats,
-    wanted: Sequence[int],
-    run: RunSettings,
-) -> LongRide:
-    """Let parts ride from the track's entry to the tooling, and return the mix that arrives there.
-
-    The orientations that come often ride, in shares (M,) [1] in which they enter the track, and those that
-    leave as wanted whether they come often or not. Those of which a part turned or left ride with as many
-    parts again. Raises KeyboardInterrupt if the user stops it before all have arrived.
-    """
-    often = [int(k) for k in np.argsort(-shares, kind="stable") if shares[k] >= RIDING_SHARE]
-    rows = list(dict.fromkeys([*often, *(k for k in wanted if shares[k] > 0.0)]))
-    ride = ride_of_track(
-        part, bowl, orientations, rows, repeats=RIDING_PARTS, run=RunSettings(run.seed, run.jobs)
-    )
-    if turned := np.flatnonzero(ride.is_turned).tolist():
-        more = RunSettings(run.seed + 1, run.jobs)
-        ride = join_rides(
-            ride, ride_of_track(part, bowl, orientations, turned, repeats=RIDING_PARTS, run=more)
-        )
-    return LongRide(ride, shares, ride.arriving_shares(shares), tuple(int(k) for k in wanted))

@@ -22,7 +22,6 @@ from feederscrew.dropping.pool import gather
 from feederscrew.dropping.toss_runs import scattered
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
-from feederscrew.mechanics.headings import rests
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
@@ -35,14 +34,15 @@ from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.tooling.orientations import orientations as on_the_track
 from feederscrew.trial import course, runs
 from feederscrew.trial.course import Fate
+from feederscrew.trial.fills import FillLevel
 from feederscrew.trial.looks import AspectsBelow
+from feederscrew.trial.wanted import find_poses, wanted_rows, wanted_states
 
 SELDOM_SHARE = 5e-3  # [1] orientations that come less often are left out
 STUCK_FATES = (Fate.HANGING, Fate.STOPPED)  # what is stuck on the bare track is pushed on by a queue
 COUNTED = ("parts", "right", "wrong", "held")  # of each orientation tried
 FEW_OTHERS = 8  # so many other orientations are tried more than once
-LOW = 0.5  # mean free way between parts at low fill, over their length: a third of the row is empty
-GAP = 1.0 + LOW  # pitch of parts that come in a row at low fill, over their length
+GAP = 1.0 + FillLevel.LOW.gaps  # pitch of parts that come in a row at low fill, over their length
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,47 +138,6 @@ class ShortTrial:
         longest = GAP * float(np.mean([self.orientations.states[k].length for k in self.states]))
         velocity = max(self.velocity, 0.0)
         return float(min(velocity / pitch * self.efficiency, velocity / longest))
-
-
-def wanted_states(orientations: stream.Orientations, rows: Sequence[int] | Ints) -> tuple[int, ...]:
-    """Return the states in which some rows leave, the first one first.
-
-    The wanted row comes first; of others that count as it, those that are returned add no state.
-    """
-    further = [k for k in rows[1:] if orientations.leaving[k].max() > 0.5]
-    return tuple(dict.fromkeys(int(orientations.leaves_as[k]) for k in (rows[0], *further)))
-
-
-def wanted_rows(orientations: stream.Orientations, states: Sequence[int]) -> list[int]:
-    """Return the rows that leave in one of some states as the static rule says."""
-    return [k for k in range(len(orientations.lying)) if orientations.leaving[k, list(states)].sum() > 0.5]
-
-
-def aspects_at_any_heading(
-    orientations: Sequence[Orientation], row: int, up: Sequence[str], *, heading_given: bool = False
-) -> tuple[str, ...]:
-    """Return the aspects on which a part counts as a wanted row however it is turned.
-
-    Those of ``up``, the option `--up`, and the wanted row's own where it is round in plan and takes any
-    heading, unless one heading was asked for.
-    """
-    names, wanted = {name.strip().casefold() for name in up}, orientations[row]
-    aspects = [other.aspect for other in orientations if other.aspect.casefold() in names]
-    if not heading_given and rests(wanted.posture.outline, wanted.track.radius).rounded:
-        aspects.append(wanted.aspect)
-    return tuple(dict.fromkeys(aspects))
-
-
-def find_poses(
-    orientations: stream.Orientations, states: Sequence[int], any_heading: Sequence[str] = ()
-) -> tuple[Orientation, ...]:
-    """Return the poses, one a state, in which parts may be found.
-
-    At any heading of an aspect that counts beside another: those of the further ``states``, and those named.
-    """
-    own = [orientations.states[k] for k in states[1:]]
-    names = {pose.aspect for pose in own if not isinstance(pose, Hanging)} | set(any_heading)
-    return tuple(replace(pose, any_heading=pose.aspect in names) for pose in orientations.states)
 
 
 def gain(orientations: stream.Orientations, shares: Floats, states: Sequence[int]) -> float:

@@ -4,18 +4,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from feederscrew.designing.findings import (
-    End,
-    Fault,
-    FaultKind,
-    LeavingCounts,
-    LeavingPose,
-    Move,
-    MoveKind,
-    PoseKind,
-)
+from feederscrew.designing.fill_verdicts import DifferenceKind, FillDifference
+from feederscrew.designing.findings import End, Fault, FaultKind, Hooking, Move, MoveKind
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.trial.course import Fate
+from feederscrew.trial.fills import LeavingCounts
+from feederscrew.units import counted
 
 
 def end_text(end: End) -> str:
@@ -91,17 +85,49 @@ def move_text(move: Move) -> str:
             return f"livelier drive, {1e3 * move.value:.3g} mm peak to peak"
 
 
-def pose_text(pose: LeavingPose) -> str:
-    """Return a pose in which parts left: 'A@90', 'C, heading off', 'in no known pose'."""
-    match pose.kind:
-        case PoseKind.ORIENTATION:
-            return pose.name
-        case PoseKind.HEADING_OFF:
-            return f"{pose.aspect}, heading off"
-        case PoseKind.UNKNOWN:
-            return "in no known pose"
+SEPARATORS = ("a de-tangling drum", "bursts of air", "a magazine that keeps them single")  # before the bowl
+
+
+def condition_text(hooking: Hooking) -> str:
+    """Return under which condition a bowl holds whose parts hook: what separates them, what to change."""
+    return (
+        f"two parts hook into each other ({hooking.held} of {counted(hooking.pulls, 'pull')} do not part "
+        f"them), and no queue was tried with parts that hang together; separate them before the bowl by "
+        f"{', '.join(SEPARATORS[:-1])} or {SEPARATORS[-1]}; {change_text(hooking)}"
+    )
+
+
+def change_text(hooking: Hooking) -> str:
+    """Return what to change on a part so that two of them do not hook."""
+    limb = in_mm(hooking.section)
+    if np.isfinite(hooking.opening):
+        return (
+            f"on the part, close its mouth of {in_mm(hooking.opening)} to less than the {limb} of its "
+            "thinnest limb, or make that limb thicker than the mouth"
+        )
+    return f"on the part, close its openings, or make them narrower than its thinnest limb, {limb}"
+
+
+def difference_text(difference: FillDifference) -> str:
+    """Return a fill that is worse than the others, with its cause, as a sentence."""
+    d = difference
+    counts = f"{d.right} of {d.total} parts", f"{d.right_elsewhere} of {d.total_elsewhere}"
+    chance = f"p = {d.chance:.1g}, Fisher's exact test"
+    place = f"at the {d.device}" if d.device else "on the bare track"
+    match d.kind:
+        case DifferenceKind.PURITY:
+            text = f"at {d.fill} fill {counts[0]} that left are as wanted, elsewhere {counts[1]} ({chance})"
+            if d.pose is None:
+                return text
+            through = f", past the {d.device}" if d.device else ""
+            return f"{text}: {d.pose.text} leaves there ({d.count}{through})"
+        case DifferenceKind.YIELD:
+            text = f"at {d.fill} fill {counts[0]} leave as wanted, elsewhere {counts[1]} ({chance})"
+            if not d.count:
+                return f"{text}: fewer come as wanted there"
+            return f"{text}: parts that came as wanted fall back {place} ({d.count})"
 
 
 def leaving_texts(counts: LeavingCounts) -> dict[str, int]:
     """Return how many parts left in each pose, by its text, the most first."""
-    return {pose_text(pose): count for pose, count in counts}
+    return {pose.text: count for pose, count in counts}

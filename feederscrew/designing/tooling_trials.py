@@ -19,6 +19,7 @@ from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.devices.kinds import KINDS, names
 from feederscrew.tooling.isolating.chain import Design
+from feederscrew.trial.wanted import aspects_at_any_heading
 
 PARTS_OF_EACH = 2  # parts of each orientation
 MORE_PARTS = 20  # parts beside those where the trial denies nothing, by the shares of the orientations
@@ -175,7 +176,7 @@ def _try_design(study: ToolingStudy, design: Design, run: RunSettings) -> TriedD
     seldom = [k for k in order if may[k] and k not in often]
     rows = [int(k) for k in (*often, *seldom[:FURTHER])]
     wanted = (design.wanted, *equivalent_rows(oriented.lying, design.wanted, study.up))
-    free = short_trials.aspects_at_any_heading(oriented.lying, design.wanted, study.up)
+    free = aspects_at_any_heading(oriented.lying, design.wanted, study.up)
     single = functools.partial(
         short_trials.try_parts, study.part, bowl, oriented, shares, wanted,
         aspects=study.aspects, any_heading=free,

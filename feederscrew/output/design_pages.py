@@ -8,12 +8,13 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.reading import Setting
-from feederscrew.bowl.verified import DRAWS_HELD, PURE, RATE_KEPT, Status
+from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignStudy
 from feederscrew.output import designs, machine, marking, solidbowl, solidbowl_views, tables, tooling
 from feederscrew.output import offers as offer
+from feederscrew.output.designs import LOWER_BOUND
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Block,
@@ -72,11 +73,12 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     d = designs.document(study)
     value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
     purity = "-" if d["purity"] is None else f"{100.0 * d['purity']:.3g} %"
-    rates = f"{low:.3g} to {high:.3g}, asked {d['target_per_minute']:.3g}"
+    purity_low = f"seen at the worst fill; {LOWER_BOUND} {100.0 * d['purity_low']:.3g} %"
+    rates = f"{low:.3g} to {high:.3g} (95 %) at the worst fill, asked {d['target_per_minute']:.3g}"
     tiles = (
         Tile("status", d["status"], d["wanted"] or "no orientation"),
         Tile("parts per minute", f"{value:.3g}", rates),
-        Tile("purity", purity, "of what left the queue"),
+        Tile("purity", purity, purity_low),
         Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
     )
     chapters = [Chapter(tuple(_answer(study, d)), tiles, study.warnings, "answer", "The answer")]
@@ -102,7 +104,8 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     if study.queues:
         lead = Text(
             "A queue of parts that push each other, at three fills, and draws of part, friction, drive and "
-            "cuts, each tried with parts of its own."
+            "cuts, each tried with parts of its own. The worst fill counts: each was followed until it held "
+            "or was refused."
         )
         proof: list[Block] = [lead]
         if d["long_ride"] and study.long_ride is not None:
@@ -114,12 +117,20 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
             proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
         worst = f"; most often: {study.robust.worst_text}" if study.robust.worst else ""
         draws = Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")
-        proof += [Table(tables.of_rows(d["queues"])), draws]
+        proof.append(Table(tables.of_rows(d["queues"])))
+        if d["differences"]:
+            proof.append(Notes(tuple(item["text"] for item in d["differences"]), loud=True))
+        proof.append(draws)
         chapters.append(Chapter(tuple(proof), anchor="proof", title="The proof"))
     if study.delivers:  # else there is nothing to build from, nothing to accept
         sheet = designs.acceptance(study)
         blocks = (
-            Text("Computed values, with empty cells for what is measured at the machine."),
+            Text(
+                "Each line has its demand (low, high) and the plan that shows it for 95 % confidence. Beside "
+                "it stands what the computation expects, with its bounds: of a rate the 95 % interval, of "
+                "yield and jams one-sided bounds (95 %). Write what was measured, and in 'sample' on how "
+                "many parts (of a yield) or in how many seconds (of a rate and of jams)."
+            ),
             Table(sheet),
             CsvSheet("acceptance.csv", tables.text(sheet, "csv"), on_page=False),
             Heading("What to measure"),
@@ -131,12 +142,15 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
 
 def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
     """What the status says, what is missing or what all was reached; the machine, the bowl, the risks."""
-    if study.status == Status.HOLDS:
+    if study.status in HELD:
+        if study.condition:
+            yield Notes((f"{study.status}: {study.condition}.",), loud=True)
         least, draws = 60.0 * RATE_KEPT * study.request.target, 100.0 * DRAWS_HELD
         yield Text(
-            f"Status: {study.status}. The lower end of the rate is at least {least:.3g} a minute, the purity "
-            f"at least {100.0 * PURE:.3g} %; nothing jams, and at least {draws:.3g} % of the draws "
-            "sort."
+            f"Status: {study.status}. At each fill the lower end of the rate's 95 % interval is at least "
+            f"{least:.3g} a minute, the purity that was seen at least {100.0 * PURE:.3g} %, and its "
+            f"{LOWER_BOUND} above {100.0 * SHOWN_PURITY:.3g} %. Nothing jams, and at least {draws:.3g} % of "
+            "the draws sort."
         )
     else:
         yield Text(f"Status: {study.status}. {study.why}.")
@@ -286,7 +300,7 @@ def family_summary(study: FamilyStudy) -> Frame:
     for member in study.members:
         rate, low, _ = (value / units.PER_MINUTE for value in member.delivered)
         text = f"{member.status}, {member.wanted or '-'}"
-        text += "" if member.partial else f", {rate:.4g} a minute (at least {low:.4g})"
+        text += "" if member.partial else f", {rate:.4g} a minute (95 % interval from {low:.4g})"
         rows.append((member.part.name, text + (f": {member.why}" if member.why else "")))
         facts = designs.machine_facts(member)
         if facts is not None:
@@ -301,7 +315,7 @@ def family_page(study: FamilyStudy) -> str:
         status = "It was stopped before all parts were designed."
     elif not study.shared:
         status = "The parts do not share one chain: the list below names what is swapped."
-    elif study.status == Status.HOLDS:
+    elif study.status in HELD:
         status = (
             "One track and one chain of devices suit all parts: what is listed below is only set or taught."
         )

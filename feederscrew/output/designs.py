@@ -3,6 +3,7 @@
 import datetime
 import textwrap
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -17,7 +18,7 @@ from feederscrew.bowl.record import Bowl, Drive, Machine, Sizing, Track
 from feederscrew.bowl.verified import NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import texts
+from feederscrew.designing import acceptance_sheet, texts
 from feederscrew.designing.acceptance_sheet import SheetLine
 from feederscrew.designing.record import Alternative, DesignStudy, Pair, Risk
 from feederscrew.errors import FeederError
@@ -27,6 +28,7 @@ from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS,
 from feederscrew.output import columns, style, tables
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.tooling import settings_lines
+from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.tooling.devices.base import Device
@@ -50,6 +52,7 @@ ATTEMPT_COLUMNS = (
     "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
     "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
 )  # fmt: skip
+LOWER_BOUND, UPPER_BOUND = (f"{side} bound (95 %, one-sided)" for side in ("lower", "upper"))
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
 
 
@@ -98,9 +101,21 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
         "alternatives": [_alternative(item) for item in study.alternatives],
         "why": study.why,
+        "condition": _condition(study),
         "cause": study.cause or None,
         "nearest": nearest(study),
         "left_instead": texts.leaving_texts(study.left_instead),
+        "differences": [
+            {
+                **row_of(
+                    item, "fill kind right of=total right_elsewhere of_elsewhere=total_elsewhere chance"
+                ),
+                "leaves_instead": None if item.pose is None else item.pose.text,
+                **row_of(item, "parts=count device"),
+                "text": texts.difference_text(item),
+            }
+            for item in study.differences
+        ],
         "risks": [item.text for item in study.risks],
         "findings": findings,
         **row_of(study, "trial_parts answer=source seed=request.seed partial"),
@@ -108,20 +123,21 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "machine": facts,
         "bowl": bowl,
         "long_ride": [] if study.long_ride is None else study.long_ride.rows(),
-        "queues": [
-            {
-                **row_of(filled, "fill free_way=gaps parts seconds"),
-                "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
-                **row_of(filled, "left right returned jams climbs"),
-                "left_instead": ", ".join(
-                    f"{name}: {n} of {filled.left}"
-                    for name, n in texts.leaving_texts(filled.left_instead).items()
-                ),
-                "partial": filled.partial,
-            }
-            for filled in study.queues
-        ],
+        "worst_fill": None if study.worst_fill is None or not is_proved else study.worst_fill.fill,
+        "queues": [filled_entry(filled) for filled in study.queues],
         "attempts": attempts(study).rows(),
+    }
+
+
+def _condition(study: DesignStudy) -> dict[str, Any] | None:
+    """Return the condition under which a design holds as a dict; None of one that holds without."""
+    if not study.condition or study.hooking is None:
+        return None
+    return {
+        **row_of(study.hooking, "pulls held opening_mm=opening thinnest_mm=section"),
+        "separate_by": list(texts.SEPARATORS),
+        "change_the_part": texts.change_text(study.hooking),
+        "text": study.condition,
     }
 
 
@@ -313,17 +329,18 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
     rows.append(("asked for [1/min]", f"{d['target_per_minute']:.4g}"))
     if d["status"] != Status.NOT_PROVED:
         value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
-        purity, hourly = "-", d["jams_per_hour_high"]
-        if d["purity"] is not None:
-            purity = f"{100.0 * d['purity']:.4g} (at least {100.0 * d['purity_low']:.4g})"
-        at_most = "" if hourly is None else f", at most {hourly:.3g} an hour"
+        purity, purity_low, hourly = (d[name] for name in ("purity", "purity_low", "jams_per_hour_high"))
+        shares = ("-" if share is None else f"{100.0 * share:.4g}" for share in (purity, purity_low))
         rows += [
-            ("delivered at the lowest fill [1/min]", f"{value:.4g} ({low:.4g} to {high:.4g})"),
+            ("the worst fill", d["worst_fill"] or "-"),
+            ("delivered at the worst fill [1/min]", f"{value:.4g} (95 % interval {low:.4g} to {high:.4g})"),
             ("the same at the worst friction [1/min]", f"{d['worst_friction_per_minute']:.4g}"),
             ("promised by the static rule [1/min]", f"{d['static_per_minute']:.4g}"),
-            ("purity [%]", purity),
-            ("jams", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue{at_most}"),
+            *zip(("purity of the worst fill, seen [%]", f"purity, {LOWER_BOUND} [%]"), shares, strict=True),
+            ("jams that were seen", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue"),
+            (f"jams an hour, {UPPER_BOUND}", "-" if hourly is None else f"{hourly:.3g}"),
             ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
+            *(("a fill that differs", item["text"]) for item in d["differences"]),
         ]
     chain = [f"{item.full_name}: {item.value_words}" for item in devices] or ["none"]
     return [*rows, *((f"device {k}", item) for k, item in enumerate(chain, start=1))]
@@ -339,17 +356,13 @@ def dimensions(d: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def acceptance(study: DesignStudy) -> Frame:
-    """Return the acceptance sheet: what a buyer measures, the computed values beside empty cells."""
-    rows: list[tuple[str, str, str, str, str, str]] = []  # quantity, fill, computed, low, high, unit
+    """Return the acceptance sheet: demand, plan and computed values of each line beside empty cells."""
+    request = study.request
+    lines: list[SheetLine] = []
     for filled in study.queues:
-        value, low, high = (f"{end / PER_MINUTE:.4g}" for end in (filled.rate, *filled.ends))
-        good = f"{100.0 * filled.right / filled.left:.4g}" if filled.left else ""
-        hourly = f"{3600.0 * (filled.jams + 3) / filled.seconds:.3g}"
-        rows += [
-            ("good parts at the discharge", filled.fill, value, low, high, "1/min"),
-            ("yield, good of what leaves", filled.fill, good, "", "", "%"),
-            ("jams", filled.fill, f"{filled.jams}", "", hourly, "1/h"),
-        ]
+        lines += acceptance_sheet.lines_of_fill(filled, request.target, request.agreed_jams)
+    if study.hooking is not None:  # else the feeder is judged by parts that hang together
+        lines = [replace(line, plan=f"parts that arrive single: {line.plan}") for line in lines]
     if study.bowl is not None:
         facts: Any = machine_facts(study)
         drive, controller = study.bowl.drive, study.bowl.sizing.controller
@@ -361,13 +374,23 @@ def acceptance(study: DesignStudy) -> Frame:
             ("vibration angle at the springs", facts["vibration_angle_at_the_springs_deg"], "deg"),
             ("phase of the drive", facts["phase_deg"] or None, "deg"),
             ("drive setting", 100.0 * controller, "%"),
-        ]
-        rows += [(name, "", f"{x:.4g}", "", "", unit) for name, x, unit in single if x is not None]
-        reserve, tilt = 100.0 * (1.0 / controller - 1.0), np.degrees(np.arctan(study.bowl.friction.static))
-        rows.append(("reserve of the drive", "", f"{reserve:.3g}", "", "", "%"))
-        rows.append(("angle at which a part slides down a tilted strip", "", f"{tilt:.3g}", "", "", "deg"))
-    names = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
-    return tables.of_cells(names, ((*row, "", "") for row in rows))
+            ("reserve of the drive", 100.0 * (1.0 / controller - 1.0), "%"),
+            (
+                "angle at which a part slides down a tilted strip",
+                np.degrees(np.arctan(study.bowl.friction.static)), "deg",
+            ),
+        ]  # fmt: skip
+        for name, value, unit in single:
+            if value is not None:
+                line = SheetLine(name, "", unit, None, None, float(value))
+                lines.append(replace(line, low=line.demand[0], high=line.demand[1]))
+    cells = ([_cell(getattr(line, name)) for name in acceptance_sheet.SHEET_COLUMNS] for line in lines)
+    return tables.of_cells(acceptance_sheet.SHEET_COLUMNS, cells)
+
+
+def _cell(value: str | float | None) -> str:
+    """Return a cell of the sheet."""
+    return "" if value is None else value if isinstance(value, str) else f"{value:.5g}"
 
 
 SET_KEYS = {  # keys of the bowl file that a design sets, by section
@@ -415,6 +438,7 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
         texts = unbalance_texts(sheet.bowl.machine)
         own_lines["machine"] += [f"  {word}: {text}" for word, text in texts.items()]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
+    lines += [f"# {line}" for line in textwrap.wrap(study.condition, 100)]
     if study.drive_mismatch is not None:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]
     set_here |= {s.key.name for s in settings if s.key.field == DEVICES_SECTION}
@@ -442,10 +466,13 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
     else:
         value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
         verified = {
-            "status": tried.status, "wanted": tried.wanted, "up": f'"{tried.up}"' if tried.up else None,
+            "status": tried.status,
+            "condition": f'"{study.condition}"' if study.condition else None,
+            "wanted": tried.wanted, "up": f'"{tried.up}"' if tried.up else None,
             "outcome": tried.outcome, "target": f"{tried.target / PER_MINUTE:.6g}/min",
-            "delivered": value, "delivered_low": low, "delivered_high": high,
+            "fill": tried.fill or None, "delivered": value, "delivered_low": low, "delivered_high": high,
             "purity": NOTHING_LEFT if np.isnan(study.purity[0]) else f"{study.purity[0]:.4g}",
+            "purity_low": f"{study.purity[1]:.4g}",
             "jams": tried.jams, "queue_seconds": f"{tried.queue_seconds:.6g} s",
             "trial_parts": study.trial_parts or None, "draws": tried.draws, "draws_held": tried.held,
             "seed": study.request.seed,
@@ -467,37 +494,40 @@ def trial_of(study: DesignStudy) -> Verified | None:
         study.status, study.wanted, study.request.target, value, low, high, study.purity[0], study.jams,
         study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
         fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part), study.outcome,
+        "" if study.worst_fill is None else study.worst_fill.fill, study.condition,
     )  # fmt: skip
 
 
 def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
-    """Return one row a line of the sheet."""
-    words = {True: "agrees", False: "does not", None: "not measured"}
-    names = ("quantity", "fill", "computed", "from", "to", "measured", "unit", "verdict")
+    """Return one row a line of the sheet: the demand, what was measured, and what that says."""
+    names = ("quantity", "fill", "from", "to", "unit", "measured", "sample", "computed", "verdict", "why")
     rows = []
     for line in lines:
-        values = (line.computed, *line.ends, line.measured)
-        numbers = ("" if value is None else f"{value:.4g}" for value in values)
-        rows.append((line.quantity, line.fill, *numbers, line.unit, words[line.agrees]))
+        verdict, why = line.judged
+        ends = (end if np.isfinite(end) else None for end in line.demand)
+        low, high, *others = map(_cell, (*ends, line.measured, line.sample, line.computed))
+        rows.append((line.quantity, line.fill, low, high, line.unit, *others, verdict.value, why))
     return tables.of_cells(names, rows)
 
 
 def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
-    """Return the sheet as the JSON document."""
-    listed = [line.agrees for line in lines if line.agrees is not None]
-    return {
-        "accepted": all(listed),
-        "measured": len(listed),
-        "lines": [
+    """Return the sheet as the JSON document; ``accepted`` where every demand that was measured is shown."""
+    judged = [line.agrees for line in lines if line.agrees is not None]
+    rows = []
+    for line in lines:
+        verdict, why = line.judged
+        low, high = (float(end) if np.isfinite(end) else None for end in line.demand)
+        rows.append(
             {
-                **row_of(line, "quantity fill unit computed"),
-                "low": line.ends[0],
-                "high": line.ends[1] if line.ends[1] < float("inf") else None,
+                **row_of(line, "quantity fill unit computed computed_low computed_high"),
+                "low": low,
+                "high": high,
                 **row_of(line, "measured sample agrees"),
+                "verdict": verdict.value,
+                "why": why or None,
             }
-            for line in lines
-        ],
-    }
+        )
+    return {"accepted": all(judged), "measured": len(judged), "lines": rows}
 
 
 def history_figure(study: DesignStudy, ax: "style.Axes | None" = None) -> "style.Figure":

@@ -27,9 +27,11 @@ N_MM, GRAM_CM3 = units.factor("N/mm", "stiffness"), units.factor("g/cm3", "densi
 def quotation(study: MachineSheet, trial: Verified | None = None) -> list[dict[str, str]]:
     """Return what a maker asks for, 'quantity' and 'value', of a MachineSheet: without an order the machine.
 
-    What one set of leaf springs cannot make, and both drives, come first.
+    The condition under which the bowl holds comes first, then what one set of leaf springs cannot make, and
+    both drives.
     """
-    rows = [("drive", words)] if (words := two_axis(study.bowl.drive)) else []
+    rows = [(trial.status, trial.condition)] if trial is not None and trial.condition else []
+    rows += [("drive", words)] if (words := two_axis(study.bowl.drive)) else []
     if study.mismatch is not None:
         wanted, made = study.mismatch.wanted.text, study.mismatch.machine.text
         rows += [("drive asked for", wanted), ("these springs make", made)]

@@ -1,4 +1,4 @@
-"""The mark on every drawing and solid of a bowl whose trial falls short."""
+"""The mark on every drawing and solid of a bowl whose trial falls short, or holds under a condition."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MARK = "FALLS SHORT - not for manufacture"
+CONDITION_MARK = Status.HOLDS_SINGLE.upper()  # of what may be built, and holds under a condition only
 MARK_COLOUR, STRENGTH = "#d40000", 0.45  # of the letters, and how much they hide [1]
 DIAGONAL_SHARE, SIDE_SHARE = 0.75, 0.88  # [1] of the diagonal and the longer side that a mark takes at most
 STEP_HEAD = re.compile(rb"(FILE_DESCRIPTION\(\('[^']*)'")
@@ -31,10 +32,13 @@ class SheetFields:
 
 
 def of_trial(trial: Verified | None, mark: str | None = None) -> str:
-    """Return the mark of a bowl whose trial falls short, or the one given in its place; '' of any other."""
-    if mark is not None:
-        return mark
-    return MARK if trial is not None and trial.status == Status.FALLS_SHORT else ""
+    """Return the mark of a bowl whose trial falls short or holds under a condition; '' of any other.
+
+    A ``mark`` that is given stands in its place.
+    """
+    if mark is not None or trial is None:
+        return mark or ""
+    return {Status.FALLS_SHORT: MARK, Status.HOLDS_SINGLE: CONDITION_MARK}.get(Status(trial.status), "")
 
 
 def marked_title(text: str, mark: str) -> str:
@@ -43,9 +47,12 @@ def marked_title(text: str, mark: str) -> str:
 
 
 def file_name(name: str, mark: str) -> str:
-    """Return the name of a solid's file, 'bowl_falls_short.stl' with a mark: all that a slicer shows."""
+    """Return the name of a solid's file: 'bowl_falls_short.stl' of what falls short, all that a slicer shows.
+
+    What holds under a condition keeps its name: it may be built.
+    """
     path = PurePosixPath(name)
-    return f"{path.stem}_falls_short{path.suffix}" if mark else name
+    return name if mark in ("", CONDITION_MARK) else f"{path.stem}_falls_short{path.suffix}"
 
 
 def mark_step(data: bytes, mark: str) -> bytes:

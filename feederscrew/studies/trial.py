@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import shank_remarks, unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
@@ -24,17 +26,33 @@ from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import Shares, check_wanted, the_shares
 from feederscrew.studies.rate import shares as arriving
+from feederscrew.studies.tooling import listed
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.trial import course, result
+from feederscrew.trial.fills import FedRow, FillLevel
+from feederscrew.trial.long_ride import long_ride
 from feederscrew.trial.part_poses import MAX_START_PLAY_M
 from feederscrew.trial.queue import MEAN_GAP_SHARE, QueuePlan, queue_of
 from feederscrew.trial.result import Outlet, TrialRun
 from feederscrew.trial.shape import solid_of
+from feederscrew.trial.wanted import states_of_name, wanted_rows
 
 ENGINE = "feeder's own kernel"
 QUEUE_SECONDS = 10.0  # [s] for which a queue is followed
 PARTS = 200  # parts one at a time
 FEW = 60  # ... where they only tell what a queue meets
+
+
+@dataclass(frozen=True)
+class TrialQueue:
+    """The queue of a design at one fill, run again: parts as far apart, in the mix that a ride leaves."""
+
+    fill: str  # 'low', 'normal' or 'high'
+    parts: int | None = None  # so many at once; None for as many as the design has
+    wanted: str = (
+        ""  # what counts as good, as a bowl file has it: 'A@188', 'hanging'; '' for what leaves most
+    )
+    up: str | Sequence[str] = ()  # aspects that count as it, whatever their heading: 'A,B'
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +124,7 @@ def trial(
     *,
     parts: int | None = None,
     landing: int | None = None,
-    queue: int | None = None,
+    queue: int | TrialQueue | None = None,
     poured: bool = False,
     seconds: Quantity = QUEUE_SECONDS,
     frames: int = 0,
@@ -132,8 +150,8 @@ def trial(
         One at a time; 200 without it, 60 beside a queue.
     landing : int, optional
         So many fall onto the moving track as well.
-    queue : int, optional
-        So many at once, which push each other.
+    queue : int or TrialQueue, optional
+        So many at once, which push each other; or the queue of a design again.
     poured : bool
         Whether these fall onto the track in any attitude; in a row without it.
     seconds : str or float [s]
@@ -168,8 +186,10 @@ def trial(
     part, aspect = arguments.a_part(part), arguments.an_aspect(aspect)
     driven = arguments.some_bowls(bowls)
     aspect_shares = the_shares(aspect_shares)
-    counts = {"parts": parts, "landing": landing, "queue": queue}
-    parts, landing, queue = (arguments.count(name, value) for name, value in counts.items())
+    again = queue if isinstance(queue, TrialQueue) else None
+    asked = queue.parts if isinstance(queue, TrialQueue) else queue
+    counts = {"parts": parts, "landing": landing, "queue": asked}
+    parts, landing, queued = (arguments.count(name, value) for name, value in counts.items())
     followed = arguments.amount("seconds", seconds, "time", 0.0)
     seed, jobs = arguments.whole("seed", seed, 0), arguments.whole("jobs", jobs)
     solid_of(part)  # refuses a part without a surface before anything else
@@ -178,9 +198,14 @@ def trial(
         aspect_shares = arriving(part, driven[0], rule=rule)
     aspects = aspect_shares.aspects
     arguments.a_rule(rule, aspects)
-    count = parts or (FEW if queue else PARTS)
+    count = parts or (PARTS if queue is None else FEW)
     launch = LAUNCH if aspects.recommended is None else aspects.recommended.launch
-    crowd = None if queue is None else QueuePlan(queue, followed, None if poured else MEAN_GAP_SHARE, frames)
+    level = None if again is None else check.choice("queue.fill", again.fill, FillLevel)
+    if level is not None and poured:
+        raise ArgumentError("poured", "goes with no fill", "leave one of them out")
+    crowd = (
+        None if queued is None else QueuePlan(queued, followed, None if poured else MEAN_GAP_SHARE, frames)
+    )
     run = RunSettings(seed, jobs, progress)
     runs: list[TrialRun] = []
     stopped = False
@@ -226,7 +251,12 @@ def trial(
             try:
                 if landing is not None:
                     more["landing"] = course.landing(*own, launch=launch, parts=landing, run=run)
-                if crowd and not any(result.partial for result in more.values()):
+                if any(result.partial for result in more.values()):
+                    pass
+                elif again is not None and level is not None:
+                    plan = _FillPlan(level, queued, followed, frames, again.wanted, listed(again.up))
+                    more |= _follow_fill(part, bowl, aspects, oriented, shares, single_parts, plan, run)
+                elif crowd is not None:
                     more["queue"] = queue_of(*own, shares, crowd, run)
             except KeyboardInterrupt:
                 stopped = True
@@ -234,6 +264,57 @@ def trial(
         if stopped or runs[-1].partial:
             break
     return TrialStudy(part, aspects, rule, seed, tuple(runs), stopped, measured)
+
+
+@dataclass(frozen=True)
+class _FillPlan:
+    """What is asked of a queue at a fill."""
+
+    level: FillLevel
+    parts: int | None
+    seconds: float  # [s]
+    frames: int
+    wanted: str
+    up: tuple[str, ...]
+
+
+def _follow_fill(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    oriented: stream.Orientations,
+    shares: Floats,
+    single_parts: course.Course,
+    plan: _FillPlan,
+    run: RunSettings,
+) -> dict[str, Any]:
+    """Follow the queue of a fill as ``feeder design`` does: what it did, and how much of it was wanted.
+
+    Raises ArgumentError if no orientation of the wanted name can leave, KeyboardInterrupt if the user stops
+    it before the first period is done.
+    """
+    name = plan.wanted
+    if not name:  # the orientation in which most of the single parts have left
+        alone = TrialRun(bowl, throw_number(bowl), oriented, shares, single_parts)
+        by_rule = int(np.argmax((shares[:, None] * oriented.leaving).sum(axis=0)))
+        row = by_rule if alone.main_row is None else alone.main_row
+        name = oriented.states[row].name
+    try:
+        states, any_heading = states_of_name(oriented, shares, name, plan.up)
+    except ValueError as error:
+        mend = "name one of those in the table of feeder trial without a fill"
+        raise ArgumentError("queue.wanted", str(error), mend) from error
+    ride = long_ride(part, bowl, oriented.lying, shares, wanted_rows(oriented, states), run)
+    row_of_parts = FedRow(part, bowl, aspects, oriented, ride.arriving, states, any_heading, ride.entering)
+    queue = row_of_parts.queue(plan.level, plan.seconds, run.seed, parts=plan.parts, frames=plan.frames)
+    try:
+        queue.follow(plan.seconds, run.tell)
+    except KeyboardInterrupt:
+        if not queue.periods:
+            raise
+    outcome = queue.result(partial=queue.periods < queue.periods_in(plan.seconds))
+    filled = row_of_parts.count(plan.level, outcome)
+    return {"queue": outcome, "filled": filled, "filled_wanted": name}
 
 
 def at_outlet(counts: str | PathLike[str], part: Part) -> profiles.CountFile:

@@ -194,6 +194,8 @@ class QueuedParts:
     pressure: Floats  # (D,) [N] greatest mean force of a period on a part that stands at a device
     depth: float  # [m] the deepest that anything was in anything
     partial: bool  # stopped by the user: of the seconds until then
+    # (M, D + 1) where those that were returned fell: on the bare track before the devices, at each device
+    returned_at: Ints = field(default_factory=lambda: np.zeros((0, 0), int))
     relieved: int = 0  # of those returned, backed up at a pressure break and pushed off there
     # (F, N, 7) position [m] and attitude w x y z (principal axes to bowl), evenly over the time; NaN of a
     # part that waits to enter
@@ -303,7 +305,7 @@ class PartsQueue:
         self.waiting_parts, self.periods = list(range(count)), 0
         # What has been counted.
         self.left = np.zeros((len(self.orientations), len(poses) + 1, len(aspects.names) + 1), int)
-        self.returned_by_entry = np.zeros(len(self.orientations), int)
+        self.returned_at = np.zeros((len(self.orientations), len(self.windows) + 1), int)
         self.returned = self.jams = self.climbs = self.relieved = self.whole = self.max_on_track = 0
         self.pressure, self.depth = np.zeros(len(self.windows)), 0.0
         self.ways: list[float] = []
@@ -454,12 +456,12 @@ class PartsQueue:
             self.left[self.entry_rows[n], orientation, aspect] += 1
             self._send_back(n)
         elif has_fallen or front < self.track.start / self.part_in_bowl.length:
-            self._send_back(n, is_returned=True)
+            self._send_back(n, fell_at=front)
         elif place - self.mark[n] > STANDING_WAY:
             self.mark[n], self.since[n] = place, self.time
         elif self.time - self.since[n] >= BACKED_UP_SECONDS and self._is_pushed_off(n, rear, front):
             self.relieved += 1
-            self._send_back(n, is_returned=True)
+            self._send_back(n, fell_at=front)
         else:
             # It stands: what pushes it, and whether it is what holds the others up.
             at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
@@ -490,10 +492,16 @@ class PartsQueue:
         across = float(radius - np.hypot(x, radius - y).min())
         return across * self.part_in_bowl.length > min(limits)
 
-    def _send_back(self, n: int, *, is_returned: bool = False) -> None:
-        """Take a part off the track, as one that fell back into the bowl or not; it waits to enter again."""
-        self.returned += is_returned
-        self.returned_by_entry[self.entry_rows[n]] += is_returned
+    def _send_back(self, n: int, *, fell_at: float | None = None) -> None:
+        """Take a part off the track; it waits to enter again.
+
+        ``fell_at`` is where the front of one that fell back into the bowl was along the wall: that counts at
+        the last device it has come to.
+        """
+        if fell_at is not None:
+            self.returned += 1
+            device = int(np.searchsorted(self.windows[:, 0], fell_at))  # 0 before the first
+            self.returned_at[self.entry_rows[n], device] += 1
         self.crowd.take(n)
         self.waiting_parts.append(n)
 
@@ -517,7 +525,8 @@ class PartsQueue:
             delivered=self.whole + part - self.first_share if counted_seconds else 0.0,
             whole=check.frozen(self.left.sum(axis=0)),
             left_by_entry=check.frozen(np.array(self.left)),
-            returned_by_entry=check.frozen(np.array(self.returned_by_entry)),
+            returned_by_entry=check.frozen(self.returned_at.sum(axis=1)),
+            returned_at=check.frozen(np.array(self.returned_at)),
             returned=self.returned,
             jams=self.jams,
             climbs=self.climbs,

@@ -23,6 +23,7 @@ from feederscrew.tooling.falling import too_near
 from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.trial import course
 from feederscrew.trial.course import Landing
+from feederscrew.trial.fills import FilledQueue
 from feederscrew.trial.queue import QueuedParts
 
 CLEAR_MARGIN_M = 2.5e-4  # [m] margin from which a static verdict should hold
@@ -40,6 +41,8 @@ class TrialRun:
     course: course.Course
     queue: QueuedParts | None = None  # None where it was not asked for
     landing: Landing | None = None  # the same
+    filled_wanted: str = ""  # name of the orientation that counts as good there
+    filled: FilledQueue | None = None  # what the queue did at a fill of ``feeder design``; None of others
 
     @property
     def partial(self) -> bool:

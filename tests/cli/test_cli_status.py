@@ -42,6 +42,7 @@ aspects NUT --surface-exponent -11 | '--surface-exponent': -11.0 is not in the r
 tooling NUT --aspect A --heading 31 --rule csa | --heading
 trial NUT --aspect Z --rule csa | there is no aspect 'Z' - choose one of
 trial NUT --poured | --poured is for a queue - give --queue N as well
+trial NUT --poured --fill low | --poured goes with no fill - leave one of them out
 trial NUT --with counts.csv | --with is for a queue - give --queue N as well
 trial NUT --amplitude '9 m' | --amplitude: drive.amplitude: '9 m' is out of range - give 0 mm to 20 mm
 design NUT --target 30/min --up Z --rule csa | --up

@@ -13,14 +13,16 @@ import pytest
 from design_counts import design_study, short_trial
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import exploring, loop, nearest, proposals, queues, record, short_trials, texts
-from feederscrew.designing.findings import End, Fault, FaultKind, LeavingPose, PoseKind
-from feederscrew.designing.record import DesignRequest, FilledQueue, RobustRun
+from feederscrew.designing import exploring, loop, nearest, proposals, queues, short_trials, texts
+from feederscrew.designing.findings import End, Fault, FaultKind
+from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.designing.search import Search
 from feederscrew.studies.rate import Shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.trial.course import Fate
-from feederscrew.trial.long_ride import RideOfTrack
+from feederscrew.trial.fills import FilledQueue, LeavingPose, PoseKind
+from feederscrew.trial.long_ride import LongRide, RideOfTrack
+from feederscrew.trial.wanted import wanted_rows
 
 SEEDS = range(3)
 
@@ -60,7 +62,7 @@ def by_chance(monkeypatch, block):
     def short(search, bowl, ways, weights, proposal):
         rng = chance(seed["of"], proposal.chain, bowl.drive.amplitude)
         rows, states = np.arange(len(ways.lying)), proposal.states(ways)
-        wanted = short_trials.wanted_rows(ways, states)
+        wanted = wanted_rows(ways, states)
         fails = rng.random() < 0.6
         counts, ends, turns = np.zeros((3, len(rows)), int), [], []
         for row in rows:
@@ -98,7 +100,7 @@ def by_chance(monkeypatch, block):
     def follow_fills(line, *, whole):
         rng = chance(seed["of"], line.bowl.drive.amplitude, [device.text for device in line.bowl.devices])
         found = []
-        for name, gaps in queues.FILLS:
+        for name in queues.FILLS:
             wrong, jams = int(rng.choice([0, 0, 30])), int(rng.choice([0, 0, 0, 1]))
             other = line.orientations.lying[int(rng.integers(len(line.orientations.lying)))]
             poses = (
@@ -110,10 +112,10 @@ def by_chance(monkeypatch, block):
             found.append(
                 FilledQueue(
                     name,
-                    gaps,
+                    name.gaps,
                     12,
-                    60.0,
-                    60.0,
+                    300.0,
+                    300.0,
                     float(right),
                     right,
                     right + wrong,
@@ -130,7 +132,7 @@ def by_chance(monkeypatch, block):
         ride = RideOfTrack(
             tuple(one.name for one in lying), none, none, none.astype(bool), none * 1.0, none * 1.0
         )
-        return record.LongRide(ride, shares, shares, tuple(wanted))
+        return LongRide(ride, shares, shares, tuple(wanted))
 
     known = {}
 
@@ -148,7 +150,6 @@ def by_chance(monkeypatch, block):
     monkeypatch.setattr(loop, "long_ride", long_ride)
     monkeypatch.setattr(loop.hazards, "risks", lambda *_, **__: ())
     monkeypatch.setattr(queues, "follow_fills", follow_fills)
-    monkeypatch.setattr(queues, "follow_longer", lambda line, study: study.queues)
     monkeypatch.setattr(exploring, "entry_shares", lambda *_: shares)
 
     def decisions(number):

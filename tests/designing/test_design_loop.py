@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import exploring, families, loop, proposals, queues, record, short_trials
+from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.designing.short_trials import robust_run
 from feederscrew.dropping.ensemble import wilson
@@ -17,8 +17,10 @@ from feederscrew.output import designs
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
-from feederscrew.trial import long_ride
+from feederscrew.studies.trial import TrialQueue, trial
+from feederscrew.trial import fills, long_ride
 from feederscrew.trial.long_ride import LEFT, RideOfTrack
+from feederscrew.trial.wanted import states_of_name
 
 NAMES = ("A@0", "A@180", "B@0")
 CUBE = shapes.part(shapes.box(10, 10, 10))
@@ -35,7 +37,7 @@ def ridden(entering, wanted, *changes):
         ended[places] = becomes
     ride = RideOfTrack(NAMES, entered, ended, np.zeros(30, bool), np.full(30, 0.45), np.ones(30))
     entering = np.array(entering)
-    return record.LongRide(ride, entering, ride.arriving_shares(entering), wanted)
+    return long_ride.LongRide(ride, entering, ride.arriving_shares(entering), wanted)
 
 
 def test_each_orientation_says_how_many_stay_turn_and_leave():
@@ -80,9 +82,9 @@ def test_those_that_turn_ride_again(monkeypatch):
         ended = np.where(entered == 1, 0, entered)
         return RideOfTrack(tuple("PQRST"), entered, ended, ones < 0.0, ones, ones)
 
-    monkeypatch.setattr(record, "ride_of_track", ride)
+    monkeypatch.setattr(long_ride, "ride_of_track", ride)
     run = DesignRequest(0.5, seed=7).run
-    seen = record.long_ride(None, None, (), np.array([0.2, 0.6, 0.04, 0.04, 0.12]), [3], run)
+    seen = long_ride.long_ride(None, None, (), np.array([0.2, 0.6, 0.04, 0.04, 0.12]), [3], run)
     assert asked == [((1, 0, 4, 3), 6, 7), ((1,), 6, 8)]
     assert seen.ride.counts[1].tolist() == [12, 0, 0, 0, 0, 0]
     assert seen.arriving == pytest.approx([0.8, 0.0, 0.04, 0.04, 0.12])
@@ -91,7 +93,7 @@ def test_those_that_turn_ride_again(monkeypatch):
 def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypatch):
     """Apart parts come as the ride has made them, touching as they entered; draws are half of each."""
     seen, drawn = [], []
-    first, queues_filled = record.long_ride, queues.follow_fills
+    first, queues_filled = long_ride.long_ride, queues.follow_fills
 
     def ride(*values):
         found = first(*values)
@@ -116,13 +118,13 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
         assert np.array_equal(apart, ride.arriving) and np.array_equal(touching, ride.entering)
     assert seen and drawn == [pytest.approx(0.5 * (ride.arriving + ride.entering))] * len(drawn) != []
     (row,) = designs.document(found)["long_ride"][:1]
-    assert row["parts"] >= record.RIDING_PARTS and row["stays"] + row["left"] <= row["parts"]
+    assert row["parts"] >= long_ride.RIDING_PARTS and row["stays"] + row["left"] <= row["parts"]
 
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
-    monkeypatch.setattr(queues, "TOUCHING_PARTS", 3)
-    monkeypatch.setattr(queues, "FILL_SECONDS", 1.0)
+    monkeypatch.setattr(fills, "TOUCHING_PARTS", 3)
+    monkeypatch.setattr(loop, "longest_time", lambda target: 1.0)
     monkeypatch.setattr(long_ride, "RIDE_M", 0.05)
     monkeypatch.setattr(exploring, "entry_shares", lambda *_: SHARES)
 
@@ -143,7 +145,7 @@ def stopping(word):
     ("trial 1", "0 short trials made", False),
     ("draws:", "no draw was tried; no queue was followed", True),
     ("queue:", "2 of 2 draws sort, 2 are asked for; no queue was followed", True),
-    ("at normal fill", "2 of 2 draws sort, 2 are asked for; the queue at low fill was", True),
+    ("at normal fill", "2 of 2 draws sort, 2 are asked for; the queue at high fill was", True),
 ])  # fmt: skip
 def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
     said, told = stopping(word)
@@ -197,3 +199,33 @@ def test_every_command_refuses_an_aspect_alike(line, run):
     done = run(*line.split(), "cube.stl", "--aspect", "Q", "--rule", "csa")
     assert done.exit_code == 2 and done.stdout == ""
     assert "Error: --aspect of cube.stl: there is no aspect 'Q' - choose one of A" in done.stderr
+
+
+def test_a_trial_at_one_fill_is_the_queue_of_the_design(monkeypatch):
+    """The same gaps, the same arrivals, the same that is wanted: the same parts leave."""
+    rows = []
+    follow = queues.follow_fills
+    monkeypatch.setattr(
+        queues, "follow_fills", lambda row, *, whole: rows.append(row) or follow(row, whole=whole)
+    )
+    request = replace(REQUEST, up=("A",))
+    found = loop.design(CUBE, bowls.default(), frozenset(), request, shares=SHARES, with_nearest=False)
+    level = fills.FillLevel.HIGH
+    proved = next(queue for queue in found.queues if queue.fill == level)
+    own = {"aspect_shares": SHARES, "rule": "csa", "parts": 1, "seconds": proved.seconds}
+    again = TrialQueue("high", wanted=found.wanted, up=request.up)
+    run = trial(CUBE, found.bowl, queue=again, **own).runs[0]
+    assert run.filled == proved and run.filled.parts == level.parts == run.queue.parts
+    assert (rows[-1].states, rows[-1].any_heading) == states_of_name(
+        run.orientations, run.shares, found.wanted, request.up
+    )
+    fewer = trial(CUBE, found.bowl, queue=TrialQueue("low", 2), **own | {"seconds": 0.2}).runs[0]
+    assert (fewer.filled.fill, fewer.filled.parts, fewer.filled_wanted) == ("low", 2, "A@0")
+    for wrong, poured in (
+        (("full",), False),
+        (("low",), True),
+        (("low", 2, "Q@3"), False),
+        (("low", 0), False),
+    ):
+        with pytest.raises(FeederError):
+            trial(CUBE, found.bowl, queue=TrialQueue(*wrong), poured=poured, **own)

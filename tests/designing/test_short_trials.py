@@ -18,7 +18,7 @@ from scipy import stats
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.designing import exploring, proposals, short_trials, texts
-from feederscrew.designing.findings import LeavingPose, Move, MoveKind, PoseKind
+from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.proposals import PULSE_RESERVE, PULSE_STEP_S, SHORTEST_PULSE_STEPS, lengthen_pulse
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.search import Search
@@ -32,6 +32,8 @@ from feederscrew.tooling.devices.pneumatics import PULSE
 from feederscrew.tooling.isolating.chain import Cut, judge_cut
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 from feederscrew.trial.course import Fate
+from feederscrew.trial.fills import LeavingPose, PoseKind
+from feederscrew.trial.wanted import equivalent_rows, wanted_states
 
 DRAWS = 1500
 MM = 1e-3
@@ -254,10 +256,10 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
 
 def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_stop_of_it(block, rows):
     ways, along, across = rows
-    assert proposals.equivalent_rows(ways.lying, along, ()) == ()
-    same = proposals.equivalent_rows(ways.lying, along, ("a",))
+    assert equivalent_rows(ways.lying, along, ()) == ()
+    same = equivalent_rows(ways.lying, along, ("a",))
     assert set(same) == {k for k, one in enumerate(ways.lying) if one.aspect == "A"} - {along}
-    states = short_trials.wanted_states(ways, (along, *same))
+    states = wanted_states(ways, (along, *same))
     assert states[0] == ways.leaves_as[along] and ways.leaves_as[across] in states
     shares = np.arange(1.0, len(ways.lying) + 1.0)
     assert short_trials.gain(ways, shares, states) == pytest.approx(shares[[along, *same]].sum())
@@ -266,7 +268,7 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_sto
         seen = short_trials.try_parts(block.part, BOWL, ways, shares, wanted, **one)
         assert (list(seen.right), list(seen.wrong)) == (right, [1 - count for count in right])
         assert bool(short_trials.find_faults(seen)) == (0 in right)
-    states = short_trials.wanted_states(ways, (along, across))
+    states = wanted_states(ways, (along, across))
     lost = short_trial(ways, {along}, row=along, states=states)
     assert not short_trials.find_faults(lost)
     assert short_trials.find_faults(replace(lost, right=0 * lost.right))  # the wanted one itself has to leave

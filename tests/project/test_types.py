@@ -46,6 +46,7 @@ fs.size_bowl(part, 1.0, "A", bowl=bowl)
 searched = fs.ToolingSearch(seconds="2 min", vary=False)
 fs.tooling(part, bowl, "A", margin="0.1 mm", purity=0.98, without=["wiper"], search=searched)
 fs.trial(part, bowl, "A", parts=40, queue=60, seconds=20, progress=print)
+fs.trial(part, bowl, queue=fs.TrialQueue("high", wanted="A@188", up=["A"]), seconds="1 min")
 study = fs.design(part, "60/min", bowl, up="B,C", diameter=("200 mm", 0.4), search=fs.DesignSearch(draws=10))
 designed: fs.Bowl | None = study.bowl
 family = fs.design([part, part], target=1.0, jobs=2)

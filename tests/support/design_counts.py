@@ -6,9 +6,10 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import short_trials
-from feederscrew.designing.findings import End, Fault, FaultKind, LeavingPose, PoseKind
-from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.designing.findings import End, Fault, FaultKind
+from feederscrew.designing.record import DesignRequest, DesignStudy, RobustRun
 from feederscrew.trial.course import Fate
+from feederscrew.trial.fills import FilledQueue, LeavingPose, PoseKind
 
 TURNED_ON_TRACK = End(Fate.TURNED)
 
@@ -48,12 +49,11 @@ def orientation(name):
     return LeavingPose(PoseKind.ORIENTATION, name.partition("@")[0], name)
 
 
-def queue(right=45, left=None, returned=5, jams=0, fill="normal", gaps=0.2, **more):
-    """One fill, followed for a minute; what left is what was delivered a minute."""
+def queue(right=200, left=None, returned=0, jams=0, fill="normal", gaps=0.2, **more):
+    """One fill, followed for 200 s, in which as many parts left as were delivered."""
     left = right if left is None else left
-    return replace(
-        FilledQueue(fill, gaps, 12, 60.0, 60.0, float(left), right, left, returned, jams, 0), **more
-    )
+    made = FilledQueue(fill, gaps, 12, 200.0, 200.0, float(left), right, left, returned, jams, 0)
+    return replace(made, **more)
 
 
 def design_study(part, *queues, target=40.0, held=20, bowl=None, **more):

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Floats, Ints
+from feederscrew.designing.evidence import share_at_least
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, tables
@@ -15,6 +16,7 @@ from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.trial import ENGINE, TrialStudy
 from feederscrew.trial import course
 from feederscrew.trial.course import Fate
+from feederscrew.trial.fills import FilledQueue
 from feederscrew.trial.result import Outlet, TrialRun
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
@@ -97,6 +99,27 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
         "matrix": run.matrix,
         "landing": landing,
         "queue": queue,
+        "fill": None if run.filled is None else {"wanted": run.filled_wanted} | filled_entry(run.filled),
+    }
+
+
+def filled_entry(filled: FilledQueue) -> dict[str, Any]:
+    """Return what a queue did at one fill as a dict: rate and purity of wanted parts, with their bounds.
+
+    Rates are None of one that was stopped. The purity has its one-sided lower bound (95 %).
+    """
+    rates: list[float | None] = [rate / PER_MINUTE for rate in (filled.rate, *filled.ends)]
+    purity = filled.right / filled.left if filled.left else None
+    shares: list[float | None] = [purity, share_at_least(filled.right, filled.left)]
+    names = ("delivered_per_minute", "delivered_low", "delivered_high", "purity", "purity_low")
+    values = [None] * len(names) if filled.partial else [*rates, *shares]
+    instead = (f"{pose.text}: {count} of {filled.left}" for pose, count in filled.left_instead)
+    return {
+        **row_of(filled, "fill free_way=gaps parts seconds"),
+        **dict(zip(names, values, strict=True)),
+        **row_of(filled, "left right returned jams climbs"),
+        "left_instead": ", ".join(instead),
+        "partial": filled.partial,
     }
 
 
@@ -218,6 +241,8 @@ def summary(study: TrialStudy) -> Iterator[str]:
                 f"{100.0 * queued.touching:.3g} % pushed, "
                 f"up to {force:.3g} mN on a part that stands at a device"
             )
+            if run.filled is not None:
+                yield f"{run.filled_wanted} {filled_text(run.filled)}"
             # what left by aspect beside each column that was measured
             if left.columns and not left.counts.any():
                 yield "no part has left the queue yet: there is nothing to set beside what was measured"
@@ -232,6 +257,18 @@ def summary(study: TrialStudy) -> Iterator[str]:
                 )
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
+
+
+def filled_text(filled: FilledQueue) -> str:
+    """Return what a queue did at one fill in a sentence."""
+    low, high = (end / PER_MINUTE for end in filled.ends)
+    shown = 100.0 * share_at_least(filled.right, filled.left)
+    instead = ", ".join(f"{pose.text}: {count}" for pose, count in filled.left_instead[:3])
+    return (
+        f"at {filled.fill} fill: {filled.rate / PER_MINUTE:.4g} a minute (95 % interval {low:.4g} to "
+        f"{high:.4g}); {filled.right} of {filled.left} left as wanted, lower bound (95 %, one-sided) "
+        f"{shown:.4g} %{f'; what left instead: {instead}' if instead else ''}"
+    )
 
 
 def engine(study: TrialStudy) -> Iterator[str]:

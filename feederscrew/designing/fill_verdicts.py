@@ -1,0 +1,190 @@
+"""What the queue at one fill has shown: it holds, is refused, or is open; and how fills differ.
+
+A design promises what its worst fill brings. So each fill is judged by its own parts alone: nothing that a
+cleaner fill does improves the figure.
+"""
+
+import enum
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from feederscrew.bowl.verified import PURE, RATE_KEPT, SHOWN_PURITY
+from feederscrew.designing import evidence
+from feederscrew.heavy import heavy
+from feederscrew.trial.fills import BARE_TRACK, FilledQueue, LeavingPose, PoseKind
+
+stats = heavy("scipy.stats")
+
+FIRST_LOOK_S = 15.0  # [s] of a fill before anything is said to hold, and in which the track has filled
+SLOW_AFTER_S = 20.0  # [s] of a fill before it is said to be too slow: few parts have come until then
+REFUSED_CONFIDENCE = 0.99  # [1] one-sided, that a fill is less pure than is asked for
+SETTLING_PARTS = 300  # good parts of the target in which a fill is settled, or is not at all
+SHORTEST_LIMIT_S, LONGEST_LIMIT_S = 120.0, 3600.0  # [s] between which that time is
+DIFFERENCE_RISK = 0.01  # [1] chance at which fills that are alike would differ as much
+
+
+class FillState(enum.Enum):
+    """What a fill has shown."""
+
+    OPEN = enum.auto()  # more of its parts decide it
+    HOLDS = enum.auto()
+    REFUSED = enum.auto()
+
+
+def longest_time(target: float) -> float:
+    """Return for how long [s] a fill is followed at the most, where ``target`` [1/s] is asked for.
+
+    In that time it brings ``SETTLING_PARTS`` at the target: 10 min at 30 a minute.
+    """
+    return min(max(SETTLING_PARTS / target, SHORTEST_LIMIT_S), LONGEST_LIMIT_S)
+
+
+def shows_rate(queue: FilledQueue, least_rate: float) -> bool:
+    """Return whether the lower end of the rate's 95 % interval is ``least_rate`` [1/s] or more."""
+    return queue.ends[0] >= least_rate
+
+
+def shows_purity(queue: FilledQueue) -> bool:
+    """Return whether ``PURE`` was seen at a fill, and a purity above ``SHOWN_PURITY`` is shown."""
+    return _is_pure(queue.right, queue.left)
+
+
+def _is_pure(right: int, left: int) -> bool:
+    return right > 0 and right >= PURE * left and evidence.share_at_least(right, left) > SHOWN_PURITY
+
+
+def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillState:
+    """Return what the queue at a fill has shown.
+
+    It holds where nothing has jammed, the lower end of its rate is the least that is asked for, at least
+    ``PURE`` of what left is right, and the lower bound of that share (one-sided, 95 %) is above
+    ``SHOWN_PURITY``. It is refused where a part has jammed; where the upper end of the rate is less; where
+    the upper bound of the purity (one-sided, ``REFUSED_CONFIDENCE``) is below ``PURE``; and where so many
+    parts were wrong that it would not hold even if all others until the end were right.
+
+    Parameters
+    ----------
+    queue : FilledQueue
+    least_rate : float [1/s]
+        Wanted parts below which a fill does not hold.
+    longest : float [s]
+        For which it may be followed.
+
+    Returns
+    -------
+    FillState
+        Each look may err, and a fill is looked at many times: of fills that are 97 % pure about one in six
+        is taken for one that holds (docs/design.md).
+
+    References
+    ----------
+    A. Wald, "Sequential analysis", 1947, on plans that end as soon as the parts decide.
+    """
+    if queue.jams:
+        return FillState.REFUSED
+    if queue.seconds > 0.99 * SLOW_AFTER_S and queue.ends[1] < least_rate:
+        return FillState.REFUSED
+    wrong = queue.left - queue.right
+    if queue.left and evidence.share_at_most(queue.right, queue.left, REFUSED_CONFIDENCE) < PURE:
+        return FillState.REFUSED
+    coming = int(queue.left * max(longest / max(queue.seconds, 1e-300) - 1.0, 0.0))
+    if wrong and not _is_pure(queue.right + coming, queue.left + coming):
+        return FillState.REFUSED
+    if queue.seconds < 0.99 * FIRST_LOOK_S:
+        return FillState.OPEN
+    return FillState.HOLDS if shows_rate(queue, least_rate) and shows_purity(queue) else FillState.OPEN
+
+
+def least_of(target: float) -> float:
+    """Return the rate [1/s] that a fill must show where ``target`` is asked for."""
+    return RATE_KEPT * target
+
+
+# --- How fills differ ---
+
+
+class DifferenceKind(enum.StrEnum):
+    """In what a fill is worse than the others; files print the word."""
+
+    PURITY = "purity"  # of what leaves, less is right
+    YIELD = "yield"  # of what is offered, less leaves as wanted
+
+
+@dataclass(frozen=True)
+class FillDifference:
+    """A fill that is worse than the others by more than chance."""
+
+    fill: str
+    kind: DifferenceKind
+    right: int
+    total: int  # parts that left, or were offered
+    right_elsewhere: int  # at the other fills
+    total_elsewhere: int
+    chance: float  # [1] of such counts, or others as unlikely, if the fills were alike (Fisher, exact)
+    pose: LeavingPose | None = None  # in which most parts leave wrong there
+    count: int = 0  # of these parts; or of those that came as wanted and fell back at the device
+    device: str = ""  # name of the one that they pass, or at which they fall back; '' the bare track
+
+
+def differing_fills(queues: Sequence[FilledQueue], cuts: Iterable = ()) -> tuple[FillDifference, ...]:
+    """Return the fills that are worse than the others, with what goes wrong there.
+
+    Parameters
+    ----------
+    queues : sequence of FilledQueue
+        Of the fills.
+    cuts : iterable of Cut
+        The chain, which says what each device shall return.
+
+    Returns
+    -------
+    tuple of FillDifference
+        Of purity and of yield, where Fisher's exact test gives ``DIFFERENCE_RISK`` or less.
+
+    References
+    ----------
+    R. A. Fisher, "Statistical methods for research workers", 5th ed., 1934, sec. 21.02.
+    """
+    cuts = tuple(cuts)
+    differences = []
+    for queue in queues:
+        others = [other for other in queues if other is not queue]
+        for kind, name in ((DifferenceKind.PURITY, "left"), (DifferenceKind.YIELD, "offered")):
+            right, total = queue.right, getattr(queue, name)
+            elsewhere = sum(other.right for other in others), sum(getattr(other, name) for other in others)
+            if not total or not elsewhere[1] or right * elsewhere[1] >= elsewhere[0] * total:
+                continue
+            table = [[right, total - right], [elsewhere[0], elsewhere[1] - elsewhere[0]]]
+            chance = float(stats.fisher_exact(table).pvalue)
+            if chance > DIFFERENCE_RISK:
+                continue
+            if kind is DifferenceKind.PURITY:
+                pose, count = next(iter(queue.left_instead), (None, 0))
+                device = _passed_device(pose, cuts)
+            else:
+                pose, (device, count) = None, _worst_place(queue, others)
+            differences.append(
+                FillDifference(queue.fill, kind, right, total, *elsewhere, chance, pose, count, device)
+            )
+    return tuple(differences)
+
+
+def _passed_device(pose: LeavingPose | None, cuts: tuple) -> str:
+    """The name of the device that should return a pose: the last that does so, or the last of the chain."""
+    if pose is not None and pose.kind is PoseKind.ORIENTATION:
+        for cut in reversed(cuts):
+            if pose.name in cut.returns:
+                return cut.device.name
+    return cuts[-1].device.name if cuts else BARE_TRACK
+
+
+def _worst_place(queue: FilledQueue, others: Sequence[FilledQueue]) -> tuple[str, int]:
+    """Where parts that came as wanted fall back more often, of those offered, than at other fills."""
+    offered = sum(other.offered for other in others)
+
+    def excess(place: tuple[str, int]) -> float:
+        name, count = place
+        elsewhere = sum(dict(other.wanted_returned_at).get(name, 0) for other in others)
+        return count / queue.offered - elsewhere / max(offered, 1)
+
+    return max(queue.wanted_returned_at, key=excess, default=(BARE_TRACK, 0))

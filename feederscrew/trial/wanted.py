@@ -1,0 +1,100 @@
+"""Which orientations are wanted, or count as it, and in which poses they are found."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from feederscrew.arrays import Floats, Ints
+from feederscrew.bowl.verified import AMONG
+from feederscrew.mechanics.headings import rests
+from feederscrew.rates import stream
+from feederscrew.tooling.orientations import Hanging, Orientation
+
+
+def wanted_states(orientations: stream.Orientations, rows: Sequence[int] | Ints) -> tuple[int, ...]:
+    """Return the states in which some rows leave, the first one first.
+
+    The wanted row comes first; of others that count as it, those that are returned add no state.
+    """
+    further = [k for k in rows[1:] if orientations.leaving[k].max() > 0.5]
+    return tuple(dict.fromkeys(int(orientations.leaves_as[k]) for k in (rows[0], *further)))
+
+
+def wanted_rows(orientations: stream.Orientations, states: Sequence[int]) -> list[int]:
+    """Return the rows that leave in one of some states as the static rule says."""
+    return [k for k in range(len(orientations.lying)) if orientations.leaving[k, list(states)].sum() > 0.5]
+
+
+def aspects_at_any_heading(
+    orientations: Sequence[Orientation], row: int, up: Sequence[str], *, heading_given: bool = False
+) -> tuple[str, ...]:
+    """Return the aspects on which a part counts as a wanted row however it is turned.
+
+    Those of ``up``, the option `--up`, and the wanted row's own where it is round in plan and takes any
+    heading, unless one heading was asked for.
+    """
+    names, wanted = {name.strip().casefold() for name in up}, orientations[row]
+    aspects = [other.aspect for other in orientations if other.aspect.casefold() in names]
+    if not heading_given and rests(wanted.posture.outline, wanted.track.radius).rounded:
+        aspects.append(wanted.aspect)
+    return tuple(dict.fromkeys(aspects))
+
+
+def find_poses(
+    orientations: stream.Orientations, states: Sequence[int], any_heading: Sequence[str] = ()
+) -> tuple[Orientation, ...]:
+    """Return the poses, one a state, in which parts may be found.
+
+    At any heading of an aspect that counts beside another: those of the further ``states``, and those named.
+    """
+    own = [orientations.states[k] for k in states[1:]]
+    names = {pose.aspect for pose in own if not isinstance(pose, Hanging)} | set(any_heading)
+    return tuple(replace(pose, any_heading=pose.aspect in names) for pose in orientations.states)
+
+
+def equivalent_rows(orientations: Sequence[Orientation], row: int, up: Iterable[str]) -> tuple[int, ...]:
+    """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
+    named = {name.strip().casefold() for name in up}
+    return tuple(k for k, one in enumerate(orientations) if k != row and one.aspect.casefold() in named)
+
+
+def states_of_name(
+    orientations: stream.Orientations, shares: Floats, name: str, up: Sequence[str] = ()
+) -> tuple[tuple[int, ...], tuple[str, ...]]:
+    """Return what counts as wanted by the name that a bowl file gives it.
+
+    Parameters
+    ----------
+    orientations : stream.Orientations
+        M of them.
+    shares : (M,) array [1]
+        In which they come.
+    name : str
+        'A@188', 'hanging', 'A@0 or B': the first one is the wanted orientation or aspect, others are aspects
+        that count as it.
+    up : sequence of str
+        Further aspects that count as it, whatever their heading.
+
+    Returns
+    -------
+    tuple of int
+        The states in which parts leave as wanted, the first one first.
+    tuple of str
+        The aspects on which they do so at any heading.
+
+    Raises
+    ------
+    ValueError
+        If no orientation of that name can leave.
+    """
+    first, *more = (text.strip().casefold() for text in name.split(AMONG))
+    up = tuple(dict.fromkeys([*(aspect.strip() for aspect in up if aspect.strip()), *more]))
+    rows = [
+        k
+        for k, state in enumerate(orientations.leaves_as)
+        if first in (orientations.states[state].name.casefold(), orientations.states[state].aspect.casefold())
+    ]
+    if not rows:
+        raise ValueError(f"no orientation leaves as {name}")
+    row = max(rows, key=lambda k: shares[k])
+    states = wanted_states(orientations, (row, *equivalent_rows(orientations.lying, row, up)))
+    return states, aspects_at_any_heading(orientations.lying, row, up)
