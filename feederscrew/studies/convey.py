@@ -132,7 +132,19 @@ def convey(bowl: Bowl) -> ConveyStudy:
 
 
 def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
-    """Study a bowl along one of its keys."""
+    """Study a bowl along one of its keys.
+
+    Parameters
+    ----------
+    settings : sequence of Setting
+        Of the bowl.
+    span : KeyRange
+        Key and its values.
+
+    Returns
+    -------
+    ConveyCurve
+    """
     columns = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
     cells = {name: np.broadcast_to(values, len(span.values)) for name, values in columns.items()}
     return ConveyCurve("curve", span.key.name, (span.axis,), cells)
@@ -165,7 +177,18 @@ def velocity_map(
 ) -> ConveyMap:
     """Study a bowl over two of its keys.
 
-    ``drawn`` is what is drawn over the map: the bowl's own 'point', or its points along the 'radius'.
+    Parameters
+    ----------
+    settings : sequence of Setting
+        Of the bowl.
+    ranges : (KeyRange, KeyRange)
+        The two keys and their values.
+    drawn : str, optional
+        What is drawn over the map: the bowl's own 'point', or its points along the 'radius'.
+
+    Returns
+    -------
+    ConveyMap
     """
     first, second = ranges
 

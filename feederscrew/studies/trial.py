@@ -318,8 +318,22 @@ def _follow_fill(
 
 
 def at_outlet(counts: str | PathLike[str], part: Part) -> profiles.CountFile:
-    """Read what was measured of parts that left a bowl, a file of counts or shares by aspect or orientation.
+    """Read what was measured of parts that left a bowl.
 
-    Raises every fault of the file, each with its line.
+    Parameters
+    ----------
+    counts : str or path
+        File of counts or shares, by aspect or orientation.
+    part : Part
+        Whose aspects it names.
+
+    Returns
+    -------
+    CountFile
+
+    Raises
+    ------
+    Faults
+        Every fault of the file, each with its line.
     """
     return profiles.read_profile(counts, list(find(part).names))
