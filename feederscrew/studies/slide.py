@@ -104,7 +104,7 @@ def slide(
 
     References
     ----------
-    The thesis, eq. [4.27]; ``conveying.limits``.
+    ``mechanics.limits``.
     """
     bowl = arguments.a_bowl(bowl)
     betas = [arguments.amount("angles", angle, "angle") for angle in angles]
@@ -144,7 +144,7 @@ def sliding_map(
 
     References
     ----------
-    The thesis, eq. [4.27]; ``conveying.limits``.
+    The thesis, eq. [4.27]; ``mechanics.limits``.
     """
     direction = limits.plain(bowl).drive.direction
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))
