@@ -288,7 +288,7 @@ def _expanded(typed: str, suffixes: set[str], kind: str) -> list[str]:
 
 
 def _fits(path: Path, suffixes: set[str], kind: str) -> bool:
-    """Whether a file of a folder is meant: parts and bowls may lie side by side."""
+    """Return whether a file of a folder is meant: parts and bowls may lie side by side."""
     suffix = path.suffix.lower().removeprefix(".")
     if suffix not in suffixes or not _is_there(path) or path.name.startswith("."):
         return False
@@ -299,7 +299,7 @@ def _fits(path: Path, suffixes: set[str], kind: str) -> bool:
 
 
 def _is_there(path: Path) -> bool:
-    """Whether a file is there, or a link that leads nowhere, to be reported."""
+    """Return whether a file is there, or a link that leads nowhere, to be reported."""
     return path.is_file() or (path.is_symlink() and not path.exists())
 
 

@@ -184,7 +184,7 @@ def differences(
 
 
 def _same_device(a: object, b: object) -> bool:
-    """Whether two values are equal but for the digits that a file has."""
+    """Return whether two values are equal but for the digits that a file has."""
     if isinstance(a, tuple) and isinstance(b, tuple):
         return len(a) == len(b) and all(map(_same_device, a, b))
     if isinstance(a, float | int) and isinstance(b, float | int):

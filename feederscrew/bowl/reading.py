@@ -54,12 +54,12 @@ class Setting:
 
     @property
     def size(self) -> Any:
-        """What the field of the record holds [SI], of a key that is no word."""
+        """Return what the field of the record holds [SI], of a key that is no word."""
         return self.value * self.key.share
 
     @property
     def overrides(self) -> bool:
-        """Whether it goes over the file."""
+        """Return whether it goes over the file."""
         return self.is_own and self.where == f"{OVERRIDES} {self.key.name}"
 
     @property

@@ -70,7 +70,7 @@ class Track:
 
     @property
     def extent(self) -> float:
-        """How far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
+        """Return how far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
         return min(self.width, MAX_TRACK_WIDTH_SHARE * self.radius)
 
 

@@ -42,7 +42,7 @@ class Key:
 
     @property
     def bounds(self) -> str:
-        """What it may be, for people: '0 mm to 20 mm', 'right or left'."""
+        """Return what it may be, for people: '0 mm to 20 mm', 'right or left'."""
         return " or ".join(self.choices) if self.choices else f"{self.lowest} to {self.highest}"
 
     def value(self, text: str) -> float | str:

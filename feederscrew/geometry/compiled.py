@@ -333,7 +333,7 @@ def _target() -> Any:
 
 @functools.cache
 def _machine() -> str:
-    """What object code depends on beside its sources."""
+    """Return what object code depends on beside its sources."""
     import llvmlite
     from llvmlite import binding
 

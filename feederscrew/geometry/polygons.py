@@ -134,7 +134,7 @@ def convex(points: Points) -> Ints:
     """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
 
     def is_right(a: Vector, b: Vector, c: Vector) -> bool:
-        """Whether the way from a over b to c does not turn left."""
+        """Return whether the way from a over b to c does not turn left."""
         return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-16
 
     order = np.lexsort((points[:, 1], points[:, 0]))

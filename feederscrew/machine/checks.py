@@ -126,7 +126,7 @@ def _limits(sheet: Any) -> Iterator[FeederError]:
 
 
 def _emptying(sheet: Any) -> Iterator[FeederError]:
-    """What a bowl left alone does from full to empty."""
+    """Return what a bowl left alone does from full to empty."""
     bowl, rules, emptied, drive = sheet.bowl, sheet.bowl.sizing, sheet.emptying, sheet.stroke.frequency
     most = greatest_amplitude(bowl)
     full_frequency = emptied.natural_frequencies[0]
@@ -165,7 +165,7 @@ def _rocking(sheet: Any) -> Iterator[FeederError]:
 
 
 def _size(sheet: Any) -> Iterator[FeederError]:
-    """What of a bowl that was sized for a part and a rate is out of its rules."""
+    """Return what of a bowl that was sized for a part and a rate is out of its rules."""
     low, order, size = sheet.lowest, sheet.order, sheet.order.size
     if low.rate < order.target * (1.0 - 1e-6):
         there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.control}"

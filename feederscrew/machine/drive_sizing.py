@@ -236,7 +236,7 @@ class DriveMismatch:
 
     @property
     def text(self) -> str:
-        """What is wrong, and both drives, in one sentence."""
+        """Return what is wrong, and both drives, in one sentence."""
         reasons = []
         if self.two_axis:
             reasons.append(f"out of phase by {np.degrees(self.wanted.phase):.4g} deg, {TWO_MAGNETS}")

@@ -56,7 +56,7 @@ class BowlSolid:
 
     @property
     def unbalance(self) -> Unbalance:
-        """How its mass lies about the axis, over its underside: that lies on the leaves."""
+        """Return how its mass lies about the axis, over its underside: that lies on the leaves."""
         place = self.centre - [0.0, 0.0, self.plan.underside]
         about = mass.shift_inertia(self.tensor, self.mass, place)
         x, y, z = map(float, self.mass * place)
@@ -87,7 +87,7 @@ class BowlSolid:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What must not be overlooked, a tuple of str."""
+        """Return what must not be overlooked, a tuple of str."""
         remarks = () if self.segments is None else self.segments.remarks
         if self.plan.stairs is not None or self.plan.turns >= SHORTER * self.turns_of_sheet:
             return remarks

@@ -283,7 +283,7 @@ class BowlPlan:
 
     @property
     def segments(self) -> int:
-        """How many facets a full turn has; where the track is steep across, more."""
+        """Return how many facets a full turn has; where the track is steep across, more."""
         banks = self.path.bank, *(bank for _, _, bank in self.path.leans)
         chord = self.chord / max(1.0, *(BANK_DROP_FACTOR * float(np.tan(bank)) for bank in banks))
         return int(np.ceil(FULL_TURN_RAD / (2.0 * np.arccos(1.0 - chord / self.path.radius)) / 4.0)) * 4

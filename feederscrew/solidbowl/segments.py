@@ -164,7 +164,7 @@ def _lug(body: Body, frame: Frame, level: bool, low: float) -> Lug | None:
 
 
 def _wall(body: Body, place: Points, out: Points) -> float:
-    """How far out [m] the outer face of the wall lies from a place; not a number without one."""
+    """Return how far out [m] the outer face of the wall lies from a place; not a number without one."""
     first_met = facets.first_met(body, place + BEYOND_LUGS_M * out, place)
     return BEYOND_LUGS_M - first_met[0] if first_met else np.nan
 
@@ -208,12 +208,12 @@ class Segments:
 
     @property
     def dowels(self) -> int:
-        """How many."""
+        """Return how many."""
         return len(self.places)
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What must not be overlooked of ends of seams that have no screw, a tuple of str."""
+        """Return what must not be overlooked of ends of seams that have no screw, a tuple of str."""
         bare, ends = self.ends
         if not bare:
             return ()
@@ -350,7 +350,7 @@ def _box(vertices: Points, turn: float) -> Points:
 
 
 def _counts(extents: Points, size: tuple[float, ...]) -> tuple[int, ...]:
-    """How many beds of a size a box (3, 2) takes along each axis."""
+    """Return how many beds of a size a box (3, 2) takes along each axis."""
     return tuple(int(np.ceil((high - low) / side - 1e-9)) for (low, high), side in zip(extents, size))
 
 

@@ -53,7 +53,7 @@ class AspectsStudy(ReadableRecord):
 
     @property
     def doubtful(self) -> bool:
-        """Whether a self-check of exact tumbling failed."""
+        """Return whether a self-check of exact tumbling failed."""
         return self.aspects.ground is not None and bool(self.aspects.ground.tips.doubts)
 
     @property

@@ -101,7 +101,7 @@ class MachineSheet(ReadableRecord):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What must not be overlooked, a tuple of str."""
+        """Return what must not be overlooked, a tuple of str."""
         own = () if self.solid is None else self.solid.remarks
         order, track = self.order, self.bowl.track
         if order is None:

@@ -54,7 +54,7 @@ class _Counted(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return what a user must not overlook, a sentence each."""
         return (*self.aspects.warnings, *self.measured.warnings(self.part))
 
 
@@ -107,7 +107,7 @@ class CompareStudy(_Counted):
 
     @property
     def profiles(self) -> tuple[profiles.AspectProfile, ...]:
-        """What was measured, then the rules."""
+        """Return what was measured, then the rules."""
         return (*self.measured.profiles, *self.rules)
 
 
@@ -137,7 +137,7 @@ class SetStudy(ReadableRecord):
 
     @property
     def inside(self) -> int | None:
-        """How many aspects' shares lie in the interval of the recommended answer; None without one."""
+        """Return how many aspects' shares lie in the interval of the recommended answer; None without one."""
         if self.recommended is None:
             return None
         shares = self.profile.fractions
@@ -168,7 +168,7 @@ class SetsStudy(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return what a user must not overlook, a sentence each."""
         studies: tuple[SetStudy | FeedingStudy, ...] = (*self.sets, *self.feedings)
         listed = [line for study in studies for line in study.measured.warnings(study.part)]
         listed += [f"{study.part.source}: {line}" for study in studies for line in study.aspects.warnings]
@@ -318,7 +318,7 @@ def _feeding(
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
 ) -> FeedingStudy:
-    """What passed the devices of the bowl that a feeding test names.
+    """Return what passed the devices of the bowl that a feeding test names.
 
     The launch is what was done to the part; without it what the head of the file says, else parts are fed
     onto the moving floor of that bowl.

@@ -47,12 +47,12 @@ class ConveyStudy(ReadableRecord):
 
     @property
     def validity(self) -> str:
-        """What the answer leaves out, in one sentence."""
+        """Return what the answer leaves out, in one sentence."""
         return answer.validity(self.answer, self.bowl)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is odd about the velocity, a tuple of at most one sentence."""
+        """Return what is odd about the velocity, a tuple of at most one sentence."""
         return tuple(checks.speed_remark(self.answer.velocity, self.bowl.sizing))
 
     def trace(self) -> steady.CycleTrace:

@@ -41,7 +41,7 @@ class DropStudy(ReadableRecord):
 
     @property
     def drops(self) -> int:
-        """How many there were."""
+        """Return how many there were."""
         return len(self.result.drops.faces)
 
     @property
@@ -145,7 +145,7 @@ class PlateStudy(ReadableRecord):
 
     @property
     def partial(self) -> bool:
-        """Whether the user stopped it before all parts were done."""
+        """Return whether the user stopped it before all parts were done."""
         return any(plate.partial for plate in self.plates)
 
 
@@ -264,7 +264,7 @@ class TossStudy(ReadableRecord):
 
     @property
     def agreement(self) -> Agreement | None:
-        """What was computed beside what was measured; None where the file holds no upper sides."""
+        """Return what was computed beside what was measured; None where the file holds no upper sides."""
         if self.launches.faces is None:
             return None
         result, p = self.result, self.p

@@ -233,7 +233,7 @@ class RateStudy(ReadableRecord):
 
     @property
     def of_size(self) -> tuple[str, ...]:
-        """What to say of a part not much larger than play and tolerance, or than its track is wide."""
+        """Return what to say of a part not much larger than play and tolerance, or than its track is wide."""
         usual = "play and tolerance as usual" if self.sigma == 0.0 else "play and tolerance"
         allowances = {usual: self.sigma or float(np.hypot(PLAY_M, TOLERANCE_M))} if self.devices else {}
         return small_part_remarks(self.part, allowances, self.bowl.track.width)

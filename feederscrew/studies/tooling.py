@@ -194,7 +194,7 @@ class ToolingStudy(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return what a user must not overlook, a sentence each."""
         late = any(design is not None and design.late for design in self.designs)
         proposed = (device for design in self.designs if design is not None for device in design.devices)
         shank = shank_remarks((*self.bowl.devices, *proposed))

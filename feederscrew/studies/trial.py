@@ -75,7 +75,7 @@ class TrialStudy(ReadableRecord):
 
     @property
     def launch(self) -> str | None:
-        """What is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
+        """Return what is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
         recommended = self.aspects.recommended
         return recommended.launch if self.rule == RECOMMENDED_RULE and recommended is not None else None
 
@@ -88,7 +88,7 @@ class TrialStudy(ReadableRecord):
 
     @property
     def partial(self) -> bool:
-        """Whether the user stopped it before all parts were done."""
+        """Return whether the user stopped it before all parts were done."""
         return self.stopped or any(run.partial for run in self.runs)
 
     @property
@@ -98,7 +98,7 @@ class TrialStudy(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return what a user must not overlook, a sentence each."""
         first = self.runs[0]
         devices = first.bowl.devices
         listed = [*unknown_aspects(devices, self.aspects.names), *shank_remarks(devices)]

@@ -114,7 +114,7 @@ def last_digit(text: str) -> float:
 
 
 def is_number(text: str) -> bool:
-    """Whether the printed text is a number at all."""
+    """Return whether the printed text is a number at all."""
     try:
         float(text)
     except ValueError:
