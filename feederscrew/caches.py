@@ -124,7 +124,7 @@ def _kernel_folders() -> Iterator[Path]:
 
 
 def _can_hold(folder: Path) -> bool:
-    """Whether a folder is safe and can be written, or can be made."""
+    """Return whether a folder is safe and can be written, or can be made."""
     if why_unsafe(folder, KERNELS_VARIABLE):
         return False
     with contextlib.suppress(OSError, ValueError):

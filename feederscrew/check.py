@@ -14,9 +14,25 @@ Chosen = TypeVar("Chosen", bound=enum.StrEnum)
 
 
 def shaped(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """Return a finite float array of a given shape, in which -1 stands for any length.
+    """Return a finite float array of a given shape.
 
-    Raises ValueError, which names the argument, if the shape is another one or an entry is not finite.
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : array_like
+    shape : tuple of int
+        -1 stands for any length.
+
+    Returns
+    -------
+    array of float
+        Of that shape, in the unit of the value.
+
+    Raises
+    ------
+    ValueError
+        If the shape is another one, or an entry is not finite.
     """
     array = np.asarray(value, dtype=float)
     if not _fits(array, shape):
@@ -31,7 +47,24 @@ def _fits(array: Array, shape: tuple[int, ...]) -> bool:
 
 
 def positive(name: str, value: SupportsFloat) -> float:
-    """Return a finite number above zero; raises ValueError otherwise."""
+    """Return a finite number above zero.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : number
+
+    Returns
+    -------
+    float
+        In the unit of the value.
+
+    Raises
+    ------
+    ValueError
+        If it is not finite, or not above zero.
+    """
     number = float(value)
     if not (np.isfinite(number) and number > 0.0):
         raise ValueError(f"{name} is {value}, not a positive number")
@@ -39,9 +72,26 @@ def positive(name: str, value: SupportsFloat) -> float:
 
 
 def kind(name: str, value: object, wanted: type | tuple[type, ...], mend: str) -> Any:
-    """Return a value of a class; raises ArgumentError, which names the argument, of another one.
+    """Return a value once it is of a class.
 
-    ``mend`` says what to give: 'give a part, as load returns it'.
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : object
+    wanted : type or tuple of types
+    mend : str
+        What to give: 'give a part, as load returns it'.
+
+    Returns
+    -------
+    object
+        The same value.
+
+    Raises
+    ------
+    ArgumentError
+        If it is of another class.
     """
     if not isinstance(value, wanted):
         raise ArgumentError(name, f"is {_shape_text(value)}", mend)
@@ -55,7 +105,24 @@ def _shape_text(value: object) -> str:
 
 
 def path(name: str, value: object) -> Any:
-    """Return the path of a file; raises ArgumentError, which names the argument, of anything else."""
+    """Return the path of a file.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : object
+
+    Returns
+    -------
+    str or path
+        The same value.
+
+    Raises
+    ------
+    ArgumentError
+        If it is anything else.
+    """
     return kind(name, value, (str, PathLike), "give the path of a file")
 
 
@@ -76,11 +143,31 @@ def ranged(
     whole: bool = False,
     gaps: bool = False,
 ) -> Array:
-    """Return an array that was read from a file, closed to writing, once every number in it is in its range.
+    """Return an array that was read from a file, closed to writing, once every number is in its range.
 
-    In ``shape`` -1 stands for any length. Its numbers are ``whole`` or floats; with ``gaps`` NaN stands for
-    one that is not known. Raises ValueError if the shape or the kind of number is another one, or a number
-    is not finite or out of range.
+    Parameters
+    ----------
+    name : str
+        Of the array, for the fault.
+    array : array
+    shape : tuple of int
+        -1 stands for any length.
+    low, high : float
+        Ends of the range, both allowed.
+    whole : bool
+        Its numbers are int; else float.
+    gaps : bool
+        NaN stands for a number that is not known.
+
+    Returns
+    -------
+    array
+        The same one.
+
+    Raises
+    ------
+    ValueError
+        If the shape or the kind of number is another one, or a number is not finite or out of range.
     """
     if not _fits(array, shape) or array.dtype.kind != ("i" if whole else "f"):
         raise ValueError(f"{name} is an array {array.shape} of {array.dtype}, not {shape}")
@@ -92,13 +179,47 @@ def ranged(
 
 
 def of_an_aspect(aspect: str | None, heading: float | None) -> None:
-    """Raise an ArgumentError where a heading is given without the aspect that it is a heading of."""
+    """Refuse a heading that is given without the aspect that it is a heading of.
+
+    Parameters
+    ----------
+    aspect : str or None
+    heading : float [rad] or None
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    ArgumentError
+        If there is a heading alone.
+    """
     if heading is not None and aspect is None:
         raise ArgumentError("heading", "is given without an aspect", "name the aspect as well")
 
 
 def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> float:
-    """Return a finite number from low to high; raises ArgumentError, which names the argument, of another."""
+    """Return a finite number within a range.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : number
+    low, high : float
+        Ends of the range, both allowed.
+
+    Returns
+    -------
+    float
+        In the unit of the value.
+
+    Raises
+    ------
+    ArgumentError
+        If it is not such a number.
+    """
     try:
         number = float(value)
     except (TypeError, ValueError):

@@ -58,7 +58,18 @@ def read(path: str | os.PathLike[str]) -> tuple[Node, list[FeederError]]:
 
 
 def found_as(kind: Callable[[Path], bool], path: str | os.PathLike[str]) -> bool:
-    """Return whether a path (str or Path) is of a kind, such as Path.is_dir; not if the system refuses it."""
+    """Return whether a path is of a kind; False if the system refuses it.
+
+    Parameters
+    ----------
+    kind : callable
+        Such as ``Path.is_dir``.
+    path : str or path
+
+    Returns
+    -------
+    bool
+    """
     try:
         return kind(Path(path))
     except OSError:
@@ -68,10 +79,28 @@ def found_as(kind: Callable[[Path], bool], path: str | os.PathLike[str]) -> bool
 def content(
     path: str | os.PathLike[str], most: int, wanted: str, kind: type[FeederError] = ConfigError
 ) -> bytes | bytearray:
-    """Return the bytes of a file as the user typed it, one more than the ``most`` that are of use.
+    """Return the bytes of a file as the user named it, at most one more than are of use.
 
-    ``wanted`` is what to name in place of a folder: 'a YAML file'. Raises FeederError of a ``kind`` if it
-    cannot be read.
+    The one more shows that the file is too long.
+
+    Parameters
+    ----------
+    path : str or path
+    most : int
+        Bytes that are of use.
+    wanted : str
+        What to name in place of a folder: 'a YAML file'.
+    kind : class
+        Of the fault.
+
+    Returns
+    -------
+    bytes or bytearray
+
+    Raises
+    ------
+    FeederError
+        Of the ``kind``, if the file cannot be read, or is the pointer of a large file that is not fetched.
     """
     if not str(path):
         raise kind("''", "is an empty path", f"name {wanted}")
@@ -93,7 +122,20 @@ def content(
 
 
 def upto(file: BinaryIO, most: int) -> bytes | bytearray:
-    """Read a binary file, or a stream in pieces, up to one byte more than ``most`` are of use."""
+    """Read a binary file, or a stream in pieces, up to one byte more than are of use.
+
+    An ordinary file is read at once. A pipe has no size, so it is read until it ends.
+
+    Parameters
+    ----------
+    file : binary file
+    most : int
+        Bytes that are of use.
+
+    Returns
+    -------
+    bytes or bytearray
+    """
     try:
         size = os.fstat(file.fileno()).st_size
     except (OSError, ValueError):  # one in memory has no descriptor
@@ -109,11 +151,26 @@ def upto(file: BinaryIO, most: int) -> bytes | bytearray:
 
 
 def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederError]]:
-    """Return the tree of a YAML text, bytes as UTF-8, and the faults that do not hide the rest.
+    """Return the tree of a YAML text, and the faults that do not hide the rest.
 
-    Those are duplicate keys, anchors and tags, a list of ConfigError; every ``where`` opens with the
-    ``name`` of the file. Raises ConfigError if the text is empty, too long, not UTF-8 or not one YAML
-    document.
+    Parameters
+    ----------
+    text : str or bytes
+        Bytes as UTF-8.
+    name : str
+        Of the file: every ``where`` opens with it.
+
+    Returns
+    -------
+    Node
+        The root.
+    list of ConfigError
+        Duplicate keys, anchors and tags.
+
+    Raises
+    ------
+    ConfigError
+        If the text is empty, too long, not UTF-8 or not one YAML document.
     """
     if len(text) > MAX_DOCUMENT_BYTES:
         what = f"has more than {MAX_DOCUMENT_BYTES // 1000} kB"
@@ -135,7 +192,24 @@ def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederErr
 
 
 def decoded(data: bytes | bytearray, name: str) -> str:
-    """Return the bytes of a text file as text; raises ConfigError with the line that is not UTF-8."""
+    """Return the bytes of a text file as text.
+
+    Parameters
+    ----------
+    data : bytes
+        UTF-8, with a byte order mark or without.
+    name : str
+        Of the file.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ConfigError
+        If it is not UTF-8; it names the line.
+    """
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -167,13 +241,37 @@ def raise_all(faults: Iterable[FeederError]) -> None:
 
 
 def hint(word: str, candidates: Iterable[str]) -> str:
-    """Return how to mend an unknown word: the nearest known one, or the list of them."""
+    """Return how to mend an unknown word: the nearest known one, or the list of them.
+
+    Parameters
+    ----------
+    word : str
+    candidates : iterable of str
+        Known words.
+
+    Returns
+    -------
+    str
+        'did you mean steel?'
+    """
     near = nearest(word, candidates)
     return f"did you mean {near}?" if near is not None else f"known are {', '.join(candidates)}"
 
 
 def nearest(word: str, candidates: Iterable[str]) -> str | None:
-    """Return the known word that an unknown one is likely meant for; None where none is near."""
+    """Return the known word that an unknown one is likely meant for.
+
+    Parameters
+    ----------
+    word : str
+    candidates : iterable of str
+        Known words; case does not matter.
+
+    Returns
+    -------
+    str or None
+        None where none is near.
+    """
     folded = {name.lower(): name for name in candidates}
     near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
     return folded[near[0]] if near else None

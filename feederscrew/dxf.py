@@ -80,13 +80,30 @@ class Outlines:
 
 
 def outlines(path: Path, layer: str, where: str) -> Outlines:
-    """Read the closed outlines of one layer, curves as chords that are at most CHORD_ERROR_M away.
+    """Read the closed outlines of one layer of a DXF file.
 
-    Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open
-    curves are joined where their ends meet. Blocks are read as what they hold. Texts and dimensions are
-    left out. The layer's case does not matter; ``where`` is the place of the file's name in the bowl
-    file. Raises ConfigError if the file cannot be read as DXF, has no such layer, no known unit, or on
-    the layer what is no flat closed outline.
+    Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open curves
+    are joined where their ends meet. Blocks are read as what they hold. Texts and dimensions are left out. A
+    curve becomes chords that are at most ``CHORD_ERROR_M`` away from it.
+
+    Parameters
+    ----------
+    path : Path
+    layer : str
+        Case does not matter.
+    where : str
+        Place of the file's name in the bowl file.
+
+    Returns
+    -------
+    Outlines
+        Corners in m; it says whether the file names a unit.
+
+    Raises
+    ------
+    ConfigError
+        If the file cannot be read as DXF, has no such layer, no known unit, or something on the layer that is
+        no flat closed outline.
     """
     import ezdxf
 
@@ -358,9 +375,17 @@ def document_bytes(drawing: "Drawing") -> bytes:
 def primitives(entity: Any, sagitta: float) -> Iterator[tuple[str, Any]]:
     """Yield the lines, filled areas and texts that an entity is drawn by, those of its blocks too.
 
-    ("line", (K, 2) float), ("area", list of (K, 2) float) or ("text", (words, place (2,), height, turn
-    [deg], 'left' | 'center' | 'right', 'baseline' | 'center_baseline')); an arc is at most ``sagitta``
-    too flat.
+    Parameters
+    ----------
+    entity : entity of ezdxf
+    sagitta : float [drawing unit]
+        By how much an arc may be too flat.
+
+    Returns
+    -------
+    iterator of (str, value)
+        ('line', (K, 2) float), ('area', list of (K, 2) float) or ('text', (words, place (2,), height, turn
+        [deg], 'left' | 'center' | 'right', 'baseline' | 'center_baseline')).
     """
     from ezdxf.disassemble import recursive_decompose
     from ezdxf.path import make_path

@@ -17,7 +17,7 @@ class OnCores:
 
     @property
     def cores(self) -> int:
-        """How many are used."""
+        """Return how many processors are used."""
         return self.jobs or os.cpu_count() or 1
 
 

@@ -101,13 +101,27 @@ class QuantityError(ValueError):
 
 
 def quantity(text: str, dimension: str, *, suggest: str | None = None, bare: str | None = None) -> float:
-    """Return a quantity as typed, '0.5 mm', in SI units of a dimension of ``UNITS_BY_DIMENSION``.
+    """Return a quantity as typed, '0.5 mm', in SI units.
 
-    It is a number alone where the dimension is 'number'.
+    Parameters
+    ----------
+    text : str
+        Number and unit; a number alone where the dimension is 'number'.
+    dimension : str
+        Of ``UNITS_BY_DIMENSION``.
+    suggest : str, optional
+        Unit to name when one is missing; the first of the dimension without it.
+    bare : str, optional
+        Unit of a number without one, which is refused otherwise.
 
-    ``suggest`` is the unit to name when one is missing, without it the first of the dimension; ``bare`` that
-    of a number without one, which else is refused. Raises QuantityError if the text is not a finite number,
-    or its unit is missing, unknown or of another dimension.
+    Returns
+    -------
+    float [SI]
+
+    Raises
+    ------
+    QuantityError
+        If the text is not a finite number, or its unit is missing, unknown or of another dimension.
     """
     number, unit = split(text)
     if unit == "" and bare is not None:
@@ -153,7 +167,25 @@ def from_quantity(value: object, dimension: str) -> object:
 
 
 def factor(unit: str, dimension: str) -> float:
-    """Return how many SI units one ``unit`` is; raises KeyError for a unit of another dimension."""
+    """Return how many SI units one unit is.
+
+    Parameters
+    ----------
+    unit : str
+        'mm'.
+    dimension : str
+        'length'.
+
+    Returns
+    -------
+    float [SI]
+        0.001
+
+    Raises
+    ------
+    KeyError
+        If the unit is of another dimension.
+    """
     return UNITS_BY_DIMENSION[dimension][unit]
 
 
@@ -196,7 +228,20 @@ def quoted(text: str) -> str:
 
 
 def counted(number: int, noun: str, several: str | None = None) -> str:
-    """Return a number of things for people: '1 part', '2 parts'; ``several`` where an s is not all."""
+    """Return a number of things for people: '1 part', '2 parts'.
+
+    Parameters
+    ----------
+    number : int
+    noun : str
+        In the singular.
+    several : str, optional
+        The plural where an s is not all.
+
+    Returns
+    -------
+    str
+    """
     return f"{number} {noun if number == 1 else several or f'{noun}s'}"
 
 

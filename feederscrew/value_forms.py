@@ -11,7 +11,20 @@ UNITLESS = ("number", "count")  # dimensions without a unit
 
 
 def quantity(dimension: str, lowest: str | None = None, highest: str | None = None) -> dict[str, Any]:
-    """Return the form of a value with its unit; without one a number within bounds, or a text of it."""
+    """Return the JSON Schema form of a value with its unit.
+
+    Parameters
+    ----------
+    dimension : str
+        Of ``units``.
+    lowest, highest : str, optional
+        Bounds of a number without a unit.
+
+    Returns
+    -------
+    dict
+        A text; where the dimension has no unit also a number within the bounds.
+    """
     text = {"type": "string", "pattern": pattern(dimension)}
     if dimension not in UNITLESS:
         return text

@@ -194,9 +194,18 @@ class StoppedBatchError(KeyboardInterrupt):
 
 
 def crew(jobs: int | None = None, scheduler: str | None = None) -> Processes | Cluster:
-    """Choose who does the work: processes of this machine, as many as it has processors without ``jobs``.
+    """Choose who does the work of a batch: processes of this machine, or the workers of a cluster.
 
-    With the address of a Dask ``scheduler``, 'tcp://host:8786', its workers are taken instead.
+    Parameters
+    ----------
+    jobs : int, optional
+        Processes; as many as there are processors without it.
+    scheduler : str, optional
+        Address of a Dask scheduler, 'tcp://host:8786'; its workers are taken then.
+
+    Returns
+    -------
+    Processes or Cluster
     """
     return Cluster(scheduler) if scheduler else Processes(jobs or processors())
 
@@ -210,12 +219,36 @@ def run(
     resume: bool = False,
     tell: Callable[[bool], None] = lambda is_reused: None,
 ) -> Batch:
-    """Compute every part of ``gather`` and write the folder of the batch, with ``workers`` of ``crew``.
+    """Compute every part of a batch and write its folder.
 
-    With ``resume`` what is there already, whole and of the same input, is left alone. ``tell`` is called for
-    each part that is finished; ``is_reused`` says whether its results were there already. Raises FeederError
-    if the folder cannot be used or the scheduler is lost: what is finished is kept; StoppedBatchError if the
-    user stops it: a summary lists what is done, the rest as 'not computed'.
+    A part's results appear in its folder whole or not at all. If the user stops the batch, a summary lists
+    what is done, the rest as 'not computed'.
+
+    Parameters
+    ----------
+    requests : sequence of Request
+        From ``gather``.
+    directory : str or path
+        Folder of the batch.
+    workers : Processes or Cluster
+        From ``crew``.
+    choices : Choices, optional
+        The same for all parts.
+    resume : bool
+        Leave alone what is there already, whole and of the same input.
+    tell : callable
+        Called for each part that is finished, with whether its results were there already.
+
+    Returns
+    -------
+    Batch
+
+    Raises
+    ------
+    FeederError
+        If the folder cannot be used or the scheduler is lost; what is finished is kept.
+    StoppedBatchError
+        If the user stops it.
     """
     from feederscrew.resting.rules.registry import require_rule  # while the processes import their libraries
 
@@ -270,9 +303,23 @@ def run(
 def count_stale(
     requests: Iterable[Request], directory: str | Path, choices: Choices | None = None
 ) -> dict[str, int]:
-    """Count the parts that a batch with ``resume`` computes, by the reason, the most frequent first.
+    """Count the parts that a batch with ``resume`` computes, by the reason.
 
-    ``directory`` need not be there; parts whose file cannot be read are not counted.
+    Parts whose file cannot be read are not counted.
+
+    Parameters
+    ----------
+    requests : iterable of Request
+        From ``gather``.
+    directory : str or path
+        Folder of the batch; it need not be there.
+    choices : Choices, optional
+        The same for all parts.
+
+    Returns
+    -------
+    dict of str to int
+        The most frequent reason first.
     """
     store, stale = Store(directory), Counter[str]()
     for request in requests:

@@ -93,7 +93,21 @@ def read_orders(path: str) -> tuple[DesignOrder, ...]:
 
 
 def order_row(order: DesignOrder, target: float, document: dict[str, Any]) -> dict[str, Any]:
-    """Return the row of a design, from its document; of a part that failed it has ``status`` and ``why``."""
+    """Return the row of a design, from its document.
+
+    Parameters
+    ----------
+    order : DesignOrder
+    target : float [1/s]
+        Parts that the design was asked for.
+    document : dict
+        Of the design; of a part that failed it has ``status`` and ``why``.
+
+    Returns
+    -------
+    dict of str to value
+        A column each; None where the document says nothing.
+    """
     columns = ("status", "wanted", "delivered_per_minute", "why")
     own = {name: document.get(name) for name in columns}
     return {"part": order.source, "target_per_minute": target / units.PER_MINUTE} | own
@@ -118,10 +132,19 @@ def _lines(path: str) -> Rows:
 
 
 def read_listing(path: str, faults: list[FeederError]) -> list[ListedPart]:
-    """Return the parts of a list, and add to ``faults`` what is wrong in it; paths count from its folder.
+    """Return the parts of a list; paths in it count from its folder.
 
-    ``path`` is a CSV whose first line names columns out of ``LISTING_COLUMNS``; lines that begin with # are
-    comments.
+    Parameters
+    ----------
+    path : str
+        CSV whose first line names columns of ``LISTING_COLUMNS``; lines that begin with # are comments.
+    faults : list of FeederError
+        The faults of the list are added to it, each with its line.
+
+    Returns
+    -------
+    list of ListedPart
+        Empty where the first line is wrong.
     """
     try:
         (first, header), *rows = _lines(path)
@@ -166,11 +189,26 @@ def gather(
 ) -> tuple[Request, ...]:
     """Gather every part in every bowl, each with a folder name of its own.
 
-    ``sources`` are part files, folders of them, patterns ('parts/**/*.stl') and lists ('parts.csv'),
-    ``configs`` bowl files, folders of them and patterns, none for the defaults; ``overrides``,
-    'drive.frequency=50 Hz', are for every bowl, ``density`` for each part that names none in a list. In the
-    order given; a folder's or a pattern's in the order of their names. Raises FeederError or Faults if a
-    folder or a pattern holds no part, or a list or a bowl cannot be used.
+    Parameters
+    ----------
+    sources : sequence of str
+        Part files, folders of them, patterns ('parts/**/*.stl') and lists ('parts.csv').
+    configs : sequence of str
+        Bowl files, folders of them and patterns; none for the defaults.
+    overrides : sequence of str
+        'drive.frequency=50 Hz', for every bowl.
+    density : str, optional
+        For each part that names none in a list.
+
+    Returns
+    -------
+    tuple of Request
+        In the order given; those of a folder or a pattern in the order of their names.
+
+    Raises
+    ------
+    FeederError or Faults
+        If a folder or a pattern holds no part, or a list or a bowl cannot be used.
     """
     faults: list[FeederError] = []
     wanted: list[str | None] = [path for config in configs for path in _expanded(config, CARDS, "bowl")]
@@ -250,7 +288,7 @@ def _expanded(typed: str, suffixes: set[str], kind: str) -> list[str]:
 
 
 def _fits(path: Path, suffixes: set[str], kind: str) -> bool:
-    """Whether a file of a folder is meant: parts and bowls may lie side by side."""
+    """Return whether a file of a folder is meant: parts and bowls may lie side by side."""
     suffix = path.suffix.lower().removeprefix(".")
     if suffix not in suffixes or not _is_there(path) or path.name.startswith("."):
         return False
@@ -261,7 +299,7 @@ def _fits(path: Path, suffixes: set[str], kind: str) -> bool:
 
 
 def _is_there(path: Path) -> bool:
-    """Whether a file is there, or a link that leads nowhere, to be reported."""
+    """Return whether a file is there, or a link that leads nowhere, to be reported."""
     return path.is_file() or (path.is_symlink() and not path.exists())
 
 

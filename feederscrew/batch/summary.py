@@ -80,10 +80,20 @@ SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SU
 
 
 def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = None) -> Rows:
-    """Return what the disk says of each part by ``SUMMARY_COLUMNS``, None where there is nothing to say.
+    """Return what the disk says of each part of a batch.
 
-    ``finished`` are the folders of those that are done; what lies in others is of an earlier run and is not
-    read.
+    Parameters
+    ----------
+    store : Store
+        Of the batch.
+    requests : sequence of Request
+    finished : set of str, optional
+        Folders of parts that are done. What lies in others is of an earlier run and is not read.
+
+    Returns
+    -------
+    tuple of dict
+        By ``SUMMARY_COLUMNS``; None where there is nothing to say.
     """
     rows = []
     for request in requests:
@@ -111,9 +121,20 @@ def frame(rows: Rows) -> tables.Frame:
 
 
 def sheets(store: Any, rows: Rows) -> Iterator[list[tuple[bytes | None, str, str]]]:
-    """Yield what each contact sheet shows, up to ``TILES`` parts; a sheet without a picture is left out.
+    """Yield the tiles of each contact sheet, up to ``TILES`` parts.
 
-    Of each part its picture, or None, its name, and what is to say of it: its rate, or why it has none.
+    Parameters
+    ----------
+    store : Store
+        Of the batch.
+    rows : tuple of dict
+        From ``rows``.
+
+    Returns
+    -------
+    iterator of lists of (bytes or None, str, str)
+        Of each part its picture, its name, and its rate or why it has none. A sheet without a picture is left
+        out.
     """
     for first in range(0, len(rows), TILES):
         tiles = [
@@ -138,10 +159,21 @@ def _words(row: dict[str, Any]) -> str:
 
 
 def index_pages(store: Any, rows: Rows) -> dict[str, Page]:
-    """Build the index of a batch by its files: a line a part, with its picture and a link to its folder.
+    """Build the index of a batch: a line a part, with its picture and a link to its folder.
 
-    Pictures stay in the folders of the parts, so a page takes some 400 bytes a part. The first one is
-    INDEX_FILE; each leads to all others.
+    Pictures stay in the folders of the parts, so a page takes some 400 bytes a part.
+
+    Parameters
+    ----------
+    store : Store
+        Of the batch.
+    rows : tuple of dict
+        From ``rows``.
+
+    Returns
+    -------
+    dict of str to Page
+        By file name, ``INDEX_FILE`` first; each page leads to all others.
     """
     failed = sum(row["status"] != DONE for row in rows)
     text = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")

@@ -48,9 +48,24 @@ __all__ = [
 
 
 def read(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:
-    """Return the Bowl of a file, or of the defaults, and of overrides, 'drive.frequency=50 Hz'.
+    """Return the bowl of a file, or of the defaults, with overrides.
 
-    Raises Faults: every fault of the file and of the overrides, one a line.
+    Parameters
+    ----------
+    path : str or path, optional
+        Of a bowl file; without it the defaults.
+    overrides : iterable of str
+        'drive.frequency=50 Hz'; of one key the last holds.
+
+    Returns
+    -------
+    Bowl
+        It remembers its settings and its file.
+
+    Raises
+    ------
+    Faults
+        Every fault of the file and of the overrides, one a line.
     """
     bowl = record(settings(path, overrides))
     object.__setattr__(bowl, "source", None if path is None else str(path))

@@ -18,7 +18,20 @@ WRITTEN_SHARE = 1e-6  # [1] of a value, within which it is that of its text
 
 
 def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
-    """Return the devices of a bowl file's list, in the order parts meet them; faults are added."""
+    """Return the devices of a bowl file's list, in the order parts meet them.
+
+    Parameters
+    ----------
+    entry : Entry
+        Of the key ``devices``.
+    faults : list of FeederError
+        The faults of the list are added to it.
+
+    Returns
+    -------
+    tuple of Device
+        Those that could be read.
+    """
     if entry.value.kind != "list":
         faults.append(ConfigError(entry.where, "devices is not a list", "write one '- wiper: 6 mm' a line"))
         return ()
@@ -32,7 +45,23 @@ def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
 
 
 def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
-    """Return the faults of devices that do not fit a track of a ``width`` [m]. Source: docs/bowl_file.md."""
+    """Return the faults of devices that do not fit their track, or that those before them leave no meaning.
+
+    Parameters
+    ----------
+    chain : sequence of Device
+        In the order parts meet them.
+    width : float [m]
+        Of the track.
+
+    Returns
+    -------
+    list of ConfigError
+
+    References
+    ----------
+    docs/bowl_file.md.
+    """
     return [fault for device in chain for fault in device.misfits(width)] + unfit(chain)
 
 
@@ -60,9 +89,20 @@ def unfit(chain: Sequence[Device]) -> list[ConfigError]:
 
 
 def unknown_aspects(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:
-    """Return yields of a chain that are of aspects which a part does not have, a line each.
+    """Return remarks on yields that are of aspects which a part does not have.
 
-    The file may be meant for other parts as well, so it is no fault.
+    The file may be meant for other parts as well, so that is no fault.
+
+    Parameters
+    ----------
+    chain : sequence of Device
+    aspects : sequence of str
+        Names of the part's aspects; case does not matter.
+
+    Returns
+    -------
+    list of str
+        A line each.
     """
     aspect_names = {name.casefold() for name in aspects}
     return [
@@ -85,9 +125,24 @@ def value_text(device: Device) -> str:
 
 
 def check_written(chain: Iterable[Device], name: str) -> None:
-    """Refuse devices that a bowl file of a ``name`` would not give back as they were tried.
+    """Refuse devices that a bowl file would not give back as they were tried.
 
-    Raises FeederError if a text does not name a device, or some attribute of that device differs.
+    Each device is written as the file has it, read again, and compared attribute by attribute.
+
+    Parameters
+    ----------
+    chain : iterable of Device
+    name : str
+        Of the file, for the fault.
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    FeederError
+        If a text does not name a device, or some attribute of that device differs.
     """
     for device in chain:
         line = f"{device.kind}: {value_text(device)}"
@@ -105,7 +160,19 @@ def check_written(chain: Iterable[Device], name: str) -> None:
 def differences(
     first: object, second: object, unlike: Container[str] = ("where", "text", "assumption")
 ) -> list[str]:
-    """Return in which attributes, but those ``unlike``, two records differ by more than a file's digits."""
+    """Return in which attributes two records differ by more than the digits that a file has.
+
+    Parameters
+    ----------
+    first, second : dataclass instances
+    unlike : container of str
+        Attributes that may differ: place and wording.
+
+    Returns
+    -------
+    list of str
+        A clause for each attribute; one alone where the records are of different classes.
+    """
     if type(first) is not type(second):
         return [f"it is a {type(second).__name__} and not a {type(first).__name__}"]
     rows = ((field.name, getattr(first, field.name), getattr(second, field.name)) for field in fields(first))  # type: ignore[arg-type]
@@ -117,7 +184,7 @@ def differences(
 
 
 def _same_device(a: object, b: object) -> bool:
-    """Whether two values are equal but for the digits that a file has."""
+    """Return whether two values are equal but for the digits that a file has."""
     if isinstance(a, tuple) and isinstance(b, tuple):
         return len(a) == len(b) and all(map(_same_device, a, b))
     if isinstance(a, float | int) and isinstance(b, float | int):

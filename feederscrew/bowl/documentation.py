@@ -57,9 +57,24 @@ def template() -> str:
 
 
 def write_new(path: str | Path, text: str, *, replace: bool = False) -> None:
-    """Write a text to a file that is not there or has that text.
+    """Write a text to a file that is not there or has that text already.
 
-    Raises FeederError if it has another one, unless ``replace``, or cannot be made.
+    Parameters
+    ----------
+    path : str or path
+    text : str
+        Written as UTF-8, with line feeds on every system.
+    replace : bool
+        Replace a file of another text.
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    FeederError
+        If the file has another text and is not to be replaced, or cannot be made.
     """
     if Path(path).is_dir():
         raise FeederError(path, "is a folder", f"name a file in it, such as {Path(path) / 'bowl.yaml'}")

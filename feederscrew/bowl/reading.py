@@ -54,12 +54,12 @@ class Setting:
 
     @property
     def size(self) -> Any:
-        """What the field of the record holds [SI], of a key that is no word."""
+        """Return what the field of the record holds [SI], of a key that is no word."""
         return self.value * self.key.share
 
     @property
     def overrides(self) -> bool:
-        """Whether it goes over the file."""
+        """Return whether it goes over the file."""
         return self.is_own and self.where == f"{OVERRIDES} {self.key.name}"
 
     @property
@@ -71,18 +71,49 @@ class Setting:
 
 
 def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
-    """Return every value in effect, of a bowl file, or the defaults, and of 'drive.frequency=50 Hz' over it.
+    """Return every value in effect: of a bowl file, or the defaults, and of overrides over it.
 
-    Of overrides of one key the last holds. Returns one a key, in the order of ``schema.BOWL_KEYS``, then one
-    a device. Raises Faults: every fault of the file and of the overrides, one a line; those of overrides are
-    `ArgumentError`.
+    Parameters
+    ----------
+    path : str or path, optional
+        Of a bowl file; without it the defaults.
+    overrides : iterable of str
+        'drive.frequency=50 Hz'; of one key the last holds.
+
+    Returns
+    -------
+    tuple of Setting
+        One a key, in the order of ``schema.BOWL_KEYS``, then one a device.
+
+    Raises
+    ------
+    Faults
+        Every fault of the file and of the overrides, one a line; those of overrides are `ArgumentError`.
     """
     in_file, faults = ({}, []) if path is None else _settings_of(*documents.read(path))
     return _overridden(in_file, overrides, faults)
 
 
 def settings_of_text(text: str, name: str) -> tuple[Setting, ...]:
-    """Return every value in effect of the text of a bowl file; the rest as for ``settings``."""
+    """Return every value in effect of the text of a bowl file.
+
+    Parameters
+    ----------
+    text : str
+        YAML.
+    name : str
+        What a fault calls the text.
+
+    Returns
+    -------
+    tuple of Setting
+        As of ``settings``.
+
+    Raises
+    ------
+    Faults
+        Every fault of the text, one a line.
+    """
     in_text, faults = _settings_of(*documents.load(text, name))
     return _overridden(in_text, (), faults)
 
@@ -92,9 +123,23 @@ def adjust(bowl: Bowl, overrides: Iterable[str]) -> Bowl:
 
     A key that takes its value from another one follows it, as in a file: without ``friction.kinetic`` there,
     the override of ``friction.static`` is that of both. A bowl that was changed after it was read has its
-    values alone: then an override replaces one value, and nothing follows. Raises Faults: every fault of the
-    overrides; where a key of the machine is given for a bowl that was changed: what its drive would be is not
-    known.
+    values alone: then an override replaces one value, and nothing follows.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    overrides : iterable of str
+        'drive.frequency=50 Hz'.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    Faults
+        Every fault of the overrides, one a line. Among them is a key of the machine for a bowl that was
+        changed, because its drive is then not known.
     """
     if bowl.settings:
         return record(_overridden({s.key.name: s for s in bowl.settings if s.is_own}, overrides, []))
@@ -147,7 +192,18 @@ def effective(own_settings: Mapping[str, Setting]) -> tuple[Setting, ...]:
 
 
 def of_device(place: int, device: Device) -> Setting:
-    """Return a device as the Setting 'devices.1', for people: 'gap: 9 mm'."""
+    """Return a device as a setting, for people: 'devices.1', 'gap: 9 mm'.
+
+    Parameters
+    ----------
+    place : int
+        In the list, from 1.
+    device : Device
+
+    Returns
+    -------
+    Setting
+    """
     key = Key(f"{DEVICES_SECTION}.{place}", DEVICES_SECTION, "", "", "", "", device.meaning)
     return Setting(key, f"{device.kind}: {device.text}", device, device.where)
 
@@ -158,10 +214,24 @@ def chain(settings: Iterable[Setting]) -> tuple[Device, ...]:
 
 
 def record(settings: Sequence[Setting]) -> Bowl:
-    """Return the Bowl of complete settings; a field is an array where its setting's value is one.
+    """Return the bowl of complete settings; a field is an array where its setting's value is one.
 
-    A field that may be None, 'as the other one', stays so until its key is given: a Bowl in which the other
+    A field that may be None, 'as the other one', stays so until its key is given. A bowl in which the other
     is replaced later must not keep the old value.
+
+    Parameters
+    ----------
+    settings : sequence of Setting
+        As of ``settings``.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    FeederError
+        If no body has the machine's centre of mass, moments and products of inertia.
     """
     keyed = [s for s in settings if s.key.field != DEVICES_SECTION]
     fields = {s.key.field: s.value if s.key.choices else s.size for s in keyed}
@@ -182,9 +252,19 @@ def record(settings: Sequence[Setting]) -> Bowl:
 
 
 def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
-    """Return the Bowl of settings of which some are varied, and with them the keys that follow these.
+    """Return the bowl of settings of which some are varied, and with them the keys that follow these.
 
-    ``values`` [SI] are by key name, arrays that broadcast together; the varied fields are those arrays.
+    Parameters
+    ----------
+    settings : sequence of Setting
+        As of ``settings``.
+    values : mapping of str to array [SI]
+        By key name; the arrays broadcast together.
+
+    Returns
+    -------
+    Bowl
+        The varied fields are those arrays.
     """
     varied = {name: Setting(BY_NAME[name], "", value, "varied") for name, value in values.items()}
     own_settings = {s.key.name: s for s in settings if s.is_own and not replaced(s.key, varied)}
@@ -236,7 +316,18 @@ def default(key: Key) -> Setting:
 
 
 def replaced(key: Key, own_settings: Container[str]) -> bool:
-    """Return whether another key of the same field is given."""
+    """Return whether another key of the same field is given, as ``peak_to_peak`` for ``amplitude``.
+
+    Parameters
+    ----------
+    key : Key
+    own_settings : container of str
+        Names of the keys that are given.
+
+    Returns
+    -------
+    bool
+    """
     other = rival(key)
     return other is not None and other.name in own_settings
 
@@ -277,11 +368,31 @@ def _derived(key: Key, value: float, where: str) -> Setting:
 def checked(
     key: Key, text: str, where: str, *, bare: bool = False, kind: type[ConfigError] = ConfigError
 ) -> Setting:
-    """Return one value as a Setting, of its text as typed.
+    """Return one value as a setting, from its text as typed.
 
-    ``where`` is for the fault, which names the key itself unless ``where`` does, and is of a ``kind``:
-    `ArgumentError` where it begins with the name of an argument. With ``bare`` a number without a unit is
-    taken in ``key.unit``. Raises ConfigError if it is not a quantity of the key's dimension and range.
+    Parameters
+    ----------
+    key : Key
+        Dimension, range and unit, or the words to choose from.
+    text : str
+        '0.3 mm'.
+    where : str
+        Place for the fault. The fault names the key itself unless ``where`` ends with it.
+    bare : bool
+        Take a number without a unit in ``key.unit``.
+    kind : class
+        Of the fault: `ArgumentError` where ``where`` begins with the name of an argument.
+
+    Returns
+    -------
+    Setting
+        Its value in SI units, or the word. A value below ``SMALLEST`` is 0.
+
+    Raises
+    ------
+    ConfigError
+        Of the ``kind``, if the text is not a quantity of the key's dimension and range, or not one of its
+        words.
     """
     subject = "" if where.endswith(key.name) else f"{key.name}: "
     try:
@@ -387,9 +498,25 @@ def _from_overrides(overrides: Iterable[str], faults: list[FeederError]) -> dict
 
 
 def find_key(name: str, where: str, text: str = "") -> Key:
-    """Return the key that an argument names, whose value is a ``text``.
+    """Return the key that an argument names.
 
-    Raises ArgumentError if there is none, or a section is named.
+    Parameters
+    ----------
+    name : str
+        'drive.frequency'.
+    where : str
+        Place for the fault.
+    text : str
+        Value that was given with it, for a mended call in the fault.
+
+    Returns
+    -------
+    Key
+
+    Raises
+    ------
+    ArgumentError
+        If there is none of that name, or a section or the devices are named.
     """
     if name in BY_NAME:
         return BY_NAME[name]
@@ -414,10 +541,24 @@ FULL = 5.0  # of the bowl's own amplitude, at most
 
 
 def at_strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
-    """Return the bowl at each of the amplitudes '78%,80%,82%', of its own one, or '0.3 mm,0.4 mm'.
+    """Return the bowl at each of some amplitudes.
 
-    Without a text that is the bowl alone; an amplitude that is said twice is taken once. Raises ConfigError
-    if an entry is neither, or out of range.
+    Parameters
+    ----------
+    bowl : Bowl
+    text : str, optional
+        '78%,80%,82%', shares of the bowl's own amplitude, or '0.3 mm,0.4 mm'.
+
+    Returns
+    -------
+    tuple of Bowl
+        In the order of the text, each amplitude once; the bowl alone without a text.
+
+    Raises
+    ------
+    ConfigError
+        If an entry is neither a share nor an amplitude, or out of range, or there are more than
+        ``MAX_STROKES``.
     """
     if text is None:
         return (bowl,)
@@ -476,10 +617,24 @@ class KeyRange:
 
 
 def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
-    """Return the ranges 'drive.vibration_angle=5:60:200', from 5 to 60 in 200 values.
+    """Return the ranges of keys that are varied.
 
     Both ends may carry a unit, '0.05mm:0.6mm:20'; without one they are in the unit of the key's limits.
-    Raises Faults: every fault of every text, one a line; also a field varied twice.
+    Values lie evenly between the ends, both included.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        'drive.vibration_angle=5:60:200', from 5 to 60 in 200 values.
+
+    Returns
+    -------
+    tuple of KeyRange
+
+    Raises
+    ------
+    Faults
+        Every fault of every text, one a line; also a field that is varied twice.
     """
     ranges: dict[str, KeyRange] = {}
     faults: list[ConfigError] = []

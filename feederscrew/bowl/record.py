@@ -70,7 +70,7 @@ class Track:
 
     @property
     def extent(self) -> float:
-        """How far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
+        """Return how far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
         return min(self.width, MAX_TRACK_WIDTH_SHARE * self.radius)
 
 
@@ -230,11 +230,26 @@ RIGHT_ANGLE_RAD = 0.5 * np.pi  # [rad] upright
 
 
 def direction(machine: Machine, radius: ArrayLike) -> Any:
-    """Return the angle [rad] of the bowl's motion to the horizontal at a ``radius`` [m] from its axis.
+    """Return the angle of the bowl's motion to the horizontal at a distance from its axis.
 
     tan psi(r) = tan psi_s (r_s / r) [m2 / (m1 + m2)] / [I2 / (I1 + I2)]: the springs fix the direction of the
-    bowl against its base. Momentum fixes how much of it the bowl takes: m2 / (m1 + m2) of the rise and
-    I2 / (I1 + I2) of the turn. Source: docs/bowl.md, "How it is computed".
+    bowl against its base. Momentum fixes how much of it the bowl takes: m2 / (m1 + m2) of the rise and I2 /
+    (I1 + I2) of the turn.
+
+    Parameters
+    ----------
+    machine : Machine
+        A rigid bowl on inclined leaf springs, its centre of mass on the axis.
+    radius : array_like [m]
+
+    Returns
+    -------
+    float or array [rad]
+        pi / 2 on the axis.
+
+    References
+    ----------
+    docs/bowl.md, "How it is computed".
     """
     rise, turn = shares(machine)
     along = machine.spring_radius * rise * np.sin(machine.spring_angle)
@@ -242,17 +257,47 @@ def direction(machine: Machine, radius: ArrayLike) -> Any:
 
 
 def shares(machine: Machine) -> tuple[float, float]:
-    """Return the bowl's shares of the rise and of the turn between bowl and base [1].
+    """Return the bowl's shares of the rise and of the turn between bowl and base.
 
-    Source: the bowl and its base keep their momentum; docs/bowl.md, "How it is computed".
+    m2 / (m1 + m2) and I2 / (I1 + I2): 1 is the bowl, 2 is the base.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    float [1]
+        Of the rise.
+    float [1]
+        Of the turn.
+
+    References
+    ----------
+    The bowl and its base keep their momentum; docs/bowl.md, "How it is computed".
     """
     rise = machine.base_mass / (machine.bowl_mass + machine.base_mass)
     return rise, machine.base_inertia / (machine.bowl_inertia + machine.base_inertia)
 
 
 def vibration_angle(machine: Machine, radius: ArrayLike, climb: ArrayLike) -> Any:
-    """Return the angle from the track to the bowl's motion [rad], within 0 to 90 deg.
+    """Return the angle from the track to the bowl's motion, within 0 to 90 deg.
 
-    ``radius`` [m] and ``climb`` [rad] are those of the track. Source: docs/bowl.md, "How it is computed".
+    Parameters
+    ----------
+    machine : Machine
+    radius : array_like [m]
+        Of the track.
+    climb : array_like [rad]
+        Of the track.
+
+    Returns
+    -------
+    float or array [rad]
+        ``direction`` less the climb.
+
+    References
+    ----------
+    docs/bowl.md, "How it is computed".
     """
     return np.clip(direction(machine, radius) - climb, 0.0, RIGHT_ANGLE_RAD)

@@ -42,7 +42,7 @@ class Key:
 
     @property
     def bounds(self) -> str:
-        """What it may be, for people: '0 mm to 20 mm', 'right or left'."""
+        """Return what it may be, for people: '0 mm to 20 mm', 'right or left'."""
         return " or ".join(self.choices) if self.choices else f"{self.lowest} to {self.highest}"
 
     def value(self, text: str) -> float | str:
@@ -359,11 +359,31 @@ UNBALANCE_TOLERANCE = 1e-9  # of what is rounded in a file
 
 
 def with_unbalance(values: Mapping[str, Any], hand: str) -> dict[str, Any]:
-    """Return the fields of a Machine, with its unbalance in place of the keys that say it.
+    """Return the fields of a machine, with its unbalance in place of the keys that say it.
 
-    ``values`` [SI] are by word of a key of the machine; on a ``hand`` of 'left' the track turns the other way
-    as it rises. Without unbalance where all those keys are zero: nothing is known. Raises FeederError if no
-    body has such a tensor: second moments about its centre are not below 0.
+    A real body has second moments about its centre that are not below 0. So the tensor of the second moments,
+    E = tr(I) / 2 - I less the mass at its centre, must have no negative leading minor, apart from rounding.
+
+    Parameters
+    ----------
+    values : mapping of str to float or array [SI]
+        By word of a key of the machine.
+    hand : str
+        On 'left' the track turns the other way as it rises.
+
+    Returns
+    -------
+    dict of str to value
+        Without unbalance where all those keys are zero: nothing is known then. Arrays are not checked.
+
+    Raises
+    ------
+    FeederError
+        If no body has such a centre, moments and products.
+
+    References
+    ----------
+    Sylvester's criterion; docs/bowl_file.md.
     """
     rest = {word: value for word, value in values.items() if word not in UNBALANCE_NAMES}
     if not any(np.any(values.get(word, 0.0)) for word in UNBALANCE_NAMES):

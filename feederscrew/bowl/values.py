@@ -46,7 +46,27 @@ BowlValues = TypedDict(  # noqa: UP013 - a line for each of eighty keys says no 
 
 
 def adjusted(bowl: Bowl, overrides: Overrides, values: Mapping[str, Any]) -> Bowl:
-    """Return a bowl with other values, as ``Bowl.with_values`` says; the same one where none is given."""
+    """Return a bowl with other values, as ``Bowl.with_values`` says; the same one where none is given.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    overrides : mapping or iterable of str
+        Values by key name, or texts 'drive.frequency=50 Hz'.
+    values : mapping of str to value
+        By word of a key: 'amplitude'.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    TypeError
+        If a keyword is not a key of a bowl.
+    Faults
+        Every fault of the values, one a line.
+    """
     refuse_unknown("with_values", values)
     texts = value_texts(overrides, values)
     if not texts:
@@ -57,10 +77,26 @@ def adjusted(bowl: Bowl, overrides: Overrides, values: Mapping[str, Any]) -> Bow
 
 
 def refuse_unknown(function: str, keywords: Collection[str], own: Sequence[str] = ()) -> None:
-    """Refuse keywords that are no keys of a bowl, nor a function's ``own``.
+    """Refuse keywords that are no keys of a bowl, nor a function's own.
 
-    Raises TypeError: its line says which key is near, or by which full name one is given that several
-    sections have.
+    Parameters
+    ----------
+    function : str
+        Its name, for the fault.
+    keywords : collection of str
+        That were given.
+    own : sequence of str
+        Keywords of the function itself.
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    TypeError
+        If a keyword is unknown. The line says which key is near, or by which full name to give a key that
+        several sections have.
     """
     words = BowlValues.__optional_keys__
     unknown = next((name for name in keywords if name not in words and name not in own), None)

@@ -124,7 +124,7 @@ class Verified:
 
     @property
     def sentence(self) -> str:
-        """What the trial showed, in a sentence."""
+        """Return what the trial showed, in a sentence."""
         minute = units.PER_MINUTE
         purity = "nothing left" if self.purity is None else f"purity {100.0 * self.purity:.3g} %"
         counted = f", {self.up} at any heading counted in: a rule counts one orientation" if self.up else ""
@@ -162,7 +162,7 @@ def fingerprint(bowl: Bowl) -> str:
 
 
 def _own(value: object) -> str:
-    """What only devices of some kinds have, such as an angle: to four digits, as files write six."""
+    """Return what only devices of some kinds have, such as an angle: to four digits, as files write six."""
     if isinstance(value, tuple):
         return f"({' '.join(map(_own, value))})"
     if value is None:

@@ -46,18 +46,57 @@ SOURCES = {
 
 
 def record_type(*names: str, whole: tuple[str, ...] = (), flags: tuple[str, ...] = ()) -> np.dtype:
-    """Return a record of numbers by name; some of them are whole, some are yes or no."""
+    """Return the dtype of a record of numbers by name, aligned as a C compiler aligns a struct.
+
+    Parameters
+    ----------
+    *names : str
+        Fields, in their order; those not in ``whole`` or ``flags`` are float64.
+    whole : tuple of str
+        Fields that are int64.
+    flags : tuple of str
+        Fields that are bool.
+
+    Returns
+    -------
+    numpy.dtype
+    """
     kinds = dict.fromkeys(whole, np.int64) | dict.fromkeys(flags, np.bool_)
     return np.dtype([(name, kinds.get(name, np.float64)) for name in names], align=True)
 
 
 def zero_rows(shape: int | tuple[int, ...], kind: np.dtype) -> np.recarray:
-    """Return an array of zeros, of that shape, of a kind of record."""
+    """Return an array of records whose numbers are all zero.
+
+    Parameters
+    ----------
+    shape : int or tuple of int
+    kind : numpy.dtype
+        Of ``record_type``.
+
+    Returns
+    -------
+    numpy.recarray
+        Of the shape; fields are read as attributes.
+    """
     return np.zeros(shape, kind).view(np.recarray)
 
 
 def frozen_rows(values: Sequence[Sequence[float]], kind: np.dtype) -> np.recarray:
-    """Return records of a kind with some values, a sequence each, closed to writing."""
+    """Return records with given values, closed to writing.
+
+    Parameters
+    ----------
+    values : sequence of sequences of numbers
+        A record each, its numbers in the order of the fields.
+    kind : numpy.dtype
+        Of ``record_type``.
+
+    Returns
+    -------
+    numpy.recarray
+        (N,), as many as there are sequences.
+    """
     records = np.array([tuple(row) for row in values], kind).view(np.recarray)
     records.setflags(write=False)
     return records
@@ -89,17 +128,43 @@ def entry(function: Function) -> Function:
 
 
 def fitting(function: Function, half_edges: int) -> Function:
-    """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size."""
+    """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size.
+
+    Parameters
+    ----------
+    function : callable
+        Marked by ``compiled`` or ``outlined``.
+    half_edges : int
+        Of the hull. Up to ``SMALL`` of them are walked in Python sooner than numba is loaded.
+
+    Returns
+    -------
+    callable
+        It takes the same arguments and gives the same result.
+    """
     return function if half_edges <= SMALL else _once(function)
 
 
 def on_disk(function: Callable[..., Any]) -> bool:
-    """Whether a compiled function is on the disk already, or numba is set not to compile."""
+    """Return whether a compiled function is on the disk already, or numba is set not to compile."""
     return not isinstance(function, Kernel) or bool(function.files())
 
 
 def due(function: Callable[..., Any], half_edges: int) -> bool:
-    """Whether a marked function must be compiled for a hull of that size: some seconds, once."""
+    """Return whether a marked function has to be compiled first for a hull of that size: some seconds, once.
+
+    Parameters
+    ----------
+    function : callable
+        Marked by ``compiled`` or ``outlined``.
+    half_edges : int
+        Of the hull.
+
+    Returns
+    -------
+    bool
+        True where ``fitting`` would compile it and no file of an earlier run holds its code.
+    """
     return half_edges > SMALL and not on_disk(_once(function))
 
 
@@ -268,7 +333,7 @@ def _target() -> Any:
 
 @functools.cache
 def _machine() -> str:
-    """What object code depends on beside its sources."""
+    """Return what object code depends on beside its sources."""
     import llvmlite
     from llvmlite import binding
 

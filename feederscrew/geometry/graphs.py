@@ -10,10 +10,23 @@ from feederscrew.arrays import Array, Ints
 
 
 def components(i: Ints, j: Ints, count: int) -> tuple[int, Ints]:
-    """Return the number of components of a graph of ``count`` nodes, and that of each node (count,).
+    """Return the number of components of a graph, and the component of each node.
 
-    ``i``, ``j`` (N,) int are the two ends of each link. They are numbered in the order of their first nodes.
-    scipy's own function takes a tenth of a short command to load.
+    scipy has the same function, but it takes a tenth of a short command to load.
+
+    Parameters
+    ----------
+    i, j : (N,) int
+        The two ends of each link.
+    count : int
+        Nodes.
+
+    Returns
+    -------
+    int
+        Components.
+    (count,) int
+        The component of each node. Components are numbered in the order of their first nodes.
     """
     component = np.arange(count)
     while len(i):  # each node takes the least number of its neighbours, then that of the node it names
@@ -31,7 +44,20 @@ def components(i: Ints, j: Ints, count: int) -> tuple[int, Ints]:
 
 
 def component_of(pairs: Ints, count: int) -> Ints:
-    """Return of each node its component (count,) int; pairs (N, 2) int are the two ends of each link."""
+    """Return the component of each node of a graph.
+
+    Parameters
+    ----------
+    pairs : (N, 2) int
+        The two ends of each link.
+    count : int
+        Nodes.
+
+    Returns
+    -------
+    (count,) int
+        As of ``components``.
+    """
     first, second = pairs.T
     return components(first, second, count)[1]
 
@@ -43,19 +69,58 @@ def join_groups(groups: Sequence[Ints]) -> tuple[Ints, Ints]:
 
 
 def group_starts(owners: Ints, count: int) -> Ints:
-    """Return the place (G,) of the first member of each of ``count`` groups, by ascending owners (N,)."""
+    """Return the place of the first member of each group.
+
+    Parameters
+    ----------
+    owners : (N,) int
+        The group of each member, ascending.
+    count : int
+        Groups, G.
+
+    Returns
+    -------
+    (G,) int
+        An empty group has the place where its members would stand.
+    """
     return np.searchsorted(owners, np.arange(count))
 
 
 def split_groups(members: Array, owners: Ints, count: int) -> list[Array]:
-    """Return the members (N, ...) of each of ``count`` groups, by ascending owners (N,): a list of arrays."""
+    """Return the members of each group as an array of its own.
+
+    Parameters
+    ----------
+    members : (N, ...) array
+    owners : (N,) int
+        The group of each member, ascending.
+    count : int
+        Groups, G.
+
+    Returns
+    -------
+    list of arrays
+        G of them, views of ``members``; an empty group has no rows.
+    """
     bounds = group_starts(owners, count + 1).tolist()
     return [members[start:stop] for start, stop in itertools.pairwise(bounds)]
 
 
 def group_sums(values: Array, owners: Ints, count: int) -> Any:
-    """Return the sums (G,) or (G, K) over the members of each of ``count`` groups, none of them empty.
+    """Return the sums over the members of each group.
 
-    Values (N,) are of one quantity, or (K, N) of several, a row each; the owners (N,) ascend.
+    Parameters
+    ----------
+    values : (N,) or (K, N) array [any unit]
+        Of one quantity, or of several, a row each.
+    owners : (N,) int
+        The group of each member, ascending. No group is empty: ``numpy.add.reduceat`` would give it the value
+        of the next member.
+    count : int
+        Groups, G.
+
+    Returns
+    -------
+    (G,) or (G, K) array [unit of the values]
     """
     return np.add.reduceat(values, group_starts(owners, count), axis=-1).T

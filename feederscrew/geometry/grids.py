@@ -64,9 +64,23 @@ def evaluate(
 ) -> Grid:
     """Evaluate a function of two quantities on a grid.
 
-    It takes (N1, 1) and (1, N2) arrays in SI and returns arrays that broadcast to (N1, N2) by column name,
-    under 'regime' the places in ``names``; without any, every code is 0. One that makes many arrays on its
-    way is handed so many ``rows`` of the first at a time.
+    Parameters
+    ----------
+    first, second : GridAxis
+        Of N1 and N2 values.
+    function : callable
+        It takes (N1, 1) and (1, N2) arrays in SI and returns arrays that broadcast to (N1, N2), by column
+        name; under 'regime' the places in ``names``.
+    names : sequence of str
+        Of the regimes; without any, every code is 0.
+    rows : int, optional
+        So many values of the first axis are handed over at a time, for a function that makes many arrays on
+        its way; all at once without it.
+
+    Returns
+    -------
+    Grid
+        Its arrays are closed to writing.
     """
     shape = (len(first.values), len(second.values))
     rows = rows or len(first.values)
@@ -82,5 +96,19 @@ def evaluate(
 
 
 def span(column: str, low: float, high: float, count: int, unit: float = 1.0) -> GridAxis:
-    """Return the GridAxis of ``count`` evenly spaced values [SI]; ``unit`` [SI] is one unit of the column."""
+    """Return an axis of evenly spaced values, both ends included.
+
+    Parameters
+    ----------
+    column : str
+        Its name in tables, with the unit: 'beta_deg'.
+    low, high : float [SI]
+    count : int
+    unit : float [SI]
+        One unit of the column.
+
+    Returns
+    -------
+    GridAxis
+    """
     return GridAxis(column, check.frozen(np.linspace(low, high, count)), unit)

@@ -51,7 +51,7 @@ def _places(kinds: Sequence[Any]) -> Iterator[int]:
 
 
 def _words_of(kind: Any) -> int:
-    """How many words of eight bytes a value of a type takes: of an array its address and shape."""
+    """Return how many words of eight bytes a value of a type takes: of an array its address and shape."""
     if isinstance(kind, types.Array):
         return 1 + kind.ndim
     if isinstance(kind, HandedRecord):

@@ -43,9 +43,27 @@ class Cells:
 
 
 def cells(corners: Points, triangles: Triangles, count: int) -> Cells:
-    """Return the cells of a closed surface, ``count`` along its longest side and two more all round."""
+    """Return the cubic cells of a closed surface and of its convex hull.
+
+    A cell belongs to the solid if an odd number of facets lies under its middle. Columns of cells run
+    ``COLUMN_OFFSETS`` of a cell beside the lattice, so that none meets a corner or an edge of a drawing.
+
+    Parameters
+    ----------
+    corners : (V, 3) float [any length]
+    triangles : (F, 3) int
+        Places of the corners of each facet of the closed surface.
+    count : int
+        Cells along the longest side. The lattice has two more all round, so that its rim is empty.
+
+    Returns
+    -------
+    Cells
+        Lengths as those of the corners.
+    """
     least, most = corners.min(axis=0), corners.max(axis=0)
     size = float((most - least).max()) / count
+    # two empty cells all round: what lies beside the body is asked for as well
     shape = np.ceil((most - least) / size).astype(int) + 4
     origin = 0.5 * (least + most) - 0.5 * size * (shape - 1)
     solid = _filled(corners[triangles], origin, size, shape)
@@ -70,10 +88,26 @@ def _filled(triangles: Floats, origin: Vector, size: float, shape: Ints) -> Bool
 
 
 def chords(corners: Points, triangles: Triangles, count: int) -> tuple[Floats, Ints, Ints]:
-    """Return, along upright lines through a closed surface, from its lowest place to its highest.
+    """Return the chords of upright lines through a closed surface, from its lowest place to its highest.
 
-    ``count`` lines go along its longer side seen from above. Lengths (M,) [that of the corners], and the
-    facets (M,) int in which each begins and ends.
+    A line through a hollow body counts from end to end, the hollow included.
+
+    Parameters
+    ----------
+    corners : (V, 3) float [any length]
+    triangles : (F, 3) int
+        Places of the corners of each facet.
+    count : int
+        Lines along the longer side of the body, seen from above.
+
+    Returns
+    -------
+    (M,) float [length of the corners]
+        Of each of the M lines that meet the surface.
+    (M,) int
+        The facet in which each begins.
+    (M,) int
+        The facet in which each ends.
     """
     least, most = corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
     size = float((most - least).max()) / count

@@ -46,9 +46,21 @@ def sides(polygon: Points) -> Points:
 
 
 def inset(polygon: Points, points: Points) -> Any:
-    """Return how far (...,) [m] points (..., 2) lie inside a convex polygon (K, 2), counter-clockwise.
+    """Return how far points lie inside a convex polygon.
 
-    That is the distance to the line of the nearest side, negative outside; NaN where there is no polygon.
+    That is the distance to the line of the nearest side. Outside it is negative; beyond a corner its size is
+    less than the distance to the polygon.
+
+    Parameters
+    ----------
+    polygon : (K, 2) float [m]
+        Counter-clockwise.
+    points : (..., 2) float [m]
+
+    Returns
+    -------
+    (...,) float [m]
+        NaN where the polygon has no corners.
     """
     if len(polygon) == 0:
         return np.full(np.shape(points)[:-1], np.nan)
@@ -66,7 +78,18 @@ def surrounds(points: Points) -> bool:
 
 
 def turned(points: Points, angle: float | Floats) -> Points:
-    """Return points in a plane turned counter-clockwise; ``points`` (..., 2), ``angle`` [rad]."""
+    """Return points in a plane turned counter-clockwise about the origin.
+
+    Parameters
+    ----------
+    points : (..., 2) float [any unit]
+    angle : float or array [rad]
+        It broadcasts with (...).
+
+    Returns
+    -------
+    (..., 2) float [unit of the points]
+    """
     c, s = np.cos(angle), np.sin(angle)
     return np.stack(
         [c * points[..., 0] - s * points[..., 1], s * points[..., 0] + c * points[..., 1]], axis=-1
@@ -74,7 +97,18 @@ def turned(points: Points, angle: float | Floats) -> Points:
 
 
 def cross(u: Floats, v: Floats) -> Any:
-    """Return the third component of u x v, over the last axis."""
+    """Return the third component of u x v, over the last axis: u1 v2 - u2 v1.
+
+    It is positive where v lies to the left of u.
+
+    Parameters
+    ----------
+    u, v : (..., 2) float [any units]
+
+    Returns
+    -------
+    (...,) float [product of their units]
+    """
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
 
@@ -100,7 +134,7 @@ def convex(points: Points) -> Ints:
     """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
 
     def is_right(a: Vector, b: Vector, c: Vector) -> bool:
-        """Whether the way from a over b to c does not turn left."""
+        """Return whether the way from a over b to c does not turn left."""
         return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-16
 
     order = np.lexsort((points[:, 1], points[:, 0]))

@@ -13,11 +13,24 @@ LEAST_AREA_M2 = 1e-14  # [m2] twice the area of a facet that counts
 def area(corners: Points, faces: Triangles) -> Any:
     """Return the area covered by facets that are seen from their outer side: all of a closed body.
 
-    Source: own; the sides along which two such facets do not go on border the pieces that are covered or not,
-    and how many facets cover a piece is how often those sides go round it.
+    The sides along which two such facets do not go on border the pieces that are covered or not. How many
+    facets cover a piece is how often those sides go round it.
 
-    ``corners`` (V, 2) [m]; ``faces`` (F, 3): counter-clockwise as seen where their outer side is.
-    Returns a shapely geometry [m].
+    Parameters
+    ----------
+    corners : (V, 2) float [m]
+        As seen along the axis.
+    faces : (F, 3) int
+        Counter-clockwise as seen where their outer side is.
+
+    Returns
+    -------
+    shapely geometry [m]
+        Facets of less than half ``LEAST_AREA_M2`` count for nothing.
+
+    References
+    ----------
+    Own.
     """
     a, b, c = corners[faces].transpose(1, 0, 2)
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
@@ -44,10 +57,23 @@ def area(corners: Points, faces: Triangles) -> Any:
 def below(sides: Points, least: float) -> Any:
     """Return the area between a level and the highest of some sides over each place along it.
 
-    Source: own; between two ends of sides next to each other one of them is the highest.
+    Between two neighbouring ends of sides one of the sides is the highest all along.
 
-    ``sides`` (N, 2, 2) [m]: ends of each: along the level and over it; ``least`` [m]: ends nearer to each
-    other along it are one. Returns a shapely geometry [m]: pieces apart where there is no side.
+    Parameters
+    ----------
+    sides : (N, 2, 2) float [m]
+        The two ends of each, a row an end: along the level, and over it.
+    least : float [m]
+        Ends nearer to each other along the level are one.
+
+    Returns
+    -------
+    shapely geometry [m]
+        In pieces where there is no side between them.
+
+    References
+    ----------
+    Own.
     """
     order = np.argsort(sides[:, :, 0], axis=1)
     (x, z), (far, high) = np.take_along_axis(sides, order[:, :, None], axis=1).transpose(1, 2, 0)

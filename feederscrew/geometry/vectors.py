@@ -27,19 +27,48 @@ DEPENDENT_COLUMN_SHARE = 1e-6  # [1] of its length: what is left of a column tha
 
 
 def product(a: Array, b: Array) -> Floats:
-    """Return the matrix product, like ``a @ b``: (K,) or (..., N, K) with (K,) or (..., K, M)."""
+    """Return the matrix product, like ``a @ b``, with the same digits on every processor.
+
+    Parameters
+    ----------
+    a : (K,) or (..., N, K) array [any unit]
+    b : (K,) or (..., K, M) array [any unit]
+
+    Returns
+    -------
+    (), (..., M), (..., N) or (..., N, M) array [product of their units]
+    """
     return np.einsum(PRODUCT_SUBSCRIPTS[np.ndim(a) > 1, np.ndim(b) > 1], a, b)
 
 
 def dot(u: Floats, v: Floats) -> Any:
-    """Return the scalar products (...,) of vectors (..., K)."""
+    """Return the scalar products of vectors along the last axis.
+
+    Parameters
+    ----------
+    u, v : (..., K) float [any units]
+        They broadcast.
+
+    Returns
+    -------
+    (...,) float [product of their units]
+    """
     return np.einsum("...k,...k->...", u, v)
 
 
 def cross(u: ArrayLike, v: ArrayLike) -> Any:
-    """Return the vector products (..., 3) of vectors (..., 3).
+    """Return the vector products u x v of vectors along the last axis.
 
     The digits are those of ``numpy.cross``, whose own checks take four times as long as a few products.
+
+    Parameters
+    ----------
+    u, v : (..., 3) array_like [any units]
+        They broadcast.
+
+    Returns
+    -------
+    (..., 3) float [product of their units]
     """
     u, v = np.asarray(u, float), np.asarray(v, float)
     a, b, c = u[..., 0], u[..., 1], u[..., 2]
@@ -72,7 +101,19 @@ def unit(vectors: ArrayLike) -> Any:
 
 
 def ratio(above: ArrayLike, below: ArrayLike, otherwise: ArrayLike = np.nan) -> Floats:
-    """Return ``above`` over ``below`` [quotient of their units]; ``otherwise`` where that is 0."""
+    """Return quotients, with a value of one's own where the divisor is zero.
+
+    Parameters
+    ----------
+    above, below : array_like [any units]
+        They broadcast.
+    otherwise : array_like [quotient of their units]
+        Where ``below`` is 0.
+
+    Returns
+    -------
+    (...) float [quotient of their units]
+    """
     shape = np.broadcast_shapes(np.shape(above), np.shape(below))
     return np.divide(above, below, out=np.full(shape, otherwise), where=np.asarray(below) != 0.0)
 
@@ -84,25 +125,56 @@ def determinant(matrix: ArrayLike) -> Any:
 
 
 def covariance(vectors: Floats, weights: Floats) -> Floats:
-    """Return the unbiased covariance (K, K) [square of their unit] of vectors (N, K) with weights (N,).
+    """Return the unbiased covariance of vectors that count with different weights.
 
-    Weights are not negative, some of them positive: how much each vector counts.
+    C = sum w_n (x_n - m) (x_n - m)^T / (W - sum w_n^2 / W), with W = sum w_n and m the weighted mean. With
+    equal weights that is the sample covariance, divided by N - 1. A single vector has none: it gives NaN.
+
+    Parameters
+    ----------
+    vectors : (N, K) float [any unit]
+    weights : (N,) float [1]
+        How much each vector counts: none negative, some positive.
+
+    Returns
+    -------
+    (K, K) float [square of the unit]
     """
     total = weights.sum()
     off = vectors - np.einsum("n,nk->k", weights, vectors) / total
     share = total - (weights**2).sum() / total
+    # a quantity a row: einsum adds along memory, in one order on every processor
     off = np.ascontiguousarray(off.T)
     return np.einsum("in,jn->ij", weights * off, off) / share
 
 
 def eigen(matrix: ArrayLike) -> tuple[Floats, Floats]:
-    """Return eigenvalues (K,), ascending, and eigenvectors of a small symmetric matrix (K, K).
+    """Return eigenvalues, ascending, and eigenvectors of a small symmetric matrix.
 
-    Eigenvectors are orthonormal columns in their order; equal values keep the axes of the matrix as far as
-    they may. Cyclic Jacobi rotations: entries off the diagonal that are rounding are left alone, as they
-    would choose among the axes of equal values. Raises ValueError if the matrix is not finite.
+    Cyclic Jacobi rotations. Entries off the diagonal that are rounding are left alone, as they would choose
+    among the axes of equal values.
 
-    Source: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Johns Hopkins, 2013, section 8.5.
+    Parameters
+    ----------
+    matrix : (K, K) array_like [any unit]
+        Symmetric.
+
+    Returns
+    -------
+    (K,) float [unit of the matrix]
+        Eigenvalues, ascending.
+    (K, K) float [1]
+        Orthonormal eigenvectors, a column each, in the order of the values. Equal values keep the axes of the
+        matrix as far as possible.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not finite.
+
+    References
+    ----------
+    G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Johns Hopkins, 2013, section 8.5.
     """
     entries = np.array(matrix, float)
     if not np.isfinite(entries).all():
@@ -132,9 +204,20 @@ def eigen(matrix: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def solve(matrix: ArrayLike, right: ArrayLike) -> Floats:
-    """Return the solutions (..., K) of systems of linear equations, matrix (..., K, K), right side (..., K).
+    """Return the solutions of systems of linear equations.
 
-    Gaussian elimination, the largest pivot of each column first; not finite where a matrix is singular.
+    Gaussian elimination; in each column the largest pivot comes first.
+
+    Parameters
+    ----------
+    matrix : (..., K, K) array_like [any unit]
+    right : (..., K) array_like [any unit]
+        The right side; both broadcast.
+
+    Returns
+    -------
+    (..., K) float [unit of the right side over that of the matrix]
+        Not finite where a matrix is singular.
     """
     matrix, right = np.asarray(matrix, float), np.asarray(right, float)
     shape = np.broadcast_shapes(matrix.shape[:-1], right.shape)
@@ -160,9 +243,20 @@ def solve(matrix: ArrayLike, right: ArrayLike) -> Floats:
 
 
 def misfit(columns: ArrayLike, right: ArrayLike) -> Floats:
-    """Return what least squares leave (N,) of the right side (N,): less the nearest sum of columns (N, K).
+    """Return what a least-squares fit leaves of the right side: less the nearest sum of the columns.
 
-    The columns may depend on each other. Modified Gram-Schmidt, each column freed twice from those before it.
+    Modified Gram-Schmidt; each column is freed twice from those before it, because once leaves rounding. The
+    columns may depend on each other: what is left of one that does is dropped.
+
+    Parameters
+    ----------
+    columns : (N, K) array_like [any unit]
+    right : (N,) array_like [any unit]
+
+    Returns
+    -------
+    (N,) float [unit of the right side]
+        Square to every column.
     """
     basis: list[Floats] = []
     left = np.array(right, float)
@@ -197,9 +291,21 @@ def spiral(count: int) -> Floats:
 
 
 def carried(axis: Vector, start: Vector, end: Vector) -> Any:
-    """Return a unit vector (3,) turned as the shortest turn takes one direction (3,) [1] to another.
+    """Return a unit vector turned as the shortest turn takes one direction to another.
 
-    They are not opposite. It is square to ``end``: what is left of it along that is taken away.
+    Two mirrors make the turn: one square to the middle of both directions, one square to ``end``. Rounding is
+    taken away at the end, so that the result is square to ``end``.
+
+    Parameters
+    ----------
+    axis : (3,) float [1]
+        Square to ``start``.
+    start, end : (3,) float [1]
+        Unit vectors that are not opposite: their shortest turn is not known.
+
+    Returns
+    -------
+    (3,) float [1]
     """
     middle = unit(start + end)
     turned = axis - 2.0 * dot(axis, middle) * middle
@@ -208,29 +314,76 @@ def carried(axis: Vector, start: Vector, end: Vector) -> Any:
 
 
 def columns_at(rows: Points, places: Ints) -> Floats:
-    """Return the vectors (M, 3) at some places (N, K) int as columns, (K, 3, N)."""
+    """Return vectors at chosen places as columns, which numpy reads faster than rows.
+
+    Parameters
+    ----------
+    rows : (M, 3) float [any unit]
+    places : (N, K) int
+        Rows that are chosen, K for each of N things.
+
+    Returns
+    -------
+    (K, 3, N) float [unit of the rows]
+    """
     return np.ascontiguousarray(rows.T)[:, places.T].swapaxes(0, 1)
 
 
 def dot_columns(u: Floats, v: Floats) -> Floats:
-    """Return the scalar products (N,) of columns (3, N)."""
+    """Return the scalar products of vectors that are columns.
+
+    Parameters
+    ----------
+    u, v : (3, N) float [any units]
+
+    Returns
+    -------
+    (N,) float [product of their units]
+    """
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
 def cross_columns(u: Floats, v: Floats) -> Floats:
-    """Return the vector products (3, N) of columns (3, N)."""
+    """Return the vector products u x v of vectors that are columns.
+
+    Parameters
+    ----------
+    u, v : (3, N) float [any units]
+
+    Returns
+    -------
+    (3, N) float [product of their units]
+    """
     return np.stack([u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)])
 
 
 def solid_angles(apex: ArrayLike, triangles: ArrayLike) -> Any:
-    """Return the solid angle (T,) [sr] of each triangle (T, 3, 3) [m], seen from a point ``apex`` (3,) [m].
+    """Return the solid angle of each triangle, seen from a point.
 
-    Corners are counter-clockwise seen from outside. It is positive where the outer side faces away from
-    ``apex``; triangles closed around it sum to 4 pi. On a triangle, plus or minus 2 pi by rounding. Raises
-    ValueError if a shape is wrong or an entry is not finite.
+    tan(Omega / 2) = a . (b x c) / (|a| |b| |c| + (a . b) |c| + (b . c) |a| + (c . a) |b|), with the corners
+    a, b and c seen from the point. It is positive where the outer side faces away from ``apex``; triangles
+    closed around it sum to 4 pi.
 
-    Source: A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng.
-    BME-30(2), 125-126, 1983.
+    Parameters
+    ----------
+    apex : (3,) array_like [m]
+    triangles : (T, 3, 3) array_like [m]
+        Corners counter-clockwise seen from outside.
+
+    Returns
+    -------
+    (T,) float [sr]
+        Where ``apex`` lies on a triangle, plus or minus 2 pi by rounding.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong or an entry is not finite.
+
+    References
+    ----------
+    A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. BME-30(2),
+    125-126, 1983.
     """
     apex = check.shaped("apex", apex, (3,))
     triangles = check.shaped("triangles", triangles, (-1, 3, 3))

@@ -16,10 +16,23 @@ VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 
 
 def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
-    """Return what is odd about a conveying velocity [m/s], NaN where there is no steady one: a line or none.
+    """Return what is odd about a conveying velocity: a line, or none.
 
-    A bowl made by hand has no rules, of the slowest and the fastest speed.
-    Source: trade, the keys ``sizing.slowest`` and ``sizing.fastest``.
+    Parameters
+    ----------
+    velocity : float [m/s]
+        NaN where there is no steady one.
+    rules : Sizing or None
+        The slowest and the fastest usual speed; a bowl made by hand has no rules.
+
+    Returns
+    -------
+    list of str
+        Empty where the speed is usual, not known or without rules.
+
+    References
+    ----------
+    Trade; the keys ``sizing.slowest`` and ``sizing.fastest``.
     """
     if rules is None or np.isnan(velocity) or rules.slowest <= velocity <= rules.fastest:
         return []
@@ -31,7 +44,17 @@ def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
 
 
 def remarks(sheet: Any) -> tuple[str, ...]:
-    """Return the remarks on a machine, of a MachineSheet."""
+    """Return the remarks on a machine.
+
+    Parameters
+    ----------
+    sheet : MachineSheet
+
+    Returns
+    -------
+    tuple of str
+        A line each: springs, limits, emptying, rocking, size, tipping of the part, speed.
+    """
     order = sheet.order
     faults = [*_springs(sheet), *_limits(sheet), *_emptying(sheet), *_rocking(sheet)]
     faults += [] if order is None else _size(sheet)
@@ -103,7 +126,7 @@ def _limits(sheet: Any) -> Iterator[FeederError]:
 
 
 def _emptying(sheet: Any) -> Iterator[FeederError]:
-    """What a bowl left alone does from full to empty."""
+    """Return what a bowl left alone does from full to empty."""
     bowl, rules, emptied, drive = sheet.bowl, sheet.bowl.sizing, sheet.emptying, sheet.stroke.frequency
     most = greatest_amplitude(bowl)
     full_frequency = emptied.natural_frequencies[0]
@@ -142,7 +165,7 @@ def _rocking(sheet: Any) -> Iterator[FeederError]:
 
 
 def _size(sheet: Any) -> Iterator[FeederError]:
-    """What of a bowl that was sized for a part and a rate is out of its rules."""
+    """Return what of a bowl that was sized for a part and a rate is out of its rules."""
     low, order, size = sheet.lowest, sheet.order, sheet.order.size
     if low.rate < order.target * (1.0 - 1e-6):
         there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.control}"

@@ -69,9 +69,28 @@ def read(text: str) -> dict[str, float]:
 
 
 def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
-    """Return a machine as it was found beside what it should do.
+    """Return a machine as it was found beside what it should do, and the likely causes of a difference.
 
-    The MachineSheet is of the machine as it is drawn; values [SI] are from ``read``.
+    The target is that of the machine as drawn, its stroke at the fill that was found. A missing frequency
+    follows from the harmonic motion, f = sqrt(2 a / s) / (2 pi), with the peak acceleration a and the stroke
+    s peak to peak. Causes are looked for in the frequency first: a stroke at another frequency says nothing
+    about springs.
+
+    Parameters
+    ----------
+    sheet : MachineSheet
+        Of the machine as it is drawn.
+    values : dict of str to float [SI]
+        From ``read``: 'acceleration', 'stroke', 'frequency', 'fill', any of them.
+
+    Returns
+    -------
+    MeasuredMachine
+        Velocities NaN where no stroke is known.
+
+    References
+    ----------
+    Harmonic motion, a = w^2 s / 2; docs/bowl.md.
     """
     bowl, emptied, level = sheet.bowl, sheet.emptying, values.get("fill", 0.0)
     share = float(np.interp(level, emptied.levels[::-1], emptied.strokes[::-1]))

@@ -36,10 +36,31 @@ RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 def machine_for(bowl: Bowl, size: Size, user_words: Collection[str], *, exact: bool = False) -> Machine:
     """Return the machine under a bowl of sheet on springs, what the user gave of it kept.
 
-    ``bowl``: its machine, its rules, and the vibration angle wanted at the track; ``user_words`` set of str:
-    fields of the machine that the user gave; ``exact``: the vibration angle is given, and the machine shall
-    make it: the springs move outwards, and then stand steeper, as far as ``sizing`` allows. Without it the
-    springs keep their circle and the angle of the track follows from them.
+    Floor, wall and track of sheet of mass s per area: m = (1 + k) s [pi R^2 + 2 pi R H + n pi (R^2 - r^2)]
+    and I = (1 + k) [m_f R^2 / 2 + m_w R^2 + m_t (R^2 + r^2) / 2], with the tooling's share k, n turns and the
+    track's inner radius r. The base has a multiple of both. Where the bowl is known as a solid, its mass and
+    inertia are taken.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its machine, its rules, and the vibration angle that is wanted at the track.
+    size : Size
+    user_words : collection of str
+        Fields of the machine that the user gave, 'leaf_width': these stay.
+    exact : bool
+        The vibration angle is given, and the machine has to make it: the springs move outwards, then stand
+        steeper, as far as ``sizing`` allows. Without it the springs keep their circle, and the angle at the
+        track follows from them.
+
+    Returns
+    -------
+    Machine
+        Its springs lean by whole degrees where the user did not say how much.
+
+    References
+    ----------
+    Thin plates and shells of sheet; docs/bowl.md, "How it is computed", and the keys of ``sizing``.
     """
     rules, radius = bowl.sizing, 0.5 * size.diameter
     # mass and inertia [kg], [kg m2]: of the solid, or of floor, wall and track of sheet with tooling
@@ -84,8 +105,24 @@ def machine_for(bowl: Bowl, size: Size, user_words: Collection[str], *, exact: b
 def machine_on(bowl: Bowl, user_words: Collection[str], *, exact: bool = False) -> Machine:
     """Return the machine under a bowl of which only the track is known.
 
-    Its depth is that of ``sizing``, over the bowl's diameter. ``user_words`` are names of the keys that the
-    user gave, 'machine.bowl_mass'; ``exact`` as for ``machine_for``.
+    Its depth is that of ``sizing``, a share of the bowl's diameter; the rest is as for ``machine_for``.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    user_words : collection of str
+        Names of the keys that the user gave, 'machine.bowl_mass'. Note the section: ``machine_for`` goes
+        without.
+    exact : bool
+        As for ``machine_for``.
+
+    Returns
+    -------
+    Machine
+
+    References
+    ----------
+    docs/bowl.md, "How it is computed".
     """
     track, depth = bowl.track, 2.0 * bowl.sizing.depth * bowl.track.radius
     pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
@@ -199,7 +236,7 @@ class DriveMismatch:
 
     @property
     def text(self) -> str:
-        """What is wrong, and both drives, in one sentence."""
+        """Return what is wrong, and both drives, in one sentence."""
         reasons = []
         if self.two_axis:
             reasons.append(f"out of phase by {np.degrees(self.wanted.phase):.4g} deg, {TWO_MAGNETS}")
@@ -261,15 +298,50 @@ class DriveSearch:
 
 
 def user_keys(settings: Iterable[Setting], section: str = "") -> set[str]:
-    """Return the words of the keys of a section that the user gave, a set."""
+    """Return the words of the keys of a section that the user gave.
+
+    Parameters
+    ----------
+    settings : iterable of Setting
+    section : str
+        'drive'; '' for keys of no section.
+
+    Returns
+    -------
+    set of str
+        {'amplitude', 'frequency'}
+    """
     return {s.key.word for s in settings if s.is_own and s.key.section == section}
 
 
 def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]) -> tuple[Bowl, sizing.Flow]:
     """Find the bowl whose drive brings the target, without the parts that this drive turns over.
 
-    ``flow``: from a bowl, or from None for no drive at all, to the Flow along its track. Raises ArgumentError
-    if no stroke that drives are built for brings so many.
+    A faster drive turns more orientations over, and then fewer parts count. So drive and flow are found in
+    turn until the flow that a drive leaves is the one it was sized for. There are only so many orientations
+    to turn over; where flows alternate, the drive that brings enough is taken.
+
+    Parameters
+    ----------
+    search : DriveSearch
+    flow : callable
+        From a Bowl, or from None for no drive at all, to the Flow along its track.
+
+    Returns
+    -------
+    Bowl
+        With drive and machine.
+    Flow
+        Along its track, under that drive.
+
+    Raises
+    ------
+    ArgumentError
+        If no stroke that drives are built for brings so many parts.
+
+    References
+    ----------
+    docs/bowl.md, "1. The part, and the rate".
     """
     now, tried = flow(None), set()
     while True:
@@ -354,11 +426,26 @@ def _with_stroke(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> B
 def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     """Return the machine of a bowl with the leaves that tune it to its drive at its stroke.
 
-    With the leaves that last and that a maker would take first: at most ``springs.USUAL_A_BANK`` in a bank,
+    Taken are leaves that last and that a maker would take first: at most ``springs.USUAL_A_BANK`` in a bank,
     tuned to the upper half of the detuning [1], because parts in the bowl lower the natural frequency. Of
-    these, the ones of the width in use, of about the length in use, and of a usual number. Where none lasts,
-    with those of least stress; as it is where no set tunes it. Fields of the machine that the user gave stay.
-    Source: ``springs.tuned_leaf_sets``; docs/bowl.md, "1. The part, and the rate".
+    these, the ones of the width in use, of about the length in use, and of a usual number. If none lasts,
+    those of least stress are taken.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its drive, machine and rules.
+    user_words : collection of str
+        Fields of the machine that the user gave, 'leaf_width': these stay.
+
+    Returns
+    -------
+    Machine
+        As it is where no set of leaves tunes it.
+
+    References
+    ----------
+    ``springs.tuned_leaf_sets``; docs/bowl.md, "1. The part, and the rate".
     """
     machine, rules, at_springs = bowl.machine, bowl.sizing, stroke(bowl).springs
     middle = 0.5 * (rules.least_detuning + rules.greatest_detuning)
@@ -398,9 +485,23 @@ def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
 def drive_shortfall(bowl: Bowl, user_words: frozenset[str]) -> str:
     """Return why the machine under a bowl does not make its leaf-spring drive; '' where it does.
 
-    ``user_words`` are names of the keys that the user gave, 'machine.leaves': these stay. Of a machine that
-    is sized from the track alone: the angle of the springs, the tuning of the leaves, their stress, or the
-    pull of the magnets.
+    The machine is sized from the track alone. Looked at are the angle of the springs, the tuning of the
+    leaves, their stress, and the pull of the magnets.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    user_words : frozenset of str
+        Names of the keys that the user gave, 'machine.leaves': these stay.
+
+    Returns
+    -------
+    str
+        The first reason, a clause for a sentence: 'its leaves bend to 210 MPa'.
+
+    References
+    ----------
+    ``leaf_shortfall``, whose formulas are those of ``springs``.
     """
     under = machine_on(bowl, user_words, exact=True)
     built = replace(bowl, machine=under)
@@ -463,7 +564,22 @@ DRIVE_UNITS = (
 
 
 def unit(name: str) -> DriveUnit:
-    """Return the drive unit of a name; raises ArgumentError if there is none."""
+    """Return the drive unit of a name.
+
+    Parameters
+    ----------
+    name : str
+        'd300-100hz', in any case.
+
+    Returns
+    -------
+    DriveUnit
+
+    Raises
+    ------
+    ArgumentError
+        If there is none of that name.
+    """
     units = {drive_unit.name: drive_unit for drive_unit in DRIVE_UNITS}
     drive_unit = units.get(name.strip().casefold())
     if drive_unit is None:

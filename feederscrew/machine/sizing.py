@@ -77,11 +77,29 @@ class SizedShape:
 
 
 def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None) -> Lying:
-    """Compute the room a part takes along a wall.
+    """Compute the room that a part takes along a wall on its stable aspects.
 
-    ``wanted`` are aspect and heading [rad] that shall leave the bowl; every stable orientation without it.
-    Raises FeederError if the part is a card without an outline.
-    Source: docs/bowl.md, "1. The part, and the rate".
+    The wall is straight: the bend of the bowl that is not yet sized is added by ``size_bowl``.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+    wanted : (str, float [rad]), optional
+        Aspect and heading that are to leave the bowl; every stable orientation without it.
+
+    Returns
+    -------
+    Lying
+
+    Raises
+    ------
+    FeederError
+        If the part is a card without an outline.
+
+    References
+    ----------
+    docs/bowl.md, "1. The part, and the rate".
     """
     stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
     stable = [headings(posed, STRAIGHT_TRACK) for posed in stood]
@@ -104,7 +122,25 @@ def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = 
 def size_shape(
     part: Part, aspects: Aspects, track: Track, wanted: tuple[str, float] | None = None
 ) -> SizedShape:
-    """Return the wanted orientation on a track, or else the most frequent heading of the first aspect."""
+    """Return the outline of one orientation against the wall, seen from above.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+    track : Track
+    wanted : (str, float [rad]), optional
+        Aspect and heading; the nearest stable heading is taken. Without it, the most frequent heading of the
+        first stable aspect.
+
+    Returns
+    -------
+    SizedShape
+
+    References
+    ----------
+    ``mechanics.headings``.
+    """
     name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
     stood = posture(part, aspects, name)
     stable = headings(stood, track)
@@ -127,11 +163,40 @@ def size_bowl(
 ) -> Size:
     """Compute the bowl that holds and carries a part.
 
-    ``drive_text``: what a fault names: the part's file; ``sorts``: whether a given width may be too little
-    for some orientations, which then fall off it; ``diameter`` and ``width`` [m], optional: those of a bowl
-    that exists; ``climb`` [rad], optional. Raises FeederError if it takes a bowl that nobody builds, or the
-    given one is smaller than the part.
-    Source: a published bowl generator and the keys of ``sizing``.
+    The diameter D is the largest of what each rule asks for, rounded up to the next step: no bowl is smaller;
+    a multiple of the longest part; a multiple of the track's width w = b + c + l^2 / (2 D). There b is the
+    part's width, c its play and l its length; the last term is the sagitta of the wall on both sides of the
+    part. As w hangs on D, both are found in turn. The climb is the least at which parts pass below the next
+    turn: phi = atan(rise / (pi D)).
+
+    Parameters
+    ----------
+    part : Lying
+    drive_text : str
+        What a fault names: the part's file.
+    rules : Sizing
+    sorts : bool
+        A given width may be too little for some orientations, which then fall off it.
+    diameter : float [m], optional
+        Of a bowl that exists.
+    width : float [m], optional
+        Of its track.
+    climb : float [rad], optional
+        Of its track.
+
+    Returns
+    -------
+    Size
+        Its ``turns`` NaN on a level track.
+
+    Raises
+    ------
+    FeederError
+        If it takes a bowl that nobody builds, or the given one is smaller than the part.
+
+    References
+    ----------
+    A published bowl generator; docs/bowl.md and the keys of ``sizing``, each with its own source.
     """
     play = float(np.clip(rules.clearance * part.width, rules.least_clearance, rules.greatest_clearance))
     # the diameter that each rule asks for [m]; width and bend of the track hang on each other
@@ -209,10 +274,27 @@ class Emptying:
 
 
 def full_bowl(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
-    """Compute the fill of a full bowl of a radius and a depth [m].
+    """Compute the parts in a full bowl: V = pi R^2 H f, m = V p rho and I = m R^2 / 2.
 
-    ``bulk`` [kg/m3] is the mass of a part over the volume of its hull: neighbours keep out of its hollows.
-    Source: the keys of the section ``sizing``, each with its own.
+    Parameters
+    ----------
+    radius : float [m]
+        R, of the inside.
+    depth : float [m]
+        H, rise of the track.
+    bulk : float [kg/m3]
+        rho: mass of a part over the volume of its hull, as neighbours keep out of its hollows.
+    rules : Sizing
+        f ``fill_height``, p ``packing``.
+
+    Returns
+    -------
+    Fill
+        Spread evenly over the floor.
+
+    References
+    ----------
+    The keys of the section ``sizing``, each with its own source.
     """
     volume = np.pi * radius**2 * depth * rules.fill_height
     mass = volume * rules.packing * bulk
@@ -220,7 +302,20 @@ def full_bowl(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
 
 
 def loaded_bowl(machine: Machine, fill: Fill, share: float) -> Machine:
-    """Return the machine with a share [1] of a fill vibrating with its bowl."""
+    """Return the machine with a share of a fill vibrating with its bowl.
+
+    The fill lies flat over the floor: about an upright axis it has its inertia, about a level one half of it.
+
+    Parameters
+    ----------
+    machine : Machine
+    fill : Fill
+    share : float [1]
+
+    Returns
+    -------
+    Machine
+    """
     around, own = share * fill.inertia, machine.unbalance
     upright = own.upright[0] + 0.5 * around, own.upright[1] + 0.5 * around  # spread flat over the floor
     return replace(
@@ -232,19 +327,35 @@ def loaded_bowl(machine: Machine, fill: Fill, share: float) -> Machine:
 
 
 def emptying(bowl: Bowl, fill: Fill) -> Emptying:
-    """Compute what becomes of the stroke as a bowl empties.
+    """Compute how the stroke changes as a bowl empties.
 
-    The bowl is empty, and its drive that of the empty bowl. The force of the magnet and the damping ratio
-    stay as they are; the damping that parts add is left out, so that a stroke near resonance is less than the
-    one here. The ``sizing`` of the bowl has the share of the fill that is carried. The springs move by force
-    times gain over stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2).
-    Source: two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
+    Natural frequency and gain are computed at each level, from full to empty. The springs move by force times
+    gain over stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2). The
+    force of the magnet and the damping ratio stay as they are; the damping that parts add is left out, so
+    that a real stroke near resonance is less than the one here.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Empty, with the drive of the empty bowl. Its ``sizing`` says the share of the fill that is carried.
+    fill : Fill
+        Of the full bowl.
+
+    Returns
+    -------
+    Emptying
+        At ``FILL_LEVEL_COUNT`` levels.
+
+    References
+    ----------
+    Two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
     """
     machine, rules, drive = bowl.machine, bowl.sizing, bowl.drive
     levels = np.linspace(1.0, 0.0, FILL_LEVEL_COUNT)
     laden = [loaded_bowl(machine, fill, rules.carried * u) for u in levels]
     natural = np.array([analyse_springs(machine_at_level).natural_frequency for machine_at_level in laden])
     gains = gain(drive.frequency, natural, machine.damping)
+    # the last level is the empty bowl: the force is that which moves it
     relative = gains / gains[-1]
     rises, turns = np.array([shares(machine_at_level) for machine_at_level in laden]).T
     upright = drive.vibration_angle + bowl.track.climb
@@ -284,11 +395,37 @@ def flow(
 ) -> Flow:
     """Compute how many parts a length of track delivers.
 
-    ``queue``: on the track, through the devices; ``rule``: whose probabilities are taken; ``target`` (str,
-    float [rad]), optional: aspect and heading that count; without it, every orientation that stays on the
-    track and that the devices let pass; ``gap`` [m]; ``fill`` [1]. Raises FeederError if nothing leaves.
-    Source: docs/bowl.md, "1. The part, and the rate".
+    For all orientations that leave: n = f s / (l + g), with the fill f, the gap g, the mean length l along
+    the track, and s the share of the parts on the track that leave, sum of p (leaves) / sum of p (stays).
+
+    Parameters
+    ----------
+    queue : Orientations
+        On the track, through the devices.
+    rule : str
+        Whose probabilities are taken.
+    target : (str, float [rad]), optional
+        Aspect and heading that count; without it, every orientation that stays on the track and that the
+        devices let pass.
+    gap : float [m]
+        Between parts.
+    fill : float [1]
+        Share of the track that parts cover, gaps included.
+
+    Returns
+    -------
+    Flow
+
+    Raises
+    ------
+    FeederError
+        If nothing leaves.
+
+    References
+    ----------
+    docs/bowl.md, "1. The part, and the rate".
     """
+    # one orientation counts: its own share and length
     if target is not None:
         parts = well_oriented.parts_per_metre(queue, target, rule, gap=gap, fill=fill)
         row = list(zip(queue.aspects, queue.headings)).index(target)
@@ -310,14 +447,31 @@ def amplitude_for(
 ) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
     """Return the smallest stroke from which on a part travels at least so fast.
 
-    The amplitude of the bowl is not used. ``strokes`` (N,) [1] are those over that stroke as it empties: at
-    the slowest of them the part shall travel at ``velocity`` [m/s]; ``angles`` (N,) [rad] are the vibration
-    angles there, that of the bowl without them. Returns (amplitude [m], velocity [m/s]), None where no stroke
-    that drives are built for does; then (velocity [m/s], amplitude [m]) of the fastest, None where one does.
+    The amplitude of the bowl is not used. Where a part hops, velocity does not only grow with the stroke: a
+    stroke is preferred from which on the velocity holds over the range that is tuned with the controller.
+    ``STROKE_SAMPLES`` strokes are looked at, then the first that is enough is bisected down to its lower
+    neighbour.
 
-    Where a part hops, velocity does not only grow with the stroke. A stroke is preferred from which on the
-    velocity holds over the range that is tuned with the controller.
-    Source: docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
+    Parameters
+    ----------
+    bowl : Bowl
+    velocity : float [m/s]
+        At which the part travels at the slowest of ``strokes``, at least.
+    strokes : (N,) array_like [1]
+        Strokes as the bowl empties, over the one that is sought.
+    angles : (N,) array_like [rad], optional
+        Vibration angles there; that of the bowl without them.
+
+    Returns
+    -------
+    (float [m], float [m/s]) or None
+        Amplitude and velocity; None where no stroke that drives are built for is enough.
+    (float [m/s], float [m]) or None
+        Then velocity and amplitude of the fastest; None where one is enough.
+
+    References
+    ----------
+    docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
     """
     amplitudes = greatest_amplitude(bowl) * np.arange(1, STROKE_SAMPLES + 1) / STROKE_SAMPLES
     # the first stroke from which on all is fast over the range that is tuned; else the first fast one
@@ -336,6 +490,7 @@ def amplitude_for(
             best = int(np.argmax(speeds))
             return None, (float(speeds[best]), float(amplitudes[best]))
         first = int(places[0])
+    # between the last sample that is too slow and the first that is fast enough
     low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
     for _ in range(STROKE_BISECTIONS):
         middle = 0.5 * (low + high)

@@ -74,11 +74,34 @@ def unbalanced_effective_mass(machine: Machine) -> float:
 def rocking(
     machine: Machine, radius: float, height: float, weight: tuple[float, ArrayLike] | None = None
 ) -> Rocking:
-    """Compute how the stroke of a bowl differs round its axis, at a ``radius`` and ``height`` [m].
+    """Compute how the stroke of a bowl whose centre of mass is off its axis differs round that axis.
 
-    That is over the upper ends of the leaves; so is ``weight`` (float [kg], (3,) float [m]), which is put on
-    the bowl to balance it.
-    Source: own; two bodies that move in a screw.
+    Bowl and base have no momentum together: (M1 + M2) V1 = M2 S. M are the 6 x 6 inertias of bowl and base,
+    V1 is the motion of the bowl, and S the screw between both, that of the leaves. The effective mass is S .
+    M1 V1. The stroke is taken at ``RIM_SAMPLES`` places of a rim, over its root mean square.
+
+    Parameters
+    ----------
+    machine : Machine
+    radius : float [m]
+        Of the rim.
+    height : float [m]
+        Of the rim over the upper ends of the leaves.
+    weight : (float [kg], (3,) array_like [m]), optional
+        Mass and place of what is put on the bowl to balance it; the place is from the same level.
+
+    Returns
+    -------
+    Rocking
+
+    Raises
+    ------
+    FeederError
+        If the inertia of the bowl is less than its mass has off its axis.
+
+    References
+    ----------
+    Own; two bodies that move in a screw.
     """
     bowl = _bowl(machine)
     if weight is not None:
@@ -90,6 +113,7 @@ def rocking(
     places = np.column_stack([radius * np.cos(theta), radius * np.sin(theta), np.full(RIM_SAMPLES, height)])
     moved = speed + cross(spin, places)
     strokes = np.sqrt(dot(moved, moved))
+    # the root mean square round the rim stands for the stroke of a balanced bowl
     mean = np.sqrt(dot(strokes, strokes) / RIM_SAMPLES)
     rise, turn = _screw(machine)
     along, around = bowl.momentum(speed, spin)
@@ -104,7 +128,16 @@ def rocking(
 def both_rocking_modes(bowl: Bowl, solid: Any) -> tuple[Rocking, Rocking] | None:
     """Return the stroke round a bowl where its track ends, as it is and with the weight that balances it.
 
-    None where the machine was not computed with the BowlSolid.
+    Parameters
+    ----------
+    bowl : Bowl
+    solid : BowlSolid
+        Its outlet and the balancing weight.
+
+    Returns
+    -------
+    (Rocking, Rocking) or None
+        None where the machine was not computed with the BowlSolid: nothing is known then that would rock it.
     """
     plan, under = solid.plan, bowl.machine
     if is_even(under):
@@ -198,30 +231,72 @@ def leaf_stiffness(machine: Machine) -> float:
 
 
 def leaf_stress(machine: Machine, amplitude: float) -> float:
-    """Return the amplitude of bending stress in a leaf, 3 E t delta / L^2 [Pa].
+    """Return the amplitude of bending stress in a leaf, 3 E t delta / L^2.
 
-    The amplitude [m] is half the stroke between bowl and base, at the springs and along their motion.
-    Source: Euler and Bernoulli's beam.
+    Both ends are guided: the bending moment is largest at the clamps, 6 E I delta / L^2, on a section of
+    modulus b t^2 / 6.
+
+    Parameters
+    ----------
+    machine : Machine
+    amplitude : float [m]
+        delta: half the stroke between bowl and base, at the springs and along their motion.
+
+    Returns
+    -------
+    float [Pa]
+
+    References
+    ----------
+    Euler and Bernoulli's beam.
     """
     return 3.0 * machine.leaf_modulus * machine.leaf_thickness * amplitude / machine.leaf_length**2
 
 
 def upright_pull(force: float, machine: Machine) -> float:
-    """Return the amplitude of the pull of an upright magnet that does what a force along the motion does [N].
+    """Return the amplitude of the pull of an upright magnet that does what a force along the motion does.
 
-    The motion of the springs rises at their angle: an upright pull works by its sine.
-    Source: equal work of two forces along one motion.
+    F / sin psi: the motion of the springs rises at their angle psi, so an upright pull works by its sine.
+
+    Parameters
+    ----------
+    force : float [N]
+        Amplitude along the motion of the springs.
+    machine : Machine
+
+    Returns
+    -------
+    float [N]
+
+    References
+    ----------
+    Equal work of two forces along one motion.
     """
     return float(force / np.sin(machine.spring_angle))
 
 
 def mean_pull(pull: float, frequency: float) -> float:
-    """Return the mean of a magnet's pull [N], of its amplitude [N] at the frequency of the drive [Hz].
+    """Return the mean of a magnet's pull.
 
-    The mean is as large as the amplitude on the full wave, and three quarters of it on the half wave, which
-    drives at the frequency of the mains: there the flux goes with 1 - cos(w t), and the constant part of its
-    square is three quarters of the part that drives. What a converter feeds is taken as the full wave.
-    Source: pull goes with the square of the flux, and flux with the integral of the voltage.
+    The mean is as large as the amplitude on the full wave. It is three quarters of it on the half wave, which
+    drives at the frequency of the mains: there the flux goes with 1 - cos(w t), and its square is 3/2 - 2
+    cos(w t) + cos(2 w t) / 2, whose constant part is three quarters of the part that drives. What a converter
+    feeds is taken as the full wave.
+
+    Parameters
+    ----------
+    pull : float [N]
+        Amplitude at the frequency of the drive.
+    frequency : float [Hz]
+        Of the drive. 50 and 60 Hz are taken as the half wave of the mains.
+
+    Returns
+    -------
+    float [N]
+
+    References
+    ----------
+    The pull goes with the square of the flux, and the flux with the integral of the voltage.
     """
     return pull * (HALF_WAVE if any(abs(frequency - mains) < 1e-6 for mains in MAINS) else 1.0)
 
@@ -243,12 +318,25 @@ def twist(machine: Machine) -> float:
 
 
 def in_plane(machine: Machine, offset: float = 0.0) -> float:
-    """Return by how much in-plane bending stiffens a bank of rigid clamps, over that without twist [1].
+    """Return by how much in-plane bending stiffens a bank of rigid clamps, over that without twist.
 
-    ``offset`` [m]: from the middle of a leaf, along it, to the point that is nearest to the bowl's axis; half
-    the length of the leaf where one of its ends is. Returns [1]: (b L / t r_s)^2 sin^2 psi cos^2 psi / 12
-    times 1 + 12 e^2 / (L^2 (1 + Phi)), with Phi = 2 (1 + nu) b^2 / (kappa L^2).
-    Source: Timoshenko's beam, bent about its stiff axis.
+    (b L / (t r_s))^2 sin^2 psi cos^2 psi / 12 times 1 + 12 e^2 / (L^2 (1 + Phi)), with Phi = 2 (1 + nu) b^2 /
+    (kappa L^2). Real clamps yield, so the value is an upper end.
+
+    Parameters
+    ----------
+    machine : Machine
+    offset : float [m]
+        e: from the middle of a leaf, along it, to the point that is nearest to the bowl's axis; half the
+        length of the leaf where one of its ends is.
+
+    Returns
+    -------
+    float [1]
+
+    References
+    ----------
+    Timoshenko's beam, bent about its stiff axis.
     """
     wide, long, angle = machine.leaf_width, machine.leaf_length, machine.spring_angle
     lever = wide * long / (machine.leaf_thickness * machine.spring_radius)
@@ -280,16 +368,47 @@ def held_fast(machine: Machine) -> Machine:
 
 
 def natural_frequency(stiffness: float, mass: float) -> float:
-    """Return sqrt(K / m) / (2 pi) [Hz], of the harmonic oscillator; arrays broadcast."""
+    """Return the natural frequency sqrt(K / m) / (2 pi).
+
+    Parameters
+    ----------
+    stiffness : float or array [N/m]
+    mass : float or array [kg]
+        Both broadcast.
+
+    Returns
+    -------
+    float or array [Hz]
+
+    References
+    ----------
+    The harmonic oscillator.
+    """
     return np.sqrt(stiffness / mass) / (2.0 * np.pi)
 
 
 def gain(frequency: ArrayLike, natural: ArrayLike, damping: float) -> Any:
-    """Return the stroke over that of the same force at rest [1]; arrays broadcast.
+    """Return the stroke over that of the same force at rest, 1 / sqrt((1 - q^2)^2 + (2 zeta q)^2).
 
-    1 / sqrt((1 - q^2)^2 + (2 zeta q)^2), q the frequency [Hz] of the drive over that of the machine, zeta the
-    share [1] of the critical damping; infinite at resonance without damping.
-    Source: the harmonic oscillator with viscous damping, forced.
+    q is the frequency of the drive over that of the machine.
+
+    Parameters
+    ----------
+    frequency : array_like [Hz]
+        Of the drive.
+    natural : array_like [Hz]
+        Of the machine; both broadcast.
+    damping : float [1]
+        zeta, share of the critical damping.
+
+    Returns
+    -------
+    float or array [1]
+        Infinite at resonance without damping.
+
+    References
+    ----------
+    The harmonic oscillator with viscous damping, forced.
     """
     q = np.asarray(frequency) / np.asarray(natural)
     with np.errstate(divide="ignore"):
@@ -328,11 +447,29 @@ def leaf_set(
     name: str = "",
     mass: float | None = None,
 ) -> LeafSet:
-    """Compute what other leaves of the same width and length do, of a ``thickness`` [m].
+    """Compute what other leaves of the same width and length do.
 
-    ``frequency`` [Hz] is that of the drive, ``amplitude`` [m] at the springs, for the stress; ``mass`` [kg]
-    the effective mass of the machine, where it is known: it is that of every such set.
-    Source: docs/bowl.md, "3. The machine".
+    Parameters
+    ----------
+    machine : Machine
+    frequency : float [Hz]
+        Of the drive.
+    amplitude : float [m]
+        At the springs, for the stress.
+    leaves : int
+    thickness : float [m]
+    name : str
+        What the set is beside the one in use.
+    mass : float [kg], optional
+        Effective mass of the machine, where it is known: every such set has the same.
+
+    Returns
+    -------
+    LeafSet
+
+    References
+    ----------
+    ``leaf_stiffness``, ``twist``, ``gain``, ``leaf_stress``; docs/bowl.md, "3. The machine".
     """
     other = replace(machine, leaves=leaves, leaf_thickness=thickness)
     mass = effective_mass(machine) if mass is None else mass
@@ -354,7 +491,20 @@ def leaf_set(
 def leaf_changes(machine: Machine, frequency: float, amplitude: float, banks: int) -> tuple[LeafSet, ...]:
     """Return the set in use beside a leaf more and less in each bank, and leaves 0.5 mm thicker.
 
-    Frequency [Hz] and amplitude [m] are those of ``leaf_set``; ``banks`` share the leaves.
+    Parameters
+    ----------
+    machine : Machine
+    frequency : float [Hz]
+        Of the drive.
+    amplitude : float [m]
+        At the springs.
+    banks : int
+        That share the leaves.
+
+    Returns
+    -------
+    tuple of LeafSet
+        Without a set of no leaves.
     """
     n, t = int(machine.leaves), machine.leaf_thickness
     rows = [("as it is", n, t), ("a leaf more a bank", n + banks, t), ("a leaf less a bank", n - banks, t)]
@@ -371,8 +521,20 @@ def tuned_leaf_sets(
 ) -> tuple[LeafSet, ...]:
     """Return the sets that put the natural frequency a few per cent above the drive, thin leaves first.
 
-    Frequency [Hz] and amplitude [m] are those of ``leaf_set``; rules give least and greatest detuning, and
-    the banks: each has as many leaves, at most ``MOST_A_BANK``. Empty where no whole number of leaves does.
+    Parameters
+    ----------
+    machine : Machine
+    frequency : float [Hz]
+        Of the drive.
+    amplitude : float [m]
+        At the springs.
+    rules : Sizing
+        Least and greatest detuning, and the banks: each has as many leaves, at most ``MOST_A_BANK``.
+
+    Returns
+    -------
+    tuple of LeafSet
+        Of thicknesses that makers stock, and of that in use. Empty where no whole number of leaves does.
     """
     stocked, mass = sorted({*THICKNESSES, machine.leaf_thickness}), effective_mass(machine)
     banks = int(rules.banks)
@@ -412,7 +574,23 @@ class Stroke:
 
 
 def stroke(bowl: Bowl) -> Stroke:
-    """Compute how a bowl with a machine moves."""
+    """Compute how a bowl with a machine moves at its track, and how far its springs bend.
+
+    The bowl turns by A cos psi / R. The springs take the turn between bowl and base, which is that over I2 /
+    (I1 + I2), at their radius and along their slope.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    Stroke
+
+    References
+    ----------
+    ``bowl.record.shares``; docs/bowl.md, "How it is computed".
+    """
     drive, machine = bowl.drive, bowl.machine
     angle = drive.vibration_angle + bowl.track.climb
     peak = drive.amplitude * (FULL_TURN_RAD * drive.frequency) ** 2
@@ -431,10 +609,23 @@ def stroke(bowl: Bowl) -> Stroke:
 
 
 def angles(machine: Machine, track: Track) -> tuple[Floats, Floats]:
-    """Return radii (N,) [m] and the angle (N,) [rad] of the bowl's motion to the horizontal at each.
+    """Return the direction of the bowl's motion over its radius.
 
-    From the smaller of the springs' radius and half the track's, outwards.
-    Source: ``bowl.record.direction``.
+    Parameters
+    ----------
+    machine : Machine
+    track : Track
+
+    Returns
+    -------
+    (N,) float [m]
+        Radii, outwards: from the smaller of the springs' radius and half the track's, to the track's.
+    (N,) float [rad]
+        Angle of the motion to the horizontal at each.
+
+    References
+    ----------
+    ``bowl.record.direction``.
     """
     evenly = track.radius * np.linspace(INNERMOST, 1.0, RADII)
     off_springs = np.abs(evenly - machine.spring_radius) > 1e-9 * track.radius
@@ -443,7 +634,22 @@ def angles(machine: Machine, track: Track) -> tuple[Floats, Floats]:
 
 
 def greatest_amplitude(bowl: Bowl) -> float:
-    """Return half the stroke that drives are built for at a frequency [m]."""
+    """Return the largest amplitude that drives are built for at the frequency of a bowl's drive.
+
+    min(a_max g / w^2, s_max / 2): half the greatest stroke, or less where the acceleration ends it.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [m]
+
+    References
+    ----------
+    Trade; the keys ``sizing.greatest_acceleration`` and ``sizing.greatest_stroke``.
+    """
     rules = bowl.sizing
     by_acceleration = rules.greatest_acceleration * bowl.gravity / (FULL_TURN_RAD * bowl.drive.frequency) ** 2
     return min(by_acceleration, 0.5 * rules.greatest_stroke)

@@ -56,7 +56,7 @@ class BowlSolid:
 
     @property
     def unbalance(self) -> Unbalance:
-        """How its mass lies about the axis, over its underside: that lies on the leaves."""
+        """Return how its mass lies about the axis, over its underside: that lies on the leaves."""
         place = self.centre - [0.0, 0.0, self.plan.underside]
         about = mass.shift_inertia(self.tensor, self.mass, place)
         x, y, z = map(float, self.mass * place)
@@ -87,7 +87,7 @@ class BowlSolid:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What must not be overlooked, a tuple of str."""
+        """Return what must not be overlooked, a tuple of str."""
         remarks = () if self.segments is None else self.segments.remarks
         if self.plan.stairs is not None or self.plan.turns >= SHORTER * self.turns_of_sheet:
             return remarks
@@ -120,9 +120,24 @@ def body(plan: BowlPlan) -> BowlSolid:
 
 
 def screwed(solid: BowlSolid, weight: float) -> BowlSolid:
-    """Return a bowl in segments that weighs what it does with its lugs and screws, of ``weight`` [kg] each.
+    """Return a bowl in segments that weighs what it does with its lugs and screws.
 
-    Without screws it stays as it is.
+    Each screw is a point mass m: I = I_0 + sum m (r^2 E - r r^T), about the new centre of mass.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+    weight : float [kg]
+        Of one screw.
+
+    Returns
+    -------
+    BowlSolid
+        As it is where it has no screws.
+
+    References
+    ----------
+    Steiner's theorem, ``part.mass.shift_inertia``.
     """
     if solid.segments is None or solid.segments.joined is None:
         return solid
@@ -151,9 +166,28 @@ def _weighed(plan: BowlPlan, parts: list[mass.Solid]) -> tuple[float, Vector, Fl
 
 
 def pieces(plan: BowlPlan, kit: ModuleType = facets) -> tuple[Body, list[tuple[str, Body]]]:
-    """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0.
+    """Return the bowl as one body, and its gates, the outlet at the angle 0.
 
-    The kit is ``facets`` or ``exact_body``, which the body is made with.
+    Wall, floor, track, plates and groove walls are made one by one, cut, and united. Gates stay apart: they
+    are screwed into a notch of the wall.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+
+    Returns
+    -------
+    Body [mm]
+        The bowl.
+    list of (str, Body [mm])
+        Name and body of each gate.
+
+    Raises
+    ------
+    FeederError
+        If cuts leave a piece loose.
     """
     blades = () if plan.stretch is None else plan.stretch.blades
     own_gates = [blade for blade in blades if blade.alone]
@@ -218,7 +252,19 @@ def _floor(plan: BowlPlan, kit: ModuleType) -> list[Body]:
 
 
 def walls(plan: BowlPlan, kit: ModuleType) -> list[Body]:
-    """Return the wall; of a stepped or conical bowl, and the plate that closes its last turn."""
+    """Return the bodies that make the wall, the outlet at the angle 0.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+
+    Returns
+    -------
+    list of Body [mm]
+        The wall; of a stepped or conical bowl also the plate that closes its last turn.
+    """
     if plan.stairs is None:
         r, far, low = plan.path.radius, plan.path.radius + plan.material.wall, plan.underside
         profile = [(r, low + PIECE_OVERLAP_M), (far, low), (far, plan.top), (r, plan.top)]

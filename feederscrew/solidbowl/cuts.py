@@ -33,7 +33,20 @@ class TrackLedge:
 
 
 def banked_height(track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]) -> Track:
-    """Return the track with the bank that the first devices give it from its entry on."""
+    """Return the track with the bank that the first devices give it from its entry on.
+
+    Parameters
+    ----------
+    track : Track
+    devices : sequence of Device
+        In the order parts meet them.
+    orientations : sequence of Orientation
+        Of the part on the track.
+
+    Returns
+    -------
+    Track
+    """
     for device in lean_at_entry(devices):
         for slope in device.standing(track, orientations).slopes:
             track = track if slope.bank is None else replace(track, bank=slope.bank)
@@ -50,8 +63,30 @@ def laid_out(
 ) -> tuple[list[Station], tuple, tuple[TrackLedge, ...], tuple, float]:
     """Return stations along a solid's track, with room for what leans and drops it.
 
-    ``track`` has the bank of its entry. Returned are the stations; the leans, as ``Stretch`` has them; the
-    ledges; the grooves; and by how much [m] the stretch is longer.
+    Where the bank changes, the free edge rises or falls by at most ``MAX_EDGE_SLOPE_RAD``. Where a part drops
+    beside a cut, a ramp leads back to the track. Both make the stretch longer, and all stations after them
+    move on.
+
+    Parameters
+    ----------
+    track : Track
+        With the bank of its entry.
+    stations : sequence of Station
+        As drawn, without that room.
+    orientations : sequence of Orientation
+        Of the part on the track.
+
+    Returns
+    -------
+    list of Station
+    tuple of (float [m], float [m], float [rad])
+        Leans: from and to where the track twists, and the bank after it.
+    tuple of TrackLedge
+    tuple of (float [m], float [m], float [rad], float [m])
+        Grooves: from and to where, the lean of the wall, and over which length it opens. Empty grooves are
+        left out.
+    float [m]
+        By how much the stretch is longer.
     """
     entry = len(lean_at_entry([station.device for station in stations]))
     moved: list[Station] = []
@@ -151,7 +186,24 @@ class Stretch:
 
 
 def stretch(track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]) -> Stretch:
-    """Return the tooled stretch of a track, of orientations of the part on it."""
+    """Return the tooled stretch of a track: cuts, plates, bores, steps, leans and grooves.
+
+    Cuts are carried a little over the edge that they reach, and into the wall: faces that meet in one plane
+    cut badly.
+
+    Parameters
+    ----------
+    track : Track
+    devices : sequence of Device
+        In the order parts meet them.
+    orientations : sequence of Orientation
+        Of the part on the track.
+
+    Returns
+    -------
+    Stretch
+        Lengths [m] from its own begin.
+    """
     section = build_section(track, devices, orientations)
     stations, leans, ledges, grooves, more = laid_out(track, section.stations, orientations)
     standing = [station.device.standing(track, orientations) for station in stations]

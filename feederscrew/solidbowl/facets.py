@@ -57,25 +57,74 @@ def swept(legs: Sequence[tuple[Points, Points]]) -> Body:
 
 
 def in_space(sections: Points, frames: Points) -> Points:
-    """Return the corners (M, K, 3) [m] of sections (M, K, 2) in their frames (M, 2, 2)."""
+    """Return the corners of sections in space.
+
+    Parameters
+    ----------
+    sections : (M, K, 2) float [m]
+        Corners of each: outwards, upwards.
+    frames : (M, 2, 2) float
+        Of each the place [m] from above where its first coordinate is zero, and the unit vector [1] along
+        which that grows.
+
+    Returns
+    -------
+    (M, K, 3) float [m]
+    """
     place, outward = frames[:, None, 0], frames[:, None, 1]
     return np.concatenate([place + sections[..., :1] * outward, sections[..., 1:]], axis=-1)
 
 
 def turned(profile: ArrayLike, segments: int) -> Body:
-    """Return a body of revolution [mm] about Z, of radius and height (K, 2) [m] counter-clockwise."""
+    """Return a body of revolution about Z.
+
+    Parameters
+    ----------
+    profile : (K, 2) array_like [m]
+        Radius and height, counter-clockwise.
+    segments : int
+        Facets round the axis.
+
+    Returns
+    -------
+    Body [mm]
+    """
     return manifold3d.CrossSection([np.asarray(profile) / MM]).revolve(segments)
 
 
 def patch(ring: Points, low: float, high: float) -> Body:
-    """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
+    """Return an upright body within a closed curve.
+
+    Parameters
+    ----------
+    ring : (K, 2) float [m]
+        Places of the curve, seen from above.
+    low, high : float [m]
+        Heights of its ends.
+
+    Returns
+    -------
+    Body [mm]
+    """
     return extrude(shapely.Polygon(ring), low, high)
 
 
 def over(path: TrackPath, ring: Points, low: float, high: float, chord: float) -> Body:
-    """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m].
+    """Return an upright body over a ring that is drawn along a way.
 
-    ``chord`` [m] is by how much an arc may be seen too flat.
+    Parameters
+    ----------
+    path : TrackPath
+    ring : (K, 2) float [m]
+        Corners: length along the wall, and distance from it.
+    low, high : float [m]
+        Heights of its ends.
+    chord : float [m]
+        By how much an arc may be too flat.
+
+    Returns
+    -------
+    Body [mm]
     """
     border = shapely.linestrings(np.vstack([ring, ring[:1]]))
     fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(4.0 * path.radius * chord)))[:-1]
@@ -83,7 +132,21 @@ def over(path: TrackPath, ring: Points, low: float, high: float, chord: float) -
 
 
 def disc(at: ArrayLike, size: float, low: float, high: float) -> Body:
-    """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
+    """Return an upright round rod.
+
+    Parameters
+    ----------
+    at : (2,) array_like [m]
+        Its middle, seen from above.
+    size : float [m]
+        Diameter.
+    low, high : float [m]
+        Heights of its ends.
+
+    Returns
+    -------
+    Body [mm]
+    """
     return extrude(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
 
 
@@ -94,14 +157,46 @@ def _circle(size: float) -> Points:
 
 
 def bore(place: ArrayLike, towards: Points, size: float, deep: float) -> Body:
-    """Return a round rod along a level unit vector (3,): its near end (3,), diameter and length [m]."""
+    """Return a round rod along a level direction.
+
+    Parameters
+    ----------
+    place : (3,) array_like [m]
+        Middle of its near end.
+    towards : (3,) float [1]
+        Level unit vector.
+    size : float [m]
+        Diameter.
+    deep : float [m]
+        Length.
+
+    Returns
+    -------
+    Body [mm]
+    """
     up = np.array([0.0, 0.0, 1.0])
     axes = np.column_stack([np.cross(up, towards), up, towards])
     return plank(shapely.Polygon(_circle(size)), deep, axes, place)
 
 
 def plank(area: shapely.Geometry, thickness: float, axes: Points, foot: ArrayLike) -> Body:
-    """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
+    """Return a plate over an area, in space.
+
+    Parameters
+    ----------
+    area : shapely geometry [m]
+        In the first two of its axes.
+    thickness : float [m]
+        Along the third.
+    axes : (3, 3) float [1]
+        Its axes, a column each.
+    foot : (3,) array_like [m]
+        Origin of its axes.
+
+    Returns
+    -------
+    Body [mm]
+    """
     return extrude(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
 
 
@@ -116,23 +211,72 @@ def united(bodies: Iterable[Body]) -> Body:
 
 
 def without(body: Body, tools: Sequence[Body]) -> Body:
-    """Return a Manifold with a list of others cut out of it."""
+    """Return a body with others cut out of it.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    tools : sequence of Body [mm]
+        None of them leaves the body as it is.
+
+    Returns
+    -------
+    Body [mm]
+    """
     return manifold3d.Manifold.batch_boolean([body, *tools], manifold3d.OpType.Subtract) if tools else body
 
 
 def above(body: Body, height: float) -> Body:
-    """Return what of a Manifold lies above a height [m]."""
+    """Return the share of a body that lies above a height.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    height : float [m]
+
+    Returns
+    -------
+    Body [mm]
+    """
     return body.trim_by_plane((0.0, 0.0, 1.0), height / MM)
 
 
 def placed_as(body: Body, *, mirrored: bool, turned: float) -> Body:
-    """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
+    """Return a body mirrored at the XZ plane or not, then turned about Z.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    mirrored : bool
+        The track rises the other way round.
+    turned : float [rad]
+
+    Returns
+    -------
+    Body [mm]
+    """
     body = body.mirror((0.0, 1.0, 0.0)) if mirrored else body
     return body.rotate((0.0, 0.0, float(np.degrees(turned)))) if turned else body
 
 
 def one_piece(body: Body, where: str) -> Body:
-    """Return the one piece of a body; raises FeederError if more than a crumb hangs loose."""
+    """Return the one piece of a body, without crumbs.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    where : str
+        What a fault names: 'devices'.
+
+    Returns
+    -------
+    Body [mm]
+
+    Raises
+    ------
+    FeederError
+        If more than a crumb hangs loose.
+    """
     pieces = sorted(body.decompose(), key=lambda item: -item.volume())
     loose = [piece for piece in pieces[1:] if piece.volume() * MM**3 > MIN_PIECE_VOLUME_M3]
     if loose:
@@ -153,55 +297,148 @@ def unplaced(solid: "BowlSolid") -> Body:
 
 
 def about_axis(places: ArrayLike, turn: float) -> Points:
-    """Return places (..., 2 or 3) turned about Z by an angle [rad]."""
+    """Return places turned about Z.
+
+    Parameters
+    ----------
+    places : (..., 2) or (..., 3) array_like [m]
+    turn : float [rad]
+
+    Returns
+    -------
+    (..., 2) or (..., 3) float [m]
+    """
     places = np.asarray(places)
     return np.concatenate([rotated(places, turn), places[..., 2:]], axis=-1)
 
 
 def as_planned(plan: BowlPlan, points: ArrayLike) -> Points:
-    """Return points (N, 2 or 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
+    """Return points of a bowl's files as its plan has them: right-handed, the outlet at the angle 0.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    points : (N, 2) or (N, 3) array_like [m]
+        In the axes of the files.
+
+    Returns
+    -------
+    (N, 2) or (N, 3) float [m]
+    """
     points = about_axis(points, -plan.turned)
     return points * [1.0, -1.0, 1.0][: points.shape[-1]] if plan.left else points
 
 
 def as_filed(plan: BowlPlan, points: ArrayLike) -> Points:
-    """Return points as ``as_planned`` has them as the bowl's files have them."""
+    """Return points of a bowl's plan as its files have them; the inverse of ``as_planned``.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    points : (N, 2) or (N, 3) array_like [m]
+        Right-handed, the outlet at the angle 0.
+
+    Returns
+    -------
+    (N, 2) or (N, 3) float [m]
+    """
     points = np.asarray(points)
     return about_axis(points * [1.0, -1.0, 1.0][: points.shape[-1]] if plan.left else points, plan.turned)
 
 
 def below(body: Body, place: ArrayLike, deep: float = 10.0) -> float | None:
-    """Return the height [m] of the first surface straight below a place (3,) [m]; None if there is none."""
+    """Return the height of the first surface straight below a place.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    place : (3,) array_like [m]
+    deep : float [m]
+        How far down it is looked for.
+
+    Returns
+    -------
+    float [m] or None
+        None if there is none.
+    """
     start = np.asarray(place) / MM
     hits = body.ray_cast(tuple(start), tuple(start + np.array([0.0, 0.0, -deep]) / MM))
     return float(hits[0].position[2]) * MM if hits else None
 
 
 def section(body: Body, angle: float) -> list[Points]:
-    """Return what a plane through the axis, at an angle [rad] from XZ, cuts of a Manifold [mm].
+    """Return the outlines that a plane through the axis cuts of a body.
 
-    The closed outlines, holes among them, are (K, 2) [m] each: place along the plane, height.
+    Parameters
+    ----------
+    body : Body [mm]
+    angle : float [rad]
+        Of the plane, from XZ.
+
+    Returns
+    -------
+    list of (K, 2) float [m]
+        Closed outlines, holes among them: place along the plane, and height.
     """
     flat = body.rotate((0.0, 0.0, -float(np.degrees(angle)))).rotate((-90.0, 0.0, 0.0))
     return [np.asarray(ring) * MM for ring in flat.slice(1e-3).to_polygons()]
 
 
 def first_met(body: Body, start: ArrayLike, towards: ArrayLike) -> list[float]:
-    """Return the distances [m] of all surfaces on a straight line from a place (3,) to another (3,) [m]."""
+    """Return the distances of all surfaces on a straight line from one place to another.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    start, towards : (3,) array_like [m]
+        Its ends.
+
+    Returns
+    -------
+    list of float [m]
+        From ``start``, the nearest first.
+    """
     start = np.asarray(start, float)
     hits = body.ray_cast(tuple(start / MM), tuple(np.asarray(towards, float) / MM))
     return [float(np.sqrt(np.sum((np.asarray(hit.position) * MM - start) ** 2))) for hit in hits]
 
 
 def rod(axis: int, middle: ArrayLike, size: float, deep: float) -> Body:
-    """Return a round rod along an axis (0, 1, 2) about a place (3,) [m], ``deep`` [m] to either side."""
+    """Return a round rod along one of the axes.
+
+    Parameters
+    ----------
+    axis : int
+        0, 1 or 2.
+    middle : (3,) array_like [m]
+    size : float [m]
+        Diameter.
+    deep : float [m]
+        Length to either side of its middle.
+
+    Returns
+    -------
+    Body [mm]
+    """
     solid = manifold3d.Manifold.cylinder(2.0 * deep / MM, 0.5 * size / MM, circular_segments=24, center=True)
     solid = (solid.rotate((0.0, 90.0, 0.0)), solid.rotate((90.0, 0.0, 0.0)), solid)[axis]
     return solid.translate(tuple(np.asarray(middle) / MM))
 
 
 def cut_by(body: Body, planes: Iterable[tuple[int, float]]) -> list[Body]:
-    """Return a Manifold in cells, cut by planes (axis, place [m]) square to the axes."""
+    """Return a body in cells, cut by planes square to the axes.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    planes : iterable of (int, float [m])
+        Axis, and the place on it.
+
+    Returns
+    -------
+    list of Body [mm]
+        Those that are not empty.
+    """
     cells = [body]
     for axis, at in planes:
         normal = tuple(float(k == axis) for k in range(3))
@@ -210,12 +447,37 @@ def cut_by(body: Body, planes: Iterable[tuple[int, float]]) -> list[Body]:
 
 
 def parts_of(body: Body, least: float = MIN_PIECE_VOLUME_M3) -> list[Body]:
-    """Return the pieces of a Manifold that hang together, those of less than a volume [m3] left out."""
+    """Return the pieces of a body that hang together.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    least : float [m3]
+        Smaller ones are left out.
+
+    Returns
+    -------
+    list of Body [mm]
+    """
     return [item for item in body.decompose() if item.volume() * MM**3 > least]
 
 
 def cut_face(body: Body, axis: int, at: float) -> shapely.Geometry:
-    """Return what a plane square to an axis cuts of a Manifold, as a shapely area [m] of the other two."""
+    """Return the face that a plane square to an axis cuts of a body.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    axis : int
+        0, 1 or 2.
+    at : float [m]
+        Place of the plane on that axis.
+
+    Returns
+    -------
+    shapely geometry [m]
+        In the other two axes, in their order; holes are open.
+    """
     turn = ((0.0, -90.0, 0.0), (90.0, 0.0, 0.0), (0.0, 0.0, 0.0))[axis]  # x' y' z': -z y x, x -z y, x y z
     rings = [np.asarray(ring) * MM for ring in body.rotate(turn).slice(at / MM).to_polygons()]
     area = shapely.Polygon()

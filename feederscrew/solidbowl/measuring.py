@@ -68,10 +68,23 @@ def measures(solid: BowlSolid) -> Measures:
 
 
 def track_width(plan: BowlPlan, body: Body, s: float) -> float:
-    """Return the width [m] of the track at a length along the wall, along its surface.
+    """Return the width of the track at a length along the wall, along its surface.
 
-    Rays from the middle of the track along its surface to the wall, at two heights over it: a wall may lean,
-    and is carried on straight to the surface. One from within, below the surface, to the free edge.
+    Rays run from the middle of the track along its surface to the wall, at two heights h and 2 h: a wall may
+    lean, and is carried on straight to the surface, 2 d(h) - d(2 h). One more runs from within, below the
+    surface, to the free edge.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    body : Body [mm]
+        Right-handed, the outlet at the angle 0.
+    s : float [m]
+        Length along the wall.
+
+    Returns
+    -------
+    float [m]
     """
     path = plan.path
     theta, half, bank = float(path.angle(s)), 0.5 * plan.width, float(path.bank_at(s))
@@ -91,7 +104,21 @@ def track_width(plan: BowlPlan, body: Body, s: float) -> float:
 
 
 def track_heights(plan: BowlPlan, body: Body, s: float, y: float) -> float | None:
-    """Return the height [m] of the first surface below a place a little over the track."""
+    """Return the height of the first surface below a place a little over the track.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    body : Body [mm]
+        Right-handed, the outlet at the angle 0.
+    s, y : float [m]
+        Length along the wall, and distance from it.
+
+    Returns
+    -------
+    float [m] or None
+        None where there is nothing below, as in a cut.
+    """
     place = plan.path.places(s, y)
     return facets.below(body, place + [0.0, 0.0, 0.5 * plan.headroom])
 

@@ -51,7 +51,19 @@ MATERIAL_NAMES = (*(item.name for item in PRINTED_MATERIALS), STEEL_NAME)
 
 
 def material(name: str, rules: Sizing) -> BowlMaterial:
-    """Return a material by its name in ``MATERIAL_NAMES``; 'steel' is the sheet of the bowl file's Sizing."""
+    """Return a material of a bowl by its name.
+
+    Parameters
+    ----------
+    name : str
+        Of ``MATERIAL_NAMES``.
+    rules : Sizing
+        'steel' is the sheet that they state.
+
+    Returns
+    -------
+    BowlMaterial
+    """
     if name == STEEL_NAME:
         sheet = rules.sheet
         return BowlMaterial(STEEL_NAME, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
@@ -271,7 +283,7 @@ class BowlPlan:
 
     @property
     def segments(self) -> int:
-        """How many facets a full turn has; where the track is steep across, more."""
+        """Return how many facets a full turn has; where the track is steep across, more."""
         banks = self.path.bank, *(bank for _, _, bank in self.path.leans)
         chord = self.chord / max(1.0, *(BANK_DROP_FACTOR * float(np.tan(bank)) for bank in banks))
         return int(np.ceil(FULL_TURN_RAD / (2.0 * np.arccos(1.0 - chord / self.path.radius)) / 4.0)) * 4
@@ -339,11 +351,31 @@ def plan(
     *,
     extents: Extents,
 ) -> BowlPlan:
-    """Return the measures of a bowl as a solid.
+    """Return the measures of a bowl as a solid, decided before a facet is made.
 
-    ``track``: of that size; ``tooled`` Stretch or None; ``extents`` (3,) [m]: of the part along its axes.
-    Raises FeederError if the track is too wide for the bowl, does not rise, is too short for the devices, or
-    what falls through them would not reach the floor.
+    The outlet is so long that the track's free edge leaves the wall: sqrt((R + t)^2 - (R - w cos(bank))^2)
+    and ``OUTLET`` more, with the wall's thickness t and the track's width w.
+
+    Parameters
+    ----------
+    size : Size
+    track : Track
+        Of that size.
+    made_of : BowlMaterial
+    tooled : Stretch or None
+    options : SolidOptions
+    extents : (3,) float [m]
+        Of the part along its axes.
+
+    Returns
+    -------
+    BowlPlan
+
+    Raises
+    ------
+    FeederError
+        If the track is too wide for the bowl, does not rise, or is too short for the devices. Also if
+        something that falls through them would not reach the floor, or the bolts and drains have no room.
     """
     widest = MAX_TRACK_WIDTH_RATIO * track.radius
     if track.width > widest:

@@ -16,11 +16,25 @@ BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does
 
 
 def place_rider(plan: BowlPlan, orientation: Orientation, vertices: Points, s: float) -> Points:
-    """Return a part (V, 3) [m] on the track of a bowl, its side at the wall; one that hangs as it hangs.
+    """Return a part on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
-    ``orientation``: the part's, on the track of that bowl; ``vertices`` (V, 3) [m]: of the part, in its
-    file's axes, about its centre of mass; ``s`` [m]: length along the wall at which its centre of mass is.
-    Returns (V, 3) [m]: in the bowl's axes as its files have them.
+    A bent track and a leaning wall move the part from where it lies on a straight one. So it is moved off the
+    wall and onto the track in turn, until it is nearer than ``RIDER_CONTACT_M`` to both.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    orientation : Orientation
+        Of the part, on the track of that bowl.
+    vertices : (V, 3) float [m]
+        Of the part, in its file's axes, about its centre of mass.
+    s : float [m]
+        Length along the wall at which its centre of mass is.
+
+    Returns
+    -------
+    (V, 3) float [m]
+        In the bowl's axes as its files have them.
     """
     path, points, distance = plan.path, product(vertices, orientation.axes.T), orientation.distance
     points[:, 2] += orientation.posture.height
@@ -49,7 +63,19 @@ def place_rider(plan: BowlPlan, orientation: Orientation, vertices: Points, s: f
 
 
 def leaning(plan: BowlPlan, s: Values) -> Values:
-    """Return how far the wall leans outwards over its height [1], at lengths along it."""
+    """Return how far the wall leans outwards over its height.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    s : float or array [m]
+        Lengths along the wall.
+
+    Returns
+    -------
+    float or array [1]
+        Tangent of the lean; 0 where the wall is upright.
+    """
     if plan.stairs is not None and plan.stairs.shape == CONICAL:  # upright above the last turn but one
         return np.where(plan.path.angle(s) < -FULL_TURN_RAD, 1.0 / np.tan(plan.stairs.slope), 0.0)
     lean = np.zeros(np.shape(s))
@@ -61,7 +87,26 @@ def leaning(plan: BowlPlan, s: Values) -> Values:
 
 
 def frame(plan: BowlPlan, s: float, y: float) -> tuple[Points, Points, Points]:
-    """Return the track's axes at a place, outlet at the angle 0: ahead, inwards and off its surface."""
+    """Return the track's axes at a place, the outlet at the angle 0.
+
+    By central differences of the surface: ``up`` is square to both its directions, and ``inwards`` completes
+    the three.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    s, y : float [m]
+        Length along the wall, and distance from it.
+
+    Returns
+    -------
+    (3,) float [1]
+        Ahead.
+    (3,) float [1]
+        Inwards.
+    (3,) float [1]
+        Off the surface.
+    """
     path, d = plan.path, 1e-5
     ahead = path.places(s + d, y) - path.places(s - d, y)
     inward = path.places(s, y + d) - path.places(s, y - d)
@@ -73,9 +118,20 @@ def frame(plan: BowlPlan, s: float, y: float) -> tuple[Points, Points, Points]:
 def riders(
     plan: BowlPlan, orientation: Orientation, hung: Orientation | None
 ) -> list[tuple[Orientation, float]]:
-    """Return parts along the track of a bowl, one behind the other, each with its length along the wall [m].
+    """Return parts along the track of a bowl, one behind the other.
 
-    They come along in an orientation; ``hung`` is that in which they hang from the last rails on, or None.
+    Parameters
+    ----------
+    plan : BowlPlan
+    orientation : Orientation
+        In which they come along.
+    hung : Orientation or None
+        In which they hang from the last rails on.
+
+    Returns
+    -------
+    list of (Orientation, float [m])
+        Each with its length along the wall.
     """
     step = SPACED * orientation.length
     last = plan.first if plan.stretch is not None else plan.path.end - orientation.length

@@ -77,11 +77,29 @@ def _regular(corners: int, across: float) -> shapely.Polygon:
 def place_lugs(
     body: Body, planes: Sequence[tuple[int, float]], tooled_area: shapely.Geometry, extents: Points
 ) -> tuple[list[Lug], int, int]:
-    """Return the lugs along the seams of a bowl, how many ends of seams have none, and how many there are.
+    """Return the lugs along the seams of a bowl.
 
-    ``body`` [mm] is turned as its seams are; ``planes`` are the axis and place [m] of each, ``tooled_area``
-    [m] devices and outlet seen from above, ``extents`` (3, 2) [m] the bowl's box, in those axes. No lug is
-    near the tooled area. An upright seam has two ends; a level one goes round and counts once.
+    A lug is left out where it would be near a device, the outlet, another lug or another seam, or where it
+    would stick out within the wall. An upright seam has two ends; a level one goes round and counts once.
+
+    Parameters
+    ----------
+    body : Body [mm]
+        Turned as its seams are.
+    planes : sequence of (int, float [m])
+        Axis and place of each seam.
+    tooled_area : shapely geometry [m]
+        Devices and outlet, seen from above.
+    extents : (3, 2) float [m]
+        The bowl's box, in those axes.
+
+    Returns
+    -------
+    list of Lug
+    int
+        Ends of seams without a lug.
+    int
+        Ends of seams.
     """
     lugs: list[Lug] = []
     with_lug, seam_points = set(), set()
@@ -146,7 +164,7 @@ def _lug(body: Body, frame: Frame, level: bool, low: float) -> Lug | None:
 
 
 def _wall(body: Body, place: Points, out: Points) -> float:
-    """How far out [m] the outer face of the wall lies from a place; not a number without one."""
+    """Return how far out [m] the outer face of the wall lies from a place; not a number without one."""
     first_met = facets.first_met(body, place + BEYOND_LUGS_M * out, place)
     return BEYOND_LUGS_M - first_met[0] if first_met else np.nan
 
@@ -190,12 +208,12 @@ class Segments:
 
     @property
     def dowels(self) -> int:
-        """How many."""
+        """Return how many."""
         return len(self.places)
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What must not be overlooked of ends of seams that have no screw, a tuple of str."""
+        """Return what must not be overlooked of ends of seams that have no screw, a tuple of str."""
         bare, ends = self.ends
         if not bare:
             return ()
@@ -228,11 +246,25 @@ def bed(text: str) -> tuple[float, ...]:
 
 
 def segments(solid: "BowlSolid", size: tuple[float, ...], joint: str = DOWELS) -> Segments:
-    """Return a bowl in pieces that fit a bed, whole where it fits as it is.
+    """Return a bowl in pieces that fit a printer's bed, whole where it fits as it is.
 
-    ``size`` (float, float, float) [m]: of the bed, and of the height that is printed; ``joint``: of
-    ``JOINTS``: dowels alone, or screws in lugs outside the wall as well. Raises FeederError if it takes more
-    than six segments in one direction, or no lug for a screw has room.
+    Parameters
+    ----------
+    solid : BowlSolid
+    size : (float, float, float) [m]
+        Of the bed, and of the height that is printed.
+    joint : str
+        Of ``JOINTS``: dowels alone, or screws in lugs outside the wall as well.
+
+    Returns
+    -------
+    Segments
+        Each piece with its lowest corner at the origin.
+
+    Raises
+    ------
+    FeederError
+        If it takes more than six segments in one direction, or no lug for a screw has room.
     """
     plan, screwed = solid.plan, joint == SCREWS
     counts, turn, extents = _seams(solid, size, screwed)
@@ -318,7 +350,7 @@ def _box(vertices: Points, turn: float) -> Points:
 
 
 def _counts(extents: Points, size: tuple[float, ...]) -> tuple[int, ...]:
-    """How many beds of a size a box (3, 2) takes along each axis."""
+    """Return how many beds of a size a box (3, 2) takes along each axis."""
     return tuple(int(np.ceil((high - low) / side - 1e-9)) for (low, high), side in zip(extents, size))
 
 

@@ -28,7 +28,21 @@ def fillet(plan: BowlPlan) -> float:
 
 
 def slab(plan: BowlPlan, kit: ModuleType) -> Body:
-    """Return the track with its outlet, its devices not yet cut; the kit is ``facets`` or ``exact_body``."""
+    """Return the track with its outlet, its devices not yet cut.
+
+    The track is swept in runs between its steps. Below a step the upright face comes first, because pieces
+    that only touch cannot be united exactly.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+
+    Returns
+    -------
+    Body [mm]
+    """
     runs, path = [], plan.path
     begin = path.rises(plan.width) - DIP * path.radius
     changes = *(at for at, _ in path.bends), *(at for lean in path.leans for at in lean[:2]), path.end
@@ -58,10 +72,23 @@ def _legs(
 
 
 def steps(plan: BowlPlan, kit: ModuleType, start: float, end: float) -> Floats:
-    """Return the lengths (M,) [m] along the wall at which a piece of track has its sections.
+    """Return the lengths along the wall at which a piece of track has its sections.
 
-    Of facets they are those of the wall's own facets, and both ends; of exact faces the places that a curve
-    is led through, or the two ends of what is straight.
+    Facets have them where the wall's own facets meet, and at both ends; a twisted piece has ``TWISTED`` times
+    as many. Exact faces have the places that a curve is led through, or the two ends of a straight piece.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+    start, end : float [m]
+        Of the piece.
+
+    Returns
+    -------
+    (M,) float [m]
+        Ascending.
     """
     path = plan.path
     if kit.HAS_EXACT_CURVES:
@@ -79,7 +106,19 @@ def steps(plan: BowlPlan, kit: ModuleType, start: float, end: float) -> Floats:
 
 
 def frames(plan: BowlPlan, s: Floats) -> Floats:
-    """Return place and outward direction (M, 2, 2) of the wall's foot at lengths s, seen from above."""
+    """Return the frames of sections along the wall, seen from above.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    s : (M,) float [m]
+        Lengths along the wall.
+
+    Returns
+    -------
+    (M, 2, 2) float
+        Place [m] of the wall's foot, and the outward unit vector [1].
+    """
     theta = plan.path.angle(s)
     outward = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
     return np.stack([plan.path.plan(s, 0.0), outward], axis=1)
@@ -127,7 +166,18 @@ def _sections(plan: BowlPlan, s: Floats, heights: Floats, strips: int) -> Floats
 def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     """Return the ledges along the wall that stand on the track which goes on lower beside them.
 
-    A ledge begins within the plate before it, a little lower, and ends within the plate below it.
+    A ledge begins within the plate before it, a little lower, and ends within the plate below it: so no two
+    faces lie in one plane.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+
+    Returns
+    -------
+    list of Body [mm]
     """
     path, half, strips, bodies = plan.path, 0.5 * plan.material.plate, _strips(plan, kit), []
     for ledge in () if plan.stretch is None else plan.stretch.ledges:
@@ -148,12 +198,38 @@ def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
 
 
 def drum(plan: BowlPlan, kit: ModuleType, radius: float, low: float, high: float) -> Body:
-    """Return a cylinder about the axis between two heights [m], its facets those of the wall."""
+    """Return a cylinder about the axis, its facets those of the wall.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+    radius : float [m]
+    low, high : float [m]
+        Heights of its ends.
+
+    Returns
+    -------
+    Body [mm]
+    """
     return kit.turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], plan.segments)
 
 
 def sides(plan: BowlPlan, kit: ModuleType) -> list[Body]:
-    """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
+    """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+
+    Returns
+    -------
+    list of Body [mm]
+        Without the former where a groove is open to the end.
+    """
     path, wall, height = plan.path, plan.material.wall, plan.outlet_height
     end = path.end + plan.outlet
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
@@ -175,9 +251,20 @@ def _cuts(plan: BowlPlan, hang: bool) -> tuple[TrackHole, ...]:
 
 
 def holes(plan: BowlPlan, kit: ModuleType, *, hang: bool) -> list[Body]:
-    """Return what cuts take out of the track: those in which parts hang, or the others.
+    """Return the bodies that cuts take out of the track.
 
-    The former go on from their device to the end of the outlet, open there.
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+    hang : bool
+        Take the cuts in which parts hang, which go on from their device to the end of the outlet and are open
+        there; else the others.
+
+    Returns
+    -------
+    list of Body [mm]
     """
     solid, plate = [], plan.material.plate
     for cut in _cuts(plan, hang):
@@ -195,6 +282,16 @@ def yokes(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     """Return the brackets that carry the inner rail from below, behind the stretch that sorts.
 
     They lie so deep that parts hang free over them.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+
+    Returns
+    -------
+    list of Body [mm]
     """
     solid, plate = [], plan.material.plate
     for s in yoke_places(plan):
@@ -224,7 +321,23 @@ MAX_GROOVE_WALL_RAD = 0.85 * FULL_TURN_RAD  # [rad] before the outlet: above it 
 
 
 def groove_walls(plan: BowlPlan, kit: ModuleType) -> tuple[list[Body], list[Body]]:
-    """Return what grooves take from the bowl's wall, and their own walls: lists of bodies [mm]."""
+    """Return the cuts that grooves make in the bowl's wall, and their own walls.
+
+    A cut goes a little lower than the wall in it, as three faces in one line cut badly.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+
+    Returns
+    -------
+    list of Body [mm]
+        Cuts.
+    list of Body [mm]
+        Walls.
+    """
     path, wide = plan.path, plan.headroom + GROOVE_WALL_MARGIN_M
     strips = 1 if kit.HAS_EXACT_CURVES else STRIPS
     far = plan.material.wall + GROOVE_CUT_MARGIN_M
@@ -268,7 +381,22 @@ def groove_spans(plan: BowlPlan) -> list[Groove]:
 
 
 def lean_at(groove: Groove, s: Values) -> Values:
-    """Return by how much [rad] the wall of a groove leans back from upright at lengths s."""
+    """Return by how much the wall of a groove leans back from upright.
+
+    It opens and closes linearly over a length of its own. The least is ``MIN_GROOVE_WALL_LEAN_RAD``: a face
+    in the plane of the bowl's wall cuts badly.
+
+    Parameters
+    ----------
+    groove : (float [m], float [m], float [rad], float [m])
+        From, to, lean, and the length over which it opens.
+    s : float or array [m]
+        Lengths along the wall.
+
+    Returns
+    -------
+    float or array [rad]
+    """
     start, end, lean, opens = groove
     share = np.clip((s - start) / opens, 0.0, 1.0) * (1.0 - np.clip((s - end) / opens, 0.0, 1.0))
     return np.maximum(lean * share, MIN_GROOVE_WALL_LEAN_RAD)

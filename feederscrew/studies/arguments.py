@@ -49,6 +49,11 @@ def former_keywords(
         Of other former keywords: a function that puts the value into the arguments.
     **records : type
         Arguments that are records, whose fields were keywords.
+
+    Returns
+    -------
+    callable
+        It takes a function and returns one with its name, signature and docstring.
     """
 
     def decorate(function: Function) -> Function:
@@ -132,32 +137,125 @@ def an_aspect(name: str | None) -> str | None:
 
 
 def several(name: str, items: object, wanted: type, mend: str) -> tuple[Any, ...]:
-    """Return what is given in a list as a tuple; raises ArgumentError where one is of another class."""
+    """Return the items of a list as a tuple, once each is of a class.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    items : tuple or list
+    wanted : type
+        Class of each item.
+    mend : str
+        What to give: 'give parts, as load returns them'.
+
+    Returns
+    -------
+    tuple
+
+    Raises
+    ------
+    ArgumentError
+        If it is no list, or an item is of another class.
+    """
     listed = check.kind(name, items, (tuple, list), mend)
     return tuple(check.kind(name, item, wanted, mend) for item in listed)
 
 
 def count(name: str, value: int | None, low: int = 1) -> int | None:
-    """Return a whole number from a lowest one; None stays None."""
+    """Return a whole number from a lowest one on; None stays None.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : int or None
+    low : int
+        The lowest one.
+
+    Returns
+    -------
+    int or None
+
+    Raises
+    ------
+    ArgumentError
+        If the value is not a whole number, or is below the lowest.
+    """
     return None if value is None else whole(name, value, low)
 
 
 def whole(name: str, value: int, low: int = 1) -> int:
-    """Return a whole number from a lowest one."""
+    """Return a whole number from a lowest one on.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : int
+        A float without a fraction is taken as well.
+    low : int
+        The lowest one.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    ArgumentError
+        If the value is not a whole number, or is below the lowest.
+    """
     if not check.argument(name, value, low).is_integer():
         raise ArgumentError(name, f"is {value}", "give a whole number")
     return int(value)
 
 
 def share(name: str, value: float, low: float = 0.0) -> float:
-    """Return a share [1]; raises ArgumentError where it is below the lowest or above 1."""
+    """Return a share.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : float [1]
+    low : float [1]
+        The lowest one.
+
+    Returns
+    -------
+    float [1]
+
+    Raises
+    ------
+    ArgumentError
+        If it is below the lowest or above 1.
+    """
     return check.argument(name, value, low, 1.0)
 
 
 def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -> float:
-    """Return '2 mm', a number in SI units or a quantity of pint in SI units, of a dimension of ``units``.
+    """Return a quantity in SI units.
 
-    Raises ArgumentError if ``value`` is neither, or below ``low`` [SI]; the line names the argument.
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : str, float [SI] or a quantity of pint
+        '2 mm'.
+    dimension : str
+        Of ``units``: 'length'.
+    low : float [SI]
+        The lowest one.
+
+    Returns
+    -------
+    float [SI]
+
+    Raises
+    ------
+    ArgumentError
+        If the value is of another dimension, not a number, or below the lowest.
     """
     try:
         number: Any = si.from_quantity(value, dimension)
@@ -168,12 +266,51 @@ def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -
 
 
 def angle(name: str, value: Quantity | None) -> float | None:
-    """Return an angle [rad] of '90 deg' or of radians; None stays None."""
+    """Return an angle; None stays None.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : str, float [rad], a quantity of pint or None
+        '90 deg'.
+
+    Returns
+    -------
+    float [rad] or None
+
+    Raises
+    ------
+    ArgumentError
+        If the value is not an angle.
+    """
     return None if value is None else amount(name, value, "angle")
 
 
 def pair(name: str, value: object, dimension: str) -> tuple[float, float]:
-    """Return the smaller and the larger of two quantities in SI units; one stands for both."""
+    """Return the smaller and the larger of two quantities; one stands for both.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the fault.
+    value : quantity, or (quantity, quantity)
+        Each as for ``amount``, none below 0.
+    dimension : str
+        Of ``units``: 'length'.
+
+    Returns
+    -------
+    float [SI]
+        The smaller.
+    float [SI]
+        The larger.
+
+    Raises
+    ------
+    ArgumentError
+        If there are more than two, one is not such a quantity, or the first is the larger.
+    """
     ends = value if isinstance(value, (tuple, list)) else (value, value)
     if len(ends) != 2:
         raise ArgumentError(name, f"has {len(ends)} values", "give one, or the smaller and the larger")
@@ -198,7 +335,24 @@ def conditions(**ranges: Condition) -> dict[str, str | None]:
 
 
 def a_rule(rule: str, aspects: Aspects) -> str:
-    """Return the name of a rule; raises ArgumentError where it gives this part no probabilities."""
+    """Return the name of a rule that gives a part probabilities.
+
+    Parameters
+    ----------
+    rule : str
+    aspects : Aspects
+        Of the part.
+
+    Returns
+    -------
+    str
+        The same name.
+
+    Raises
+    ------
+    ArgumentError
+        If the rule gives this part none.
+    """
     if rule not in aspects.chances:
         mend = documents.hint(rule, list(aspects.chances))
         raise ArgumentError(f"rule {rule}", "has no probabilities of this part", mend)

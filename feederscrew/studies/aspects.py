@@ -53,7 +53,7 @@ class AspectsStudy(ReadableRecord):
 
     @property
     def doubtful(self) -> bool:
-        """Whether a self-check of exact tumbling failed."""
+        """Return whether a self-check of exact tumbling failed."""
         return self.aspects.ground is not None and bool(self.aspects.ground.tips.doubts)
 
     @property
@@ -159,15 +159,31 @@ def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = Fal
     part : Part
     unstable, as_published : bool
         As for ``aspects``.
+
+    Returns
+    -------
+    Aspects
     """
     return aspects(part, unstable=unstable, as_published=as_published).aspects
 
 
 def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
-    """Return the study with a drop test, whose answer takes the place of the closed form's.
+    """Return the study of a part with a drop test, whose answer takes the place of the closed form's.
 
-    ``closed`` has the closed form's answer for the launch. A warning says so where the user stopped the
-    test, or nothing came to rest.
+    A warning says so where the user stopped the test, or nothing came to rest.
+
+    Parameters
+    ----------
+    closed : Aspects
+        With the closed form's answer for the launch.
+    test : DropStudy
+    launch : str
+        Of the test: 'feed'.
+
+    Returns
+    -------
+    AspectsStudy
+        With the closed form's answer where nothing came to rest.
     """
     tally = test.result.tally
     warnings = list(closed.warnings)

@@ -101,7 +101,7 @@ class MachineSheet(ReadableRecord):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What must not be overlooked, a tuple of str."""
+        """Return what must not be overlooked, a tuple of str."""
         own = () if self.solid is None else self.solid.remarks
         order, track = self.order, self.bowl.track
         if order is None:
@@ -170,14 +170,48 @@ def size_machine(
     fill: float = 1.0,
     solid: SolidOptions | None = None,
 ) -> MachineSheet:
-    """Compute the bowl, the drive and the stroke that bring a part at a rate: a MachineSheet with its order.
+    """Compute the bowl, the drive and the stroke that bring a part at a rate.
 
-    What the ``settings`` give of track, drive, machine and devices is kept; the rest is sized. ``target``
-    [1/s] is of counted parts; ``aspect``, ``heading``, ``gap`` and ``fill`` are as for ``size_bowl``, in SI
-    units; ``aspects`` have the answer to take, where they are known already. ``as_tried``: a trial has shown
-    what the settings say, so their drive is kept, and what the static rule takes is only told. With a
-    ``solid`` its rise and mass take the place of the estimate. Raises FeederError if no bowl is so large, or
-    none reaches the target; the latter not of what was tried.
+    Track, drive, machine and devices stay as far as the settings give them; the rest is sized. With a solid,
+    its rise and mass take the place of the estimate.
+
+    Parameters
+    ----------
+    settings : sequence of Setting
+        Of the bowl file and the overrides.
+    part : Part
+    target : float [1/s]
+        Counted parts.
+    aspect : str, optional
+        That counts; without it, each that leaves the bowl.
+    heading : float [rad], optional
+        Of that aspect; its most frequent one without it.
+    rule : str
+        Whose probabilities are taken.
+    aspects : Aspects, optional
+        With the answer to take, where they are known already.
+    as_tried : bool
+        A trial has shown what the settings say. So their drive is kept, and the limits of the static rule are
+        remarks only.
+    gap : float [m]
+        Between parts.
+    fill : float [1]
+        Share of the track that parts cover, gaps included.
+    solid : SolidOptions, optional
+
+    Returns
+    -------
+    MachineSheet
+        With its order.
+
+    Raises
+    ------
+    FeederError
+        If no bowl is so large, or none reaches the target; the latter not if it was tried.
+
+    References
+    ----------
+    docs/bowl.md, "1. The part, and the rate".
     """
     plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), solid)
     check_wanted(part, aspect, heading)

@@ -54,7 +54,7 @@ class _Counted(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return what a user must not overlook, a sentence each."""
         return (*self.aspects.warnings, *self.measured.warnings(self.part))
 
 
@@ -107,7 +107,7 @@ class CompareStudy(_Counted):
 
     @property
     def profiles(self) -> tuple[profiles.AspectProfile, ...]:
-        """What was measured, then the rules."""
+        """Return what was measured, then the rules."""
         return (*self.measured.profiles, *self.rules)
 
 
@@ -137,7 +137,7 @@ class SetStudy(ReadableRecord):
 
     @property
     def inside(self) -> int | None:
-        """How many aspects' shares lie in the interval of the recommended answer; None without one."""
+        """Return how many aspects' shares lie in the interval of the recommended answer; None without one."""
         if self.recommended is None:
             return None
         shares = self.profile.fractions
@@ -168,7 +168,7 @@ class SetsStudy(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return what a user must not overlook, a sentence each."""
         studies: tuple[SetStudy | FeedingStudy, ...] = (*self.sets, *self.feedings)
         listed = [line for study in studies for line in study.measured.warnings(study.part)]
         listed += [f"{study.part.source}: {line}" for study in studies for line in study.aspects.warnings]
@@ -230,9 +230,27 @@ def compare_sets(
 ) -> SetsStudy:
     """Study how far many measured sets are from every rule and from the recommended answer.
 
-    The head of each of the ``files`` names the part file, from the folder of the counts; the rest is as
-    for ``compare``. ``progress`` is called after every file with how many are done, and of how many.
-    Raises every fault of the files.
+    Parameters
+    ----------
+    files : iterable of str or path
+        Files of counts. The head of each names the part file, from the folder of the counts.
+    launch : str, optional
+        As for ``compare``.
+    as_published : bool
+        As for ``compare``.
+    progress : callable, optional
+        Called after every file with how many are done, and of how many.
+
+    Returns
+    -------
+    SetsStudy
+
+    Raises
+    ------
+    Faults
+        Every fault of the files, one a line.
+    FeederError
+        If there is no file, or more than ``MAX_FILES``.
     """
     names = [str(path) for path in files]
     if not 0 < len(names) <= MAX_FILES:
@@ -300,7 +318,7 @@ def _feeding(
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
 ) -> FeedingStudy:
-    """What passed the devices of the bowl that a feeding test names.
+    """Return what passed the devices of the bowl that a feeding test names.
 
     The launch is what was done to the part; without it what the head of the file says, else parts are fed
     onto the moving floor of that bowl.
@@ -355,11 +373,15 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
     counts : str or Path
         CSV file as for ``compare``.
 
+    Returns
+    -------
+    CalibrateStudy
+
     Raises
     ------
     FeederError
-        Every fault of the file, each with its line; if the part has no shape, no column holds counts, or
-        they do not tell an exponent.
+        Every fault of the file, each with its line; if the part has no shape, no column holds counts, or they
+        do not tell an exponent.
     """
     table, sha256 = _read(check.path("counts", counts))
     aspects = find(arguments.a_part(part))
@@ -409,14 +431,31 @@ class BowlFit:
 def fit_bowl(path: str | Path, bowl_path: str | Path | None = None) -> BowlFit:
     """Return which friction, restitution and stroke explain the velocities of a file best.
 
-    The least sum of squares over a grid, then over a finer one about its best; an interval holds the values
-    for which the sum rises by less than chi-square's 95 % of one quantity, whatever the two others are. Where
-    the best does not explain the velocities, intervals are wider by the root of what remains.
+    S = sum ((v_k - v(mu, e, A)) / s_k)^2 is least over a grid, then over a finer one about its best. An
+    interval holds the values for which S, least over the two other quantities, rises by less than
+    chi-square's 95 % of one quantity. If the best does not explain the velocities, intervals are wider by the
+    square root of S over its degrees of freedom. None is narrower than the grid.
 
-    The CSV ``path`` has columns of keys of the bowl file that were changed ('drive.amplitude'), then
-    'velocity_mm_s', and 'spread_mm_s' and 'parts' where several parts were filmed. The bowl file
-    ``bowl_path`` has what was not changed; the defaults without it. Raises ConfigError if a file cannot
-    be read, or there are fewer than three velocities.
+    Parameters
+    ----------
+    path : str or path
+        CSV with a column for each key of the bowl file that was changed ('drive.amplitude'), then
+        'velocity_mm_s', and 'spread_mm_s' and 'parts' where several parts were filmed.
+    bowl_path : str or path, optional
+        Bowl file with the values that were not changed; the defaults without it.
+
+    Returns
+    -------
+    BowlFit
+
+    Raises
+    ------
+    ConfigError
+        If a file cannot be read, or there are fewer than three velocities.
+
+    References
+    ----------
+    Weighted least squares; the profile of the sum of squares against chi-square of one degree of freedom.
     """
     rows = _read_velocities(path)
     measured, doubt = (np.array([row[place] for row in rows]) for place in (1, 2))

@@ -47,12 +47,12 @@ class ConveyStudy(ReadableRecord):
 
     @property
     def validity(self) -> str:
-        """What the answer leaves out, in one sentence."""
+        """Return what the answer leaves out, in one sentence."""
         return answer.validity(self.answer, self.bowl)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is odd about the velocity, a tuple of at most one sentence."""
+        """Return what is odd about the velocity, a tuple of at most one sentence."""
         return tuple(checks.speed_remark(self.answer.velocity, self.bowl.sizing))
 
     def trace(self) -> steady.CycleTrace:
@@ -132,7 +132,19 @@ def convey(bowl: Bowl) -> ConveyStudy:
 
 
 def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
-    """Study a bowl along one of its keys."""
+    """Study a bowl along one of its keys.
+
+    Parameters
+    ----------
+    settings : sequence of Setting
+        Of the bowl.
+    span : KeyRange
+        Key and its values.
+
+    Returns
+    -------
+    ConveyCurve
+    """
     columns = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
     cells = {name: np.broadcast_to(values, len(span.values)) for name, values in columns.items()}
     return ConveyCurve("curve", span.key.name, (span.axis,), cells)
@@ -165,7 +177,18 @@ def velocity_map(
 ) -> ConveyMap:
     """Study a bowl over two of its keys.
 
-    ``drawn`` is what is drawn over the map: the bowl's own 'point', or its points along the 'radius'.
+    Parameters
+    ----------
+    settings : sequence of Setting
+        Of the bowl.
+    ranges : (KeyRange, KeyRange)
+        The two keys and their values.
+    drawn : str, optional
+        What is drawn over the map: the bowl's own 'point', or its points along the 'radius'.
+
+    Returns
+    -------
+    ConveyMap
     """
     first, second = ranges
 

@@ -41,7 +41,7 @@ class DropStudy(ReadableRecord):
 
     @property
     def drops(self) -> int:
-        """How many there were."""
+        """Return how many there were."""
         return len(self.result.drops.faces)
 
     @property
@@ -145,7 +145,7 @@ class PlateStudy(ReadableRecord):
 
     @property
     def partial(self) -> bool:
-        """Whether the user stopped it before all parts were done."""
+        """Return whether the user stopped it before all parts were done."""
         return any(plate.partial for plate in self.plates)
 
 
@@ -264,7 +264,7 @@ class TossStudy(ReadableRecord):
 
     @property
     def agreement(self) -> Agreement | None:
-        """What was computed beside what was measured; None where the file holds no upper sides."""
+        """Return what was computed beside what was measured; None where the file holds no upper sides."""
         if self.launches.faces is None:
             return None
         result, p = self.result, self.p
@@ -298,12 +298,36 @@ def follow(
 ) -> TossStudy:
     """Study where tosses of a part from a mesh lead whose states at the launch are known.
 
-    ``launches`` is the path of a file for ``toss_runs.read_launches``. ``own`` has ``restitution`` and
-    ``friction`` as typed, a value or a range; else they are those of any launch. Of each toss ``runs``
-    are made, over small changes of what is not known, drawn by ``seed``; ``jobs`` are cores, on which the
-    answer does not depend. ``progress`` is called with how many tosses are done, and of how many,
-    ``before`` once all inputs are right. Raises FeederError if the part has no shape, the file has a
-    fault, or a value is out of range.
+    The surface is not known exactly, so each toss is made several times, over small changes of restitution
+    and friction.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    launches : str
+        Path of a file for ``toss_runs.read_launches``.
+    own : mapping, optional
+        ``restitution`` and ``friction`` as typed, a value or a range; else they are those of any launch.
+    runs : int, optional
+        Of each toss.
+    seed : int
+        Of the changes.
+    jobs : int
+        Cores, on which the answer does not depend.
+    progress : callable, optional
+        Called with how many tosses are done, and of how many.
+    before : callable, optional
+        Called once all inputs are right.
+
+    Returns
+    -------
+    TossStudy
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, the file has a fault, or a value is out of range.
     """
     run, runs = RunSettings(seed, jobs, progress, before), arguments.count("drops", runs)
     _check_run(run)

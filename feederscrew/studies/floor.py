@@ -106,6 +106,10 @@ def floor(
     heading : str or float [rad]
         '90 deg': how it lies to the drive.
 
+    Returns
+    -------
+    FloorStudy
+
     Raises
     ------
     FeederError

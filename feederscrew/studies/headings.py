@@ -58,6 +58,10 @@ def headings(
     aspects : Aspects, optional
         Of the part, with the answer to take; what arrives from the bowl's moving floor without it.
 
+    Returns
+    -------
+    HeadingsStudy
+
     Raises
     ------
     FeederError

@@ -149,7 +149,20 @@ def shares(
 def check_wanted(part: Part, aspect: str | None, heading: float | None = None) -> None:
     """Refuse an aspect that a part does not have, or a heading without one, before anything is simulated.
 
-    Raises ArgumentError.
+    Parameters
+    ----------
+    part : Part
+    aspect : str or None
+    heading : float [rad], optional
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    ArgumentError
+        If the part has no such aspect, or a heading is given alone.
     """
     check.of_an_aspect(aspect, heading)
     if aspect is not None and part.vertices is not None:
@@ -157,15 +170,40 @@ def check_wanted(part: Part, aspect: str | None, heading: float | None = None) -
 
 
 def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
-    """Return the aspects of a part with what arrives at the entry of a bowl's track as their answer."""
+    """Return the aspects of a part with the shares that arrive at a bowl's track as their answer.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+    rule : str
+        Whose probabilities are the answer; parts are fed on the moving floor for the recommended one alone.
+
+    Returns
+    -------
+    Aspects
+    """
     return shares(part, bowl, rule=rule).aspects
 
 
 def likeliest(part: Part, bowl: Bowl) -> Aspects:
-    """Return the aspects of a part with what arrives, of as few parts as show which aspect is the likeliest.
+    """Return the aspects of a part with the shares that arrive, of few parts where few decide.
 
-    CHOOSING parts are fed first. Where the 95 % interval of the most frequent aspect is above those of all
-    others, they decide. Else the answer is that of ``arriving``.
+    ``CHOOSING`` parts are fed first. If the 95 % interval of the most frequent aspect is above those of all
+    others, they decide; else the answer is that of ``arriving``.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+
+    Returns
+    -------
+    Aspects
+
+    References
+    ----------
+    Wilson's interval, ``dropping.ensemble.wilson``.
     """
     from feederscrew.dropping import arrival
 
@@ -195,7 +233,7 @@ class RateStudy(ReadableRecord):
 
     @property
     def of_size(self) -> tuple[str, ...]:
-        """What to say of a part not much larger than play and tolerance, or than its track is wide."""
+        """Return what to say of a part not much larger than play and tolerance, or than its track is wide."""
         usual = "play and tolerance as usual" if self.sigma == 0.0 else "play and tolerance"
         allowances = {usual: self.sigma or float(np.hypot(PLAY_M, TOLERANCE_M))} if self.devices else {}
         return small_part_remarks(self.part, allowances, self.bowl.track.width)
@@ -324,11 +362,27 @@ def the_shares(aspect_shares: object) -> Shares | None:
 def most_frequent(
     leaving_as: well_oriented.Orientations, rule: str, *, hung: bool = False
 ) -> tuple[str, float]:
-    """Return the aspect and the heading [rad] in which most parts leave the bowl: what rolls back does not.
+    """Return the orientation in which most parts leave the bowl.
 
-    ``hung``: the bowl ends in rails; what rolls counts there, as only a trial tells whether it comes to them.
-    Where less than LEAST_CARRIED_SHARE of the parts leave without rolling back, those that roll back count as
-    well; where none leaves, the ones most likely to land in, by the probabilities of the rule.
+    Parts that roll back do not count. If less than ``LEAST_CARRIED_SHARE`` of the parts leave without rolling
+    back, they count as well. If none leaves, the orientations most likely to land in are taken.
+
+    Parameters
+    ----------
+    leaving_as : Orientations
+        On the track, through the devices.
+    rule : str
+        Whose probabilities are taken.
+    hung : bool
+        The bowl ends in rails. Parts that roll count there, as only a trial tells whether they come to the
+        rails.
+
+    Returns
+    -------
+    str
+        Aspect.
+    float [rad]
+        Heading. Of equals the first.
     """
     chance = np.nan_to_num(leaving_as.rules[rule])
     carried = np.where(leaving_as.rolls_back, 0.0, chance)
@@ -364,7 +418,25 @@ class PassagesStudy(ReadableRecord):
 def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStudy:
     """Study what a bowl's devices do with each orientation of a part from a mesh.
 
-    The rule is whose probabilities are taken. Raises FeederError if the part has very many facets.
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+        Its track and devices.
+    aspects : Aspects
+        Of the part.
+    rule : str
+        Whose probabilities are the shares.
+
+    Returns
+    -------
+    PassagesStudy
+
+    Raises
+    ------
+    FeederError
+        If the part has very many facets.
     """
     if any(device.placed for device in bowl.devices):
         refuse_many_facets(part)

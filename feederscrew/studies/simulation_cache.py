@@ -68,7 +68,21 @@ def read(key: Mapping[str, str]) -> dict[str, Array] | None:
 
 
 def write(key: Mapping[str, str], arrays: Arrays) -> None:
-    """Keep arrays of float, int or bool under a key; a full disk leaves nothing behind."""
+    """Keep arrays of float, int or bool under a key.
+
+    The key holds a digest of the library's code as well, so a changed program reads nothing of an older one.
+    A file gets its name once it is complete. A full disk or a folder that refuses leaves nothing behind.
+
+    Parameters
+    ----------
+    key : mapping of str to str
+        All that decides the result.
+    arrays : mapping of str to array
+
+    Returns
+    -------
+    None
+    """
     folder = caches.simulation_folder()
     if folder is None:
         return
@@ -182,12 +196,30 @@ def once(
     to_arrays: Callable[[Record], Arrays],
     from_arrays: Callable[[Arrays], Record],
 ) -> Record:
-    """Return what was simulated of a part before; else simulate it, and keep it if it is whole.
+    """Return a simulation of a part from memory or disk, or make it and keep it if it is whole.
 
-    The ``kind``, 'arrival' or 'drop', and ``settings`` are all that decides it beside the part, written out
-    the same whenever it is the same. What the user stopped is not whole. ``to_arrays`` gives the plain arrays
-    that stand for it on a disk; ``from_arrays`` raises ValueError or KeyError of arrays that are not of one.
-    Returns what ``make`` returns, of this part or of one that no number tells from it.
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of the part.
+    kind : str
+        'arrival' or 'drop'.
+    settings : tuple
+        All that decides the result beside part and kind; its ``repr`` is the same whenever it is the same.
+    make : callable
+        Makes the record.
+    is_whole : callable
+        Says whether the record may be kept; one that the user stopped may not.
+    to_arrays : callable
+        Gives the plain arrays that stand for the record on a disk.
+    from_arrays : callable
+        Gives the record of such arrays; raises ValueError or KeyError if they are of another one.
+
+    Returns
+    -------
+    Record
+        Of this part, or of one that no number tells from it.
     """
     digest = hashlib.sha256(repr((float(part.mass), aspects.names)).encode())
     arrays = (part.vertices, part.faces, part.centre_of_mass, part.inertia, aspects.normals, aspects.stable)

@@ -93,10 +93,18 @@ def slide(
     as_published : bool
         Keep mu_limit where [4.27] is negative, as past the hop.
 
+    Returns
+    -------
+    SlideStudy
+
     Raises
     ------
     ConfigError
         If the drive is not ``limits.plain``.
+
+    References
+    ----------
+    ``mechanics.limits``.
     """
     bowl = arguments.a_bowl(bowl)
     betas = [arguments.amount("angles", angle, "angle") for angle in angles]
@@ -110,13 +118,33 @@ def slide(
 def sliding_map(
     bowl: Bowl, beta: float, *, as_published: bool = False, shape: tuple[int, int] | None = None
 ) -> SlideMap:
-    """Compute the sliding map of a bowl at the vibration angle ``beta`` [rad], in place of the bowl's own.
+    """Compute the sliding map of a bowl at a vibration angle, in place of the bowl's own.
 
-    Columns mu_limit [4.27] on a level floor, mu_forward and mu_backward of the bowl's track beside its
-    upright wall. What a drive across the track presses against the wall is without friction.
-    ``as_published`` keeps [4.27] where it is negative: past the hop, and where the drive is reversed.
-    ``shape`` has the values of either axis, for pictures; by default steps of 3 deg and of a round G.
-    Raises ConfigError if the drive is not ``limits.plain``.
+    Columns: mu_limit [4.27] on a level floor, mu_forward and mu_backward of the bowl's track beside its
+    upright wall. The part of a drive across the track that presses against the wall is without friction.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    beta : float [rad]
+        Vibration angle.
+    as_published : bool
+        Keep [4.27] where it is negative: past the hop, and where the drive is reversed.
+    shape : (int, int), optional
+        Values of either axis, for pictures; by default steps of 3 deg and of a round acceleration ratio.
+
+    Returns
+    -------
+    SlideMap
+
+    Raises
+    ------
+    ConfigError
+        If the drive is not ``limits.plain``.
+
+    References
+    ----------
+    The thesis, eq. [4.27]; ``mechanics.limits``.
     """
     direction = limits.plain(bowl).drive.direction
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))

@@ -46,9 +46,33 @@ def solid_options(
 ) -> SolidOptions | None:
     """Return what is wanted of the solid, None where none is.
 
-    The material is one of ``materials.NAMES``, ``chord`` [m], the bed '220x220x250mm', ``join`` one of
-    ``segments.JOINTS``, dowels without it; ``step`` asks for a STEP file with exact faces. Raises
-    ArgumentError if the bed is not three lengths, or what writes STEP is not installed.
+    Parameters
+    ----------
+    settings : sequence of Setting
+        Of the bowl: shape, outlet, bolts and drains.
+    solid : bool
+        One is wanted.
+    material : str
+        Of ``plan.MATERIAL_NAMES``.
+    chord : float [m]
+        By how much an arc may be too flat.
+    bed : str, optional
+        Of a printer: '220x220x250mm'.
+    step : bool
+        A STEP file with exact faces is wanted.
+    join : str, optional
+        Of ``segments.JOINTS``; dowels without it.
+
+    Returns
+    -------
+    SolidOptions or None
+
+    Raises
+    ------
+    ArgumentError
+        If the bed is not three lengths.
+    MissingPackage
+        If what writes STEP is not installed.
     """
     if not solid:
         return None
@@ -76,11 +100,21 @@ def solid_options(
 
 
 def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float:
-    """Return the climb [rad] of the track at which a bowl with its devices can be drawn as a solid.
+    """Return the climb of the track at which a bowl with its devices can be drawn as a solid.
 
-    A device that leads the track down needs room below it: a steeper track leaves more. The bowl's own
-    climb where it is enough, or where none up to ``STEEPEST_RAD`` mends it. ``coming`` is of the part
-    along that track.
+    A device that leads the track down needs room below it, and a steeper track leaves more.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    part : Part
+    coming : Orientations
+        Of the part along that track.
+
+    Returns
+    -------
+    float [rad]
+        The bowl's own climb where it is enough, or where none up to ``STEEPEST_RAD`` mends it.
     """
     rules, track = bowl.sizing, bowl.track
     depth = rules.outlet_height if rules.outlet_height > 0.0 else 2.0 * rules.depth * track.radius
@@ -98,7 +132,18 @@ def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float
 
 
 def in_material(bowl: Bowl, options: SolidOptions | None) -> Bowl:
-    """Return the bowl with the thickness and density of its solid; as it is without options."""
+    """Return the bowl with the thickness and density of its solid.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    options : SolidOptions or None
+
+    Returns
+    -------
+    Bowl
+        As it is without options.
+    """
     if options is None:
         return bowl
     made_of = material(options.material, bowl.sizing)
@@ -114,13 +159,36 @@ def solid(
     options: SolidOptions | None,
     counted: Mapping[str, Any],
 ) -> tuple[Size, BowlSolid | None]:
-    """Return the size of a bowl and its solid, None where none is asked for.
+    """Return the size of a bowl and its solid.
 
-    Rise, turns, mass and inertia of the solid take the place of the estimate. ``coming`` is of the part
-    along the bowl's track and devices; ``counted`` has the ``rule`` whose probabilities are taken and the
-    ``target``, aspect and heading that are wanted, or None. Raises TrackTooLow if a device leads the
-    track down too far, with the climb that mends it, where there is one; FeederError if the track does
-    not fit the bowl, or what falls through a cut does not reach the floor.
+    Rise, turns, mass and inertia of the solid take the place of the estimate.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    size : Size
+        As estimated.
+    part : Part
+    coming : Orientations
+        Of the part along the bowl's track and devices.
+    options : SolidOptions or None
+        None where no solid is asked for.
+    counted : mapping
+        ``rule``, whose probabilities are taken, and ``target``, the aspect and heading that are wanted, or
+        None.
+
+    Returns
+    -------
+    Size
+    BowlSolid or None
+        None where none is asked for.
+
+    Raises
+    ------
+    TrackTooLow
+        If a device leads the track down too far; it has the climb that mends it, where there is one.
+    FeederError
+        If the track does not fit the bowl, or what falls through a cut does not reach the floor.
     """
     if options is None:
         return size, None
@@ -182,7 +250,26 @@ def _least_climb(
 
 
 def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlSolid | None:
-    """Return the solid, in steel, of a MachineSheet with an order that was sized without one."""
+    """Return the solid, in steel, of a machine that was sized without one.
+
+    Parameters
+    ----------
+    sheet : MachineSheet
+        With an order.
+    settings : sequence of Setting
+        Of the bowl.
+    aspects : Aspects
+        Of the part, with the answer that was taken.
+
+    Returns
+    -------
+    BowlSolid or None
+
+    Raises
+    ------
+    FeederError
+        If the bowl cannot be drawn, as for ``solid``.
+    """
     order, bowl = sheet.order, sheet.bowl
     coming = stream.follow_orientations(order.part, aspects, bowl.track, bowl.devices)
     wanted = solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)

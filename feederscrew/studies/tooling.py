@@ -63,7 +63,25 @@ def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
 
 
 def may_be_up(part: Part, aspects: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
-    """Return the names of aspects that may be up as well, checked."""
+    """Return the names of aspects that may be up as well, once the part has them.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of the part.
+    up : str or sequence of str
+        Names; case does not matter.
+
+    Returns
+    -------
+    tuple of str
+
+    Raises
+    ------
+    ArgumentError
+        If the part has no such aspect.
+    """
     for name in listed(up):
         if name.casefold() not in {own.casefold() for own in aspects.names}:
             mend = f"choose one of {', '.join(aspects.names)}"
@@ -81,9 +99,30 @@ def check_named(
     without: str | Sequence[str] = (),
     aspects: Aspects | None = None,
 ) -> None:
-    """Refuse names that are not there before anything is simulated: of aspects, headings, kinds of devices.
+    """Refuse names that are not there before anything is simulated: aspects, headings, kinds of devices.
 
-    A heading [rad] is one of the ``track``. Raises ArgumentError.
+    Parameters
+    ----------
+    part : Part
+    track : Track
+        Whose headings may be named.
+    aspect : str or None
+    heading : float [rad], optional
+    up : str or sequence of str
+        Aspects that may be up as well.
+    without : str or sequence of str
+        Kinds of devices to leave out.
+    aspects : Aspects, optional
+        Of the part, where they are known already.
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    ArgumentError
+        If one of them is not there.
     """
     may_be_left_out(without)
     check.of_an_aspect(aspect, heading)
@@ -155,7 +194,7 @@ class ToolingStudy(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return what a user must not overlook, a sentence each."""
         late = any(design is not None and design.late for design in self.designs)
         proposed = (device for design in self.designs if design is not None for device in design.devices)
         shank = shank_remarks((*self.bowl.devices, *proposed))
@@ -379,5 +418,29 @@ def tooling_without(
     without: str | Sequence[str] = (),
     **request: Any,
 ) -> ToolingStudy:
-    """Return the study of an orientation without more kinds of devices, at once: without holes."""
+    """Return the study of an orientation without more kinds of devices, and without a search for holes.
+
+    Parameters
+    ----------
+    kinds : sequence of str
+        Kinds of devices to leave out.
+    part : Part
+    bowl : Bowl
+    aspect : str or None
+        That is wanted.
+    without : str or sequence of str
+        Kinds that the user leaves out.
+    **request
+        As for ``tooling``.
+
+    Returns
+    -------
+    ToolingStudy
+        At once, as nothing is searched.
+
+    Raises
+    ------
+    FeederError
+        As of ``tooling``.
+    """
     return tooling(part, bowl, aspect, without=(*listed(without), *kinds, *names(searched=True)), **request)

@@ -86,11 +86,15 @@ def track(
         As laid down: pushed to the wall, the part turns to the stable heading of that range. The most
         frequent that stays on the track without it.
 
+    Returns
+    -------
+    TrackStudy
+
     Raises
     ------
     FeederError
-        If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or
-        the drive is not ``limits.plain``.
+        If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or the
+        drive is not ``limits.plain``.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     angle = arguments.angle("heading", heading)

@@ -75,7 +75,7 @@ class TrialStudy(ReadableRecord):
 
     @property
     def launch(self) -> str | None:
-        """What is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
+        """Return what is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
         recommended = self.aspects.recommended
         return recommended.launch if self.rule == RECOMMENDED_RULE and recommended is not None else None
 
@@ -88,7 +88,7 @@ class TrialStudy(ReadableRecord):
 
     @property
     def partial(self) -> bool:
-        """Whether the user stopped it before all parts were done."""
+        """Return whether the user stopped it before all parts were done."""
         return self.stopped or any(run.partial for run in self.runs)
 
     @property
@@ -98,7 +98,7 @@ class TrialStudy(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return what a user must not overlook, a sentence each."""
         first = self.runs[0]
         devices = first.bowl.devices
         listed = [*unknown_aspects(devices, self.aspects.names), *shank_remarks(devices)]
@@ -318,8 +318,22 @@ def _follow_fill(
 
 
 def at_outlet(counts: str | PathLike[str], part: Part) -> profiles.CountFile:
-    """Read what was measured of parts that left a bowl, a file of counts or shares by aspect or orientation.
+    """Read what was measured of parts that left a bowl.
 
-    Raises every fault of the file, each with its line.
+    Parameters
+    ----------
+    counts : str or path
+        File of counts or shares, by aspect or orientation.
+    part : Part
+        Whose aspects it names.
+
+    Returns
+    -------
+    CountFile
+
+    Raises
+    ------
+    Faults
+        Every fault of the file, each with its line.
     """
     return profiles.read_profile(counts, list(find(part).names))

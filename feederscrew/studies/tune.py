@@ -47,7 +47,7 @@ class TuneStudy(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each: of the devices, then of the aspects."""
+        """Return what a user must not overlook, a sentence each: of the devices, then of the aspects."""
         unknown = unknown_aspects(self.devices, self.aspects.names)
         return (*unknown, *shank_remarks(self.devices), *self.aspects.warnings)
 

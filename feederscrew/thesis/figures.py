@@ -191,12 +191,27 @@ def limit_surface(number: str) -> FigureGrid:
 
 
 def sliding_acceleration(acceleration: Quantity, beta: Quantity, friction: Quantity) -> Floats:
-    """Return V'_z [m/s2] of a sliding part at the upper reversal, as the thesis draws it.
+    """Return the acceleration V'_z of a sliding part at the upper reversal, as the thesis draws it.
 
-    ``acceleration`` [m/s2] is A w^2 of the drive, ``beta`` [rad] the vibration angle, any shapes. Past the
-    hop it is the formula's value, not a part's.
+    a cos(beta) - mu (g - a sin(beta)), with a = A w^2. It holds up to the hop, a sin(beta) = g; past that it
+    is the formula's value, not a part's.
 
-    Source: the thesis, eqs. [4.14], [4.16] with R_z = mu N and alpha = theta.
+    Parameters
+    ----------
+    acceleration : float or array [m/s2]
+        A w^2 of the drive.
+    beta : float or array [rad]
+        Vibration angle.
+    friction : float or array [1]
+        mu; all three broadcast.
+
+    Returns
+    -------
+    (...) float [m/s2]
+
+    References
+    ----------
+    The thesis, eqs. [4.14], [4.16] with R_z = mu N and alpha = theta.
     """
     return acceleration * np.cos(beta) - friction * (GRAVITY_OF_CHAPTER_5 - acceleration * np.sin(beta))
 
@@ -332,7 +347,19 @@ def numbers(figure: Figure) -> Frame:
 
 
 def draw(figure: Figure, ax: "style.Axes | None" = None) -> "style.Figure":
-    """Return a figure of the thesis as a matplotlib Figure, drawn into ``ax`` where it has one picture."""
+    """Return a figure of the thesis as a matplotlib figure.
+
+    Parameters
+    ----------
+    figure : Figure
+        Of the thesis.
+    ax : matplotlib Axes, optional
+        It is drawn there, where it has one picture.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
     own = {} if ax is None else {"ax": ax}
     return figure.draw_data(f"Figure {figure.number}. {figure.caption}", figure.data(), **own)
 

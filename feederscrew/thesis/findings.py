@@ -37,7 +37,7 @@ class Finding:
 
     @property
     def evidence(self) -> str:
-        """How it shows; the numbers are computed, never typed."""
+        """Return how it shows; the numbers are computed, never typed."""
         return self.numbers.format_map(_numbers())
 
 

@@ -114,7 +114,30 @@ class TrackAsPublished(track_study.TrackStudy):
 
 
 def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.0) -> FloorAsPublished:
-    """Study a part on the bowl floor as ``studies.floor.floor``, which names the errors, by print as well."""
+    """Study a part on the bowl's floor, by the complete equations and by the printed ones.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+    aspect : str, optional
+        Its name; the likeliest without it.
+    heading : float [rad]
+        How it lies to the drive.
+
+    Returns
+    -------
+    FloorAsPublished
+
+    Raises
+    ------
+    FeederError
+        As of ``studies.floor.floor``.
+
+    References
+    ----------
+    ``studies.floor.floor`` and ``solve_floor``, each with its equations.
+    """
     study = floor_study.floor(part, bowl, aspect, heading=heading)
     return FloorAsPublished(**vars(study), printed=solve_floor(study.posture, bowl, heading))
 
@@ -122,7 +145,30 @@ def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.
 def track(
     part: Part, bowl: Bowl, aspect: str | None = None, heading: float | None = None
 ) -> TrackAsPublished:
-    """Study a part against the wall as ``studies.track.track``, which names the errors, by print as well."""
+    """Study a part against the wall, by the complete equations and by the printed ones.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+    aspect : str, optional
+        Its name; the likeliest without it.
+    heading : float [rad], optional
+        As of ``studies.track.track``.
+
+    Returns
+    -------
+    TrackAsPublished
+
+    Raises
+    ------
+    FeederError
+        As of ``studies.track.track``.
+
+    References
+    ----------
+    ``studies.track.track`` and ``solve_track``, each with its equations.
+    """
     study = track_study.track(part, bowl, aspect, heading=heading)
     posture, seat = study.posture, study.seat
     card = {} if posture.corners is not None else (posture.printed or {})["track"]
@@ -141,12 +187,29 @@ def solve_floor(
 ) -> PrintedFloor:
     """Solve the printed equations for a part at rest on the floor, with any part's h, e and I.
 
-    Fields of the bowl, the heading theta [rad] and the phase w t [rad] may be arrays. R_z = mu F_N once it
-    slides; R_y, which the print leaves open, is zero. The moment of [4.18] is projected on fixed axes, as
-    printed.
+    R_z = mu F_N once the part slides; R_y, which the print leaves open, is zero. The moment of [4.18] is
+    projected on fixed axes, as printed.
 
-    Source: the thesis: the parts of the wrench of eq. [4.13], solved as eqs. [4.20] to [4.23], and with the
-    levers and the inertia of the Magnet the same, eqs. [4.43] to [4.53].
+    Parameters
+    ----------
+    posture : Posture
+        Of the part on its aspect: h, e and I.
+    bowl : Bowl
+        Its fields may be arrays that broadcast.
+    heading : float or array [rad]
+        theta.
+    phase : float or array [rad]
+        w t, of the drive.
+
+    Returns
+    -------
+    PrintedFloor
+
+    References
+    ----------
+    The thesis: the parts of the wrench of eq. [4.13], solved as eqs. [4.20] to [4.23]. With the levers and
+    the inertia of the Magnet these are eqs. [4.43] to [4.53]. Steps in between: eqs. [4.14] to [4.18], [4.25]
+    to [4.27].
     """
     m, h, e = posture.mass, posture.height, posture.offset
     beta, alpha = bowl.drive.vibration_angle, bowl.drive.direction
@@ -170,9 +233,22 @@ def solve_floor(
 
 
 def levers_of(seat: Seat, offset: float, axes: str = "tilted") -> Levers:
-    """Return the printed equations' levers of any part against the wall, its drive at e [m].
+    """Return the printed equations' levers of any part against the wall.
 
     The two contacts' heights and sides are averaged, as the thesis has one of each.
+
+    Parameters
+    ----------
+    seat : Seat
+        Of the part against the wall.
+    offset : float [m]
+        e: the lever at which the print applies the drive.
+    axes : str
+        'tilted' by the bank, as the equations of the Arc Chute, or 'level', as those of the Magnet.
+
+    Returns
+    -------
+    Levers
     """
     side, level = float(-seat.walls[:, 1].mean()), float(seat.walls[:, 2].mean())
     return Levers(
@@ -190,14 +266,29 @@ def levers_of(seat: Seat, offset: float, axes: str = "tilted") -> Levers:
 
 
 def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0.5 * np.pi) -> PrintedTrack:
-    """Solve the printed equations of a part against the wall; ``track.radius`` sets sigma.
+    """Solve the printed equations of a part against the wall.
 
-    Fields of the bowl, the heading theta [rad] and the phase w t [rad] may be arrays. R4 = mu F_N while
-    V'_X > 0, else V'_X = 0 and R4 is as much as that needs.
+    R4 = mu F_N while V'_X > 0; else V'_X = 0, and R4 is as much as that needs. In [4.36] the drive's moment
+    is taken from [4.29], of which it is a copy with a term lost.
 
-    Source: the thesis, eqs. [4.32] to [4.37] (axes tilted by the bank) and eqs. [4.57] to [4.62] (level
-    axes): the parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from
-    [4.29], of which it is a copy with a term lost.
+    Parameters
+    ----------
+    part : Levers
+    bowl : Bowl
+        Its fields may be arrays that broadcast; ``track.radius`` sets sigma.
+    heading : float or array [rad]
+        theta.
+    phase : float or array [rad]
+        w t, of the drive.
+
+    Returns
+    -------
+    PrintedTrack
+
+    References
+    ----------
+    The thesis, eqs. [4.32] to [4.37] (axes tilted by the bank) and eqs. [4.57] to [4.62] (level axes): the
+    parts of the wrenches of eqs. [4.29], [4.54].
     """
     # the terms without unknowns: m A w^2 along X, level across, up; weight
     drive = np.moveaxis(drive_force(part.mass, bowl, heading, phase), -1, 0)
@@ -249,15 +340,44 @@ def _matrix(part: Levers, bowl: Bowl, shape: tuple[int, ...], slides: bool) -> A
 
 
 def half_angle(part: Levers, radius: Quantity) -> Array:
-    """Return sigma [rad] of two contacts on a wall of that radius; the thesis leaves it open."""
+    """Return half the angle between two contacts on a wall, sigma = asin((a + b) / (2 R)).
+
+    The thesis leaves sigma open; this is the chord of both contacts on the wall's circle.
+
+    Parameters
+    ----------
+    part : Levers
+        a behind and b ahead of its centre of mass.
+    radius : float or array [m]
+        R of the wall, at least half the distance of both contacts.
+
+    Returns
+    -------
+    (...) float [rad]
+    """
     return np.arcsin(0.5 * (part.behind + part.ahead) / np.asarray(radius))
 
 
 def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) -> tuple[Term, ...]:
-    """Return the size of every omitted term on the track, at the upper reversal of the complete solution.
+    """Return the size of every term that the printed track equations leave out, at the upper reversal.
 
-    ``offset`` is e [m], the lever at which the print applies the drive. The centripetal force is that of the
-    bowl's own greatest speed, at mid-stroke.
+    Sizes are those of the complete solution. The centripetal force is that of the bowl's own greatest speed,
+    at mid-stroke.
+
+    Parameters
+    ----------
+    seat : Seat
+        Of the part against the wall.
+    bowl : Bowl
+    complete : TrackMotion
+        The complete solution.
+    offset : float [m]
+        e: the lever at which the print applies the drive.
+
+    Returns
+    -------
+    tuple of Term
+        In N or N mm, each with its equation.
     """
     axes, dragged = frame(bowl, seat.walls), complete.wall_friction
     drive, weight = bowl.drive, seat.mass * bowl.gravity

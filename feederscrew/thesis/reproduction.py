@@ -188,7 +188,19 @@ def entries(item: Item) -> Frame:
 
 
 def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """Return the items as one JSON document; ``files`` are those written, by the item's stem."""
+    """Return the items of the thesis as one JSON document.
+
+    Parameters
+    ----------
+    items : sequence of Item
+    files : mapping of str to sequence of str
+        Files that were written, by the item's stem.
+
+    Returns
+    -------
+    dict
+        Items, lost drawings, conclusions, recommendations and findings.
+    """
     return {
         "items": [
             {
@@ -213,7 +225,19 @@ def _findings() -> Frame:
 
 
 def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> dict[str, list[str]]:
-    """Write tables, pictures and the page by ``save(name, content)``; return files by the item's stem."""
+    """Write tables, pictures and the page of the thesis.
+
+    Parameters
+    ----------
+    save : callable
+        Called with the name and the content of each file.
+    items : sequence of Item
+
+    Returns
+    -------
+    dict of str to list of str
+        Files of tables and figures, by the item's stem.
+    """
     files, pictures = {}, {}
     for item in items:
         files[item.stem] = [f"{item.stem}.csv"]
@@ -236,7 +260,18 @@ def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> 
 
 
 def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
-    """Build the page of the whole thesis; ``pictures`` are PNG of each figure, by file name."""
+    """Build the page of the whole thesis.
+
+    Parameters
+    ----------
+    items : sequence of Item
+    pictures : mapping of str to bytes
+        PNG of each figure, by file name.
+
+    Returns
+    -------
+    Page
+    """
     item_of = {item.name: item for item in items}
     counts: Counter[str] = sum((item.verdicts for item in items), Counter())
     totals = (

@@ -114,7 +114,7 @@ def last_digit(text: str) -> float:
 
 
 def is_number(text: str) -> bool:
-    """Whether the printed text is a number at all."""
+    """Return whether the printed text is a number at all."""
     try:
         float(text)
     except ValueError:
@@ -123,7 +123,22 @@ def is_number(text: str) -> bool:
 
 
 def prints_as(value: float, text: str, cut: bool = False) -> bool:
-    """Whether a value, rounded (or ``cut`` off) after the last printed digit, gives a text like '0.805'."""
+    """Return whether a value gives a printed text, once it is rounded or cut off after the last digit.
+
+    ``PRINT_SLACK`` of a digit is allowed for rounding on the way.
+
+    Parameters
+    ----------
+    value : float
+    text : str
+        '0.805'.
+    cut : bool
+        Digits beyond the last are cut off, not rounded.
+
+    Returns
+    -------
+    bool
+    """
     error = (value - float(text)) / last_digit(text)
     if cut:
         return -PRINT_SLACK <= error * math.copysign(1.0, value) < 1.0 - PRINT_SLACK
@@ -131,6 +146,17 @@ def prints_as(value: float, text: str, cut: bool = False) -> bool:
 
 
 def is_slip(value: float, text: str) -> bool:
-    """Whether one wrong character keeps the text from being the value: '804.1.73' for 804.1073."""
+    """Return whether one wrong character keeps a printed text from being a value: '804.1.73' for 804.1073.
+
+    Parameters
+    ----------
+    value : float
+    text : str
+        As printed, with a point.
+
+    Returns
+    -------
+    bool
+    """
     right = f"{value:.{len(text) - text.index('.') - 1}f}"
     return len(right) == len(text) and sum(a != b for a, b in zip(right, text)) == 1

@@ -80,12 +80,35 @@ def point(place: Iterable[float]) -> Handle:
 
 
 def cast(kind: str, shape: Body) -> Body:
-    """Return a shape as what it is: 'Face', 'Wire', 'Shell'."""
+    """Return a shape as an object of its own class in OpenCASCADE.
+
+    Parameters
+    ----------
+    kind : str
+        'Face', 'Wire' or 'Shell'.
+    shape : Body
+
+    Returns
+    -------
+    Body
+        The same shape.
+    """
     return (getattr(TopoDS.TopoDS, f"{kind}_s", None) or getattr(TopoDS.TopoDS, kind))(shape)
 
 
 def parts(body: Body, kind: Handle) -> list[Body]:
-    """Return the parts of a kind that a body has, a list."""
+    """Return the parts of a kind that a body has.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    kind : Handle
+        As TopAbs_FACE.
+
+    Returns
+    -------
+    list of Body [mm]
+    """
     parts, walk = [], TopExp.TopExp_Explorer(body, kind)
     while walk.More():
         parts.append(walk.Current())
@@ -108,7 +131,18 @@ def flat_face(corners: Points) -> Body:
 
 
 def drawn(wires: list[Body], along: Iterable[float]) -> Body:
-    """Return the body that a flat outline, holes after it, leaves along a vector (3,) [mm]."""
+    """Return the body that a flat outline leaves along a straight line.
+
+    Parameters
+    ----------
+    wires : list of Body [mm]
+        The outline; its holes after it.
+    along : (3,) iterable of float [mm]
+
+    Returns
+    -------
+    Body [mm]
+    """
     face = BRepBuilderAPI.BRepBuilderAPI_MakeFace(wires[0], True)
     for hole in wires[1:]:
         face.Add(hole)
@@ -121,7 +155,24 @@ def outwards(body: Body) -> Body:
 
 
 def side(path: TrackPath, start: Points, stop: Points, z: float) -> Body:
-    """Return a side of a ring as an edge: a straight line, an arc of a circle, or else a spline."""
+    """Return a side of a ring as an edge: a straight line, an arc of a circle, or else a spline.
+
+    An arc is exact where the wall is a cylinder, the bank does not change, and both ends are as far from the
+    wall.
+
+    Parameters
+    ----------
+    path : TrackPath
+    start, stop : (2,) float [m]
+        Ends: length along the wall, and distance from it.
+    z : float [mm]
+        Height.
+
+    Returns
+    -------
+    Body [mm]
+        An edge.
+    """
     if min(start[0], stop[0]) >= path.end - 1e-12 or abs(start[0] - stop[0]) < 1e-9:
         ends = path.plan(*np.array([start, stop]).T) / MM
         return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(*(point([*place, z]) for place in ends)).Edge()
@@ -149,7 +200,18 @@ def spline(places: Points) -> Spline:
 
 
 def ruled(lower: Spline, upper: Spline) -> Body:
-    """Return the face between two splines of the same knots."""
+    """Return the ruled face between two splines.
+
+    Parameters
+    ----------
+    lower, upper : Spline [mm]
+        Of the same knots, multiplicities and degree.
+
+    Returns
+    -------
+    Body [mm]
+        A face.
+    """
     poles, knots, often, degree = lower
     grid = arrays.Array2_gp_Pnt(1, len(poles), 1, 2)
     for k, pair in enumerate(zip(poles, upper[0]), start=1):
@@ -162,7 +224,18 @@ def ruled(lower: Spline, upper: Spline) -> Body:
 
 
 def row(kind: str, values: Iterable[object]) -> Handle:
-    """Return values as the kernel's array of 'double', 'int' or 'gp_Pnt'."""
+    """Return values as an array of OpenCASCADE.
+
+    Parameters
+    ----------
+    kind : str
+        'double', 'int' or 'gp_Pnt'.
+    values : iterable
+
+    Returns
+    -------
+    Handle
+    """
     values = list(values)
     row_kind = getattr(arrays, f"Array1_{kind}")(1, len(values))
     for k, value in enumerate(values, start=1):
@@ -195,7 +268,18 @@ def valid(body: Body) -> bool:
 
 
 def below(body: Body, place: Points) -> float | None:
-    """Return the height [mm] of the first surface straight below a place (3,) [mm]; None without one."""
+    """Return the height of the first surface straight below a place.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    place : (3,) float [mm]
+
+    Returns
+    -------
+    float [mm] or None
+        None if there is none.
+    """
     intersector = IntCurvesFace.IntCurvesFace_ShapeIntersector()
     intersector.Load(body, 1e-6)
     intersector.Perform(gp.gp_Lin(point(place), gp.gp_Dir(0, 0, -1)), 0.0, 1e5)
@@ -221,9 +305,22 @@ def swept(legs: Sequence[tuple[Points, Points]]) -> Body:
 def turned(
     profile: ArrayLike, segments: int, start: float = SEAM_ANGLE_RAD, angle: float = 2.0 * np.pi
 ) -> Body:
-    """Return a body of revolution about Z of radius and height (K, 2) [m], over an ``angle`` [rad].
+    """Return a body of revolution about Z.
 
-    It begins at an angle ``start`` [rad]; ``segments`` is for ``facets`` alone.
+    Parameters
+    ----------
+    profile : (K, 2) array_like [m]
+        Radius and height, counter-clockwise.
+    segments : int
+        Not used: the faces are exact. ``facets.turned`` has the same signature.
+    start : float [rad]
+        Angle at which it begins.
+    angle : float [rad]
+        Over which it turns.
+
+    Returns
+    -------
+    Body [mm]
     """
     r, z = np.asarray(profile, float).T / MM
     face = flat_face(np.column_stack([r * np.cos(start), r * np.sin(start), z]))
@@ -231,20 +328,66 @@ def turned(
 
 
 def disc(at: Sequence[float], size: float, low: float, high: float) -> Body:
-    """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
+    """Return an upright round rod.
+
+    Parameters
+    ----------
+    at : (2,) array_like [m]
+        Its middle, seen from above.
+    size : float [m]
+        Diameter.
+    low, high : float [m]
+        Heights of its ends.
+
+    Returns
+    -------
+    Body [mm]
+    """
     seam = gp.gp_Dir(float(np.cos(SEAM_ANGLE_RAD)), float(np.sin(SEAM_ANGLE_RAD)), 0.0)
     foot = gp.gp_Ax2(point([at[0] / MM, at[1] / MM, low / MM]), gp.gp_Dir(0, 0, 1), seam)
     return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
 
 
 def bore(place: ArrayLike, towards: Iterable[float], size: float, deep: float) -> Body:
-    """Return a round rod along a unit vector (3,): its near end (3,), diameter and length [m]."""
+    """Return a round rod along a direction.
+
+    Parameters
+    ----------
+    place : (3,) array_like [m]
+        Middle of its near end.
+    towards : (3,) float [1]
+        Unit vector.
+    size : float [m]
+        Diameter.
+    deep : float [m]
+        Length.
+
+    Returns
+    -------
+    Body [mm]
+    """
     foot = gp.gp_Ax2(point(np.asarray(place) / MM), gp.gp_Dir(*map(float, towards)))
     return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, deep / MM).Shape()
 
 
 def plank(area: shapely.Geometry, thickness: float, axes: Points, foot: ArrayLike) -> Body:
-    """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
+    """Return a plate over an area, in space.
+
+    Parameters
+    ----------
+    area : shapely geometry [m]
+        In the first two of its axes.
+    thickness : float [m]
+        Along the third.
+    axes : (3, 3) float [1]
+        Its axes, a column each.
+    foot : (3,) array_like [m]
+        Origin of its axes.
+
+    Returns
+    -------
+    Body [mm]
+    """
     solid = []
     for area_part in shapely.get_parts(area):
         if area_part.geom_type == "Polygon":
@@ -256,7 +399,21 @@ def plank(area: shapely.Geometry, thickness: float, axes: Points, foot: ArrayLik
 
 
 def patch(ring: Points, low: float, high: float) -> Body:
-    """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
+    """Return an upright body within a closed curve.
+
+    The curve is two splines, so that neither closes on itself.
+
+    Parameters
+    ----------
+    ring : (K, 2) float [m]
+        Places of the curve, seen from above.
+    low, high : float [m]
+        Heights of its ends.
+
+    Returns
+    -------
+    Body [mm]
+    """
     half = len(ring) // 2
     wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
     for places in (ring[: half + 1], np.vstack([ring[half:], ring[:1]])):
@@ -266,7 +423,25 @@ def patch(ring: Points, low: float, high: float) -> Body:
 
 
 def over(path: TrackPath, ring: Points, low: float, high: float, chord: float) -> Body:
-    """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
+    """Return an upright body over a ring that is drawn along a way.
+
+    A side of the ring is a straight edge, an arc or a spline: ``side``. It is divided where the way becomes
+    straight.
+
+    Parameters
+    ----------
+    path : TrackPath
+    ring : (K, 2) float [m]
+        Corners: length along the wall, and distance from it.
+    low, high : float [m]
+        Heights of its ends.
+    chord : float [m]
+        Not used: the faces are exact. ``facets.over`` has the same signature.
+
+    Returns
+    -------
+    Body [mm]
+    """
     wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
     for a, b in zip(ring, np.roll(ring, -1, axis=0)):
         stops = [a, b]
@@ -287,19 +462,52 @@ def united(bodies: list[Body]) -> Body:
 
 
 def without(body: Body, tools: list[Body]) -> Body:
-    """Return a body with others cut out of it."""
+    """Return a body with others cut out of it.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    tools : sequence of Body [mm]
+        None of them leaves the body as it is.
+
+    Returns
+    -------
+    Body [mm]
+    """
     return _combined(BRepAlgoAPI.BRepAlgoAPI_Cut, body, tools) if tools else body
 
 
 def above(body: Body, height: float) -> Body:
-    """Return what of a body lies above a height [m]."""
+    """Return the share of a body that lies above a height.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    height : float [m]
+
+    Returns
+    -------
+    Body [mm]
+    """
     far = 10.0  # beyond everything
     under = plank(shapely.box(-far, -far, far, far), height + far, np.eye(3), [0.0, 0.0, -far])
     return without(body, [under])
 
 
 def placed_as(body: Body, *, mirrored: bool, turned: float) -> Body:
-    """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
+    """Return a body mirrored at the XZ plane or not, then turned about Z.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    mirrored : bool
+        The track rises the other way round.
+    turned : float [rad]
+
+    Returns
+    -------
+    Body [mm]
+    """
     turn, flip = gp.gp_Trsf(), gp.gp_Trsf()
     turn.SetRotation(axis(), float(turned))
     if mirrored:
@@ -308,14 +516,40 @@ def placed_as(body: Body, *, mirrored: bool, turned: float) -> Body:
 
 
 def moved(body: Body, by: Iterable[float]) -> Body:
-    """Return a body moved by a vector (3,) [mm]."""
+    """Return a body moved by a vector.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    by : (3,) iterable of float [mm]
+
+    Returns
+    -------
+    Body [mm]
+    """
     shift = gp.gp_Trsf()
     shift.SetTranslation(gp.gp_Vec(*map(float, by)))
     return BRepBuilderAPI.BRepBuilderAPI_Transform(body, shift, True).Shape()
 
 
 def one_piece(body: Body, where: str) -> Body:
-    """Return the one piece of a body; as ``facets.one_piece``."""
+    """Return the one piece of a body, without crumbs.
+
+    Parameters
+    ----------
+    body : Body [mm]
+    where : str
+        What a fault names: 'devices'.
+
+    Returns
+    -------
+    Body [mm]
+
+    Raises
+    ------
+    FeederError
+        If OpenCASCADE finds no body, or more than one.
+    """
     pieces = sorted(parts(body, TopAbs.TopAbs_SOLID), key=lambda item: -volume(item))
     if not pieces or any(volume(piece) > MIN_PIECE_VOLUME_MM3 for piece in pieces[1:]):
         raise FeederError(where, f"OpenCASCADE finds {len(pieces)} bodies", "take bowl.stl")

@@ -95,9 +95,24 @@ def _refused(what: str) -> FeederError:
 
 
 def step_bytes(bodies: list[Body], name: str) -> bytes:
-    """Return bodies of OpenCASCADE [mm] as the bytes of a STEP file without a date, of products of a name.
+    """Return bodies of OpenCASCADE as the bytes of a STEP file, the same in every run.
 
-    Raises FeederError if OpenCASCADE does not take one of them.
+    The file has no date, and its products have no running number.
+
+    Parameters
+    ----------
+    bodies : list of Body [mm]
+    name : str
+        Of the products.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    FeederError
+        If OpenCASCADE does not take one of them.
     """
     messenger = (getattr(Message.Message, "DefaultMessenger_s", None) or Message.Message.DefaultMessenger)()
     messenger.ChangePrinters().Clear()  # what it tells of each file stays off the terminal
