@@ -154,7 +154,7 @@ def aspects(case: ReportStudy) -> Chapter:
     rules = [p[case.row] for p in study.aspects.probabilities.values() if np.isfinite(p[case.row])]
     if answer is not None:
         share, low, high = (percent(ends[case.row]) for ends in (answer.p, answer.low, answer.high))
-        likely = f"{share} % of drops ({low} to {high} %), {answer.rule}"
+        likely = f"{share} % of drops ({low} to {high} %), {answer.words}"
     elif rules:
         likely = f"{percent(min(rules))} to {percent(max(rules))} % of drops, by {len(rules)} rules"
     else:
