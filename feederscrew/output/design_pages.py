@@ -36,8 +36,8 @@ from feederscrew.output.tables import Frame
 from feederscrew.output.trial import rides
 
 MEASURE = (
-    "Stroke: the sticker on the rim shows it peak to peak; below the computed one, raise the controller, and "
-    "look for a part that touches the frame.",
+    "Stroke: a stroke gauge, a printed sticker on the bowl's rim, shows it peak to peak; if it is below the "
+    "computed one, raise the controller, and look for a part that touches the frame.",
     "Acceleration: an accelerometer on the bowl, along the vibration; where the stroke is right and the "
     "acceleration is not, the frequency is another one.",
     "Natural frequency: tap the bowl with the drive off and read the decay; it shall lie 3 to 8 % above the "
@@ -87,7 +87,7 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     loop: list[Block] = [
         Text(
             "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. "
-            "What the trial denies is changed in the next. design_trials.csv has the dimensions of each "
+            "What goes wrong in it is changed in the next. design_trials.csv has the dimensions of each "
             "device."
         )
     ]
@@ -110,8 +110,8 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
         proof: list[Block] = [lead]
         if d["long_ride"] and study.long_ride is not None:
             ridden = Text(
-                "Parts of each orientation that comes often first ride along the bare track to the tooling. "
-                f"They begin a little off and ride {1e3 * study.long_ride.distance:.3g} mm. What turns, "
+                "A few parts of each orientation that comes often travel on the bare track, up to the tooling. "
+                f"They begin a little off and travel {1e3 * study.long_ride.distance:.3g} mm. What turns, "
                 "leaves the track or rolls back changes the mix that arrives."
             )
             proof += [ridden, Table(designs.long_ride(d["long_ride"]))]

@@ -15,6 +15,7 @@ from itertools import groupby
 from feederscrew.errors import printable
 from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
+from feederscrew.output.page.words import GLOSSARY
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 CSS_DPI = 96  # pixels of a page to the inch
@@ -45,6 +46,8 @@ RENAMED = r"([\w$]+) as ([\w$]+)"  # in the imports and exports of a module
 SHORT = 3  # significant digits of a percentage, and of a number at the head of a page
 LONG_LETTERS = 36  # of a cell that needs a wide column
 NOTHING = "–"  # in an empty cell
+WHERE_WORDS = "The glossary of feeder, docs/glossary.md, explains the words with pictures."
+DETAILS = "Details for those who compare the rules"  # over remarks that call for no step
 FOLLOWING = (  # what the script shows: its name, what a reader calls it
     ("velocity", "velocity"), ("regime", "the part"), ("throw", "throw number"),
     ("stroke", "stroke, end to end"), ("rate", "rate"),
@@ -78,9 +81,11 @@ def html(page: kinds.Page) -> str:
         anchor, title = f' id="{section.anchor}"' if section.anchor else "", escape(section.title)
         links += [f'<a href="#{section.anchor}">{title}</a>'] if title else []
         body = "\n".join(_run(*run) for run in groupby(section.blocks, _may_share_row))
+        body += f"\n{_folded(DETAILS, _list(section.details, 'notes'))}" if section.details else ""
         title = f"<h2>{title}</h2>\n" if title else ""
         sections.append(f"<section{anchor}>\n{title}{body}\n</section>")
     head += ["<nav>", *links, "</nav>"] if links else []
+    sections += [_glossary("".join(sections))] if links else []
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
@@ -178,6 +183,8 @@ def _block(block: kinds.Block) -> str:
             return _list(lines, "loud" if loud else "notes")
         case kinds.Code(text):
             return f"<pre>{escape(text)}</pre>"
+        case kinds.Folded(title, text):
+            return _folded(title, f"<pre>{escape(text)}</pre>")
         case kinds.Table(frame, printed=printed):
             return _table(frame) if printed else f'<div class="on-screen">{_table(frame)}</div>'
         case kinds.Knobs():
@@ -207,6 +214,23 @@ def _block(block: kinds.Block) -> str:
         case kinds.Matrix(heads, rows, sortable):
             return _matrix(heads, rows, sortable)
     raise ValueError(f"{type(block).__name__} is not a block of a page")
+
+
+def _glossary(body: str) -> str:
+    """The words of a page that the glossary has, folded, and where there is more."""
+    shown = re.sub(r"<script.*?</script>|<[^>]*>", " ", body, flags=re.S).lower()
+    used = [
+        (word, meaning)
+        for word, meaning in GLOSSARY.items()
+        if any(re.search(rf"\b{re.escape(each)}s?\b", shown) for each in word.split(", "))
+    ]
+    listed = "\n".join(f"<dt>{escape(word)}</dt><dd>{escape(meaning)}</dd>" for word, meaning in used)
+    folded = f"{_folded('Words of this page', f'<dl>{listed}</dl>')}\n" if used else ""
+    return f'<footer>\n{folded}<p class="quiet">{WHERE_WORDS}</p>\n</footer>'
+
+
+def _folded(title: str, body: str) -> str:
+    return f"<details>\n<summary>{escape(title)}</summary>\n{body}\n</details>"
 
 
 def _list(lines: Iterable[str], mark: str) -> str:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from feederscrew.errors import Detail
 from feederscrew.output.tables import Frame
 
 
@@ -137,7 +138,15 @@ class Matrix:
     sortable: bool = False  # a click on a heading sorts it, words that are typed choose rows
 
 
-Block = Text | Notes | Code | Table | CsvSheet | Picture | Views | Knobs | Heading | Links | Matrix
+@dataclass(frozen=True)
+class Folded:
+    """Text of a file or of details under a title that opens it; on paper the title alone."""
+
+    title: str
+    text: str
+
+
+Block = Text | Notes | Code | Folded | Table | CsvSheet | Picture | Views | Knobs | Heading | Links | Matrix
 
 
 @dataclass(frozen=True)
@@ -159,6 +168,11 @@ class Chapter:
     anchor: str = ""
     title: str = ""
 
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The warnings that call for no step of the reader."""
+        return tuple(line for line in self.warnings if isinstance(line, Detail))
+
 
 @dataclass(frozen=True)
 class Page:
@@ -177,4 +191,5 @@ class Page:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a reader must not overlook, each line once."""
-        return tuple(dict.fromkeys(line for section in self.sections for line in section.warnings))
+        lines = dict.fromkeys(line for section in self.sections for line in section.warnings)
+        return tuple(line for line in lines if not isinstance(line, Detail))
