@@ -1,5 +1,6 @@
 """What a page is made of; the two writers turn each kind of block into HTML or Markdown."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -67,6 +68,14 @@ class ShareBar:
     colour: str
     share: float  # [1]
     interval: tuple[float, ...] = ()  # [1] low and high
+
+
+@dataclass(frozen=True)
+class Pose:
+    """What a name like A@188 stands for: a small picture (PNG) and words."""
+
+    content: bytes
+    words: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +191,8 @@ class Page:
     subtitle: str
     sections: tuple[Chapter, ...]
     kind: str = ""
+    opening: tuple[Views, ...] = ()  # what it begins with, to be turned
+    pose: Callable[[str], Pose | None] | None = None  # what a name of its texts stands for
 
     @property
     def tiles(self) -> tuple[Tile, ...]:
