@@ -154,7 +154,7 @@ def _first_seen(study: DesignStudy) -> list[tuple[str, str]]:
     tried = study.attempts[-1] if study.attempts else None
     wanted = study.wanted or ("" if tried is None else tried.wanted)
     if study.delivers:
-        words = "leaves as wanted"
+        words = "leaves correctly oriented"
     else:
         faults = () if tried is None else texts.fault_texts(tried.faults, 1)
         words = "; ".join(("wanted", *faults))
