@@ -90,7 +90,7 @@ def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chose
                 solid, **chosen, progress=bar.reach, before=lambda _: progress.tell_compiling(out, "drops")
             )
         if study.recommended is not None:
-            out.say(f"Recommended: {study.recommended.rule}")
+            out.say(f"Recommended: {study.recommended.words}")
         out.warn(*study.aspects.warnings)
         if out.format == "table" and study.recommended is not None:
             out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")

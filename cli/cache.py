@@ -2,11 +2,15 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import grouped, options
 from feederscrew_cli.options import Output
 
 
-@click.group(short_help="What earlier runs have kept on the disk; clear it.", invoke_without_command=True)
+@click.group(
+    cls=grouped.Words,
+    short_help="What earlier runs have kept on the disk; clear it.",
+    invoke_without_command=True,
+)
 @click.pass_context
 def cache(ctx: click.Context) -> None:
     """Example: feeder cache

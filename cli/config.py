@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import grouped, options
 from feederscrew_cli.options import Output, Values
 
 FORCE = options.flag("--force replace", "Replace the file if it exists.")
@@ -10,7 +10,9 @@ FILE_OR_STDOUT = click.argument("file", type=options.FILE, default="-")
 
 
 @click.group(
-    short_help="Write a commented bowl file; show the values in effect.", invoke_without_command=True
+    cls=grouped.Words,
+    short_help="Write a commented bowl file; show the values in effect.",
+    invoke_without_command=True,
 )
 @click.pass_context
 def config(ctx: click.Context) -> None:

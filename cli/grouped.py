@@ -16,6 +16,7 @@ OPTION_GROUPS = {  # heading: names of the options that commands share
 }
 OPTION_HEADINGS = {name: heading for heading, names in OPTION_GROUPS.items() for name in names}
 OWN_OPTIONS = "Options"
+GLOSSARY = "Words (aspect, heading, purity ...): docs/glossary.md"
 COMMON = "Options of most commands"
 # shared options that few calls need
 RARE_OPTIONS = {
@@ -84,6 +85,25 @@ class Grouped(click.Command):
             formatter.write_paragraph()
             text = f"Rare, see --help-all: {', '.join(rare)}"
             formatter.write(textwrap.fill(text, formatter.width, break_on_hyphens=False) + "\n")
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write where words are explained."""
+        super().format_epilog(ctx, formatter)
+        _write_glossary(formatter)
+
+
+class Words(click.Group):
+    """A group of commands whose help ends in where words are explained."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write where words are explained."""
+        super().format_epilog(ctx, formatter)
+        _write_glossary(formatter)
+
+
+def _write_glossary(formatter: click.HelpFormatter) -> None:
+    formatter.write_paragraph()
+    formatter.write(f"{GLOSSARY}\n")
 
 
 def _is_whole(ctx: click.Context) -> bool:

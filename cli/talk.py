@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from feederscrew.errors import Detail
 from feederscrew.units import printable
 from feederscrew_cli import progress
 from feederscrew_cli.interrupt import hold_interrupts
@@ -74,10 +75,12 @@ class Output:
         return out
 
     def warn(self, *texts: str) -> None:
-        """Tell each warning on stderr and keep it for run.json."""
-        for text in (translate(text, self.options) for text in texts):
-            self.warnings.append(text)
-            self.say(f"Warning: {text}")
+        """Tell each warning on stderr and keep it for run.json; a detail is told with ``-v`` only."""
+        for text in texts:
+            tell = self.detail if isinstance(text, Detail) else self.say
+            warning = translate(text, self.options)
+            self.warnings.append(warning)
+            tell(f"Warning: {warning}")
 
     def say(self, *texts: str) -> None:
         """Each text as a line on stderr, folded where that is a terminal, unless ``-q``."""

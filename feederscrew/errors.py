@@ -30,6 +30,16 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in letters)
 
 
+class Detail(str):
+    """A remark that calls for no step of the user: documents have it, the command line says it with -v.
+
+    It is a warning like the others for whoever reads a document. Pages keep it folded at the end of its
+    chapter.
+    """
+
+    __slots__ = ()
+
+
 class FeederError(Exception):
     """Say where it is, what is wrong and how to mend it; all three are required.
 

@@ -275,7 +275,7 @@ def prove_design(
             candidate = replace(candidate, orientations=oriented, weights=weights / weights.sum())
             shares = own
     # a ride along the track to the tooling, where another mix arrives
-    search.tell(f"ride along the track: {name}")
+    search.tell(f"{name}: a few parts of each orientation on the bare track, up to the tooling")
     oriented, proposal = candidate.orientations, candidate.proposal
     wanted = wanted_rows(oriented, candidate.trial.states)
     ride = long_ride(search.part, candidate.bowl, oriented.lying, candidate.weights, wanted, request.run)

@@ -5,6 +5,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
+from feederscrew.arrays import Array
 from feederscrew.heavy import heavy
 from feederscrew.output import style
 from feederscrew.part.record import Part
@@ -25,8 +26,12 @@ def thumbnail(part: Part, record: Aspects, aspect: str | None = None) -> bytes:
     """Draw a part with a mesh on one of its aspects as a PNG; without a name on the likeliest."""
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     row = record.names.index(aspect or record.likeliest)
+    return png_of_pixels(shading.thumbnail(solid, record, row, (WIDTH, HEIGHT)))
+
+
+def png_of_pixels(pixels: Array) -> bytes:
+    """Return an image (rows, columns, 3) from 0 to 1 as the bytes of a PNG, the same for the same image."""
     buffer, metadata = io.BytesIO(), dict[str, Any](Software=None)  # None: no such entry
-    pixels = shading.thumbnail(solid, record, row, (WIDTH, HEIGHT))
     mpl_image.imsave(buffer, pixels, format="png", metadata=metadata)
     return buffer.getvalue()
 

@@ -9,10 +9,11 @@ from typing import Any
 from feederscrew import units
 from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
+from feederscrew.designing import texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignStudy
-from feederscrew.output import designs, machine, marking, solidbowl, solidbowl_views, tables, tooling
+from feederscrew.output import designs, machine, marking, poses, solidbowl, solidbowl_views, tables, tooling
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import LOWER_BOUND
 from feederscrew.output.page.as_html import html
@@ -20,6 +21,7 @@ from feederscrew.output.page.blocks import (
     Block,
     Chapter,
     CsvSheet,
+    Folded,
     Heading,
     MarkedCell,
     Matrix,
@@ -34,10 +36,11 @@ from feederscrew.output.page.blocks import (
 from feederscrew.output.style import png
 from feederscrew.output.tables import Frame
 from feederscrew.output.trial import rides
+from feederscrew.resting.aspects import find
 
 MEASURE = (
-    "Stroke: the sticker on the rim shows it peak to peak; below the computed one, raise the controller, and "
-    "look for a part that touches the frame.",
+    "Stroke: a stroke gauge, a printed sticker on the bowl's rim, shows it peak to peak; if it is below the "
+    "computed one, raise the controller, and look for a part that touches the frame.",
     "Acceleration: an accelerometer on the bowl, along the vibration; where the stroke is right and the "
     "acceleration is not, the frequency is another one.",
     "Natural frequency: tap the bowl with the drive off and read the decay; it shall lie 3 to 8 % above the "
@@ -87,7 +90,7 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     loop: list[Block] = [
         Text(
             "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. "
-            "What the trial denies is changed in the next. design_trials.csv has the dimensions of each "
+            "What goes wrong in it is changed in the next. design_trials.csv has the dimensions of each "
             "device."
         )
     ]
@@ -97,9 +100,9 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     chapters.append(Chapter(tuple(loop), anchor="loop", title="The loop"))
     if study.trials:
         scene, captions = rides.scene(study.part, *study.trials)
-        poses = tuple((*caption, ()) for caption in captions)
+        played = tuple((*caption, ()) for caption in captions)
         lead = Text("Parts of the short trial at the device that decides.")
-        views = Views(scene, poses, "trial-views", "Orientation", plays=True, printed=True)
+        views = Views(scene, played, "trial-views", "Orientation", plays=True, printed=True)
         chapters.append(Chapter((lead, views), anchor="trial", title="The trial"))
     if study.queues:
         lead = Text(
@@ -110,8 +113,8 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
         proof: list[Block] = [lead]
         if d["long_ride"] and study.long_ride is not None:
             ridden = Text(
-                "Parts of each orientation that comes often first ride along the bare track to the tooling. "
-                f"They begin a little off and ride {1e3 * study.long_ride.distance:.3g} mm. What turns, "
+                "A few parts of each orientation that comes often travel on bare track, up to the tooling. "
+                f"They begin a little off and travel {1e3 * study.long_ride.distance:.3g} mm. What turns, "
                 "leaves the track or rolls back changes the mix that arrives."
             )
             proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
@@ -137,7 +140,27 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
             Notes(MEASURE),
         )
         chapters.append(Chapter(blocks, anchor="acceptance", title="Acceptance sheet"))
-    return html(Page(study.part.name, f"design of a bowl: {study.status}", tuple(chapters), kind="design"))
+    aspects = find(study.part) if study.tooling is None else study.tooling.aspects
+    return html(
+        Page(
+            study.part.name, f"design of a bowl: {study.status}", tuple(chapters), "design",
+            poses.opening(study.part, aspects, _first_seen(study)), poses.pose_finder(study.part, aspects),
+        )
+    )  # fmt: skip
+
+
+def _first_seen(study: DesignStudy) -> list[tuple[str, str]]:
+    """The orientation that was wanted and what left in its place, each with what became of it."""
+    tried = study.attempts[-1] if study.attempts else None
+    wanted = study.wanted or ("" if tried is None else tried.wanted)
+    if study.delivers:
+        words = "leaves correctly oriented"
+    else:
+        faults = () if tried is None else texts.fault_texts(tried.faults, 1)
+        words = "; ".join(("wanted", *faults))
+    instead = texts.leaving_texts(study.left_instead)
+    others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
+    return [(wanted, words), *((name, f"left in its place: {instead[name]}") for name in others[:1])]
 
 
 def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
@@ -193,7 +216,10 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
     cells = tuple((MarkedCell(name, link=name), MarkedCell(what)) for name, what in listed if what)
     if cells:
         files = Text("These files lie beside this page."), Matrix(("file", "what it is"), cells)
-        yield Chapter(files, anchor="files", title="Files to build from")
+        bowl = papers.get("design.yaml")
+        text = "" if bowl is None else tables.file_bytes(bowl.make()).decode()
+        folded = (Folded("design.yaml, the bowl file", text),) if text else ()
+        yield Chapter((*files, *folded), anchor="files", title="Files to build from")
 
 
 def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None = None) -> list[offer.Offer]:

@@ -275,7 +275,10 @@ def short_attempts(study: DesignStudy) -> Frame:
     """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
     chains = [", ".join(attempt.chain_brief) or "none" for attempt in study.attempts]
     history = attempts(study).without(["peak_to_peak_mm"])  # the throw number says as much
-    return tables.frame(history | {"chain": chains})
+    named = {"why": "what is new", "denied": "what goes wrong"}
+    return tables.frame(
+        {named.get(name, name): cells for name, cells in (history | {"chain": chains}).items()}
+    )
 
 
 def summary(study: DesignStudy) -> Frame:
@@ -367,7 +370,7 @@ def acceptance(study: DesignStudy) -> Frame:
         facts: Any = machine_facts(study)
         drive, controller = study.bowl.drive, study.bowl.sizing.controller
         single = [
-            ("stroke on the sticker, peak to peak", facts["stroke_peak_to_peak_mm"], "mm"),
+            ("stroke at the rim, peak to peak", facts["stroke_peak_to_peak_mm"], "mm"),
             ("acceleration, peak", (2.0 * np.pi * drive.frequency) ** 2 * drive.amplitude, "m/s2"),
             ("frequency of the drive", drive.frequency, "Hz"),
             ("vibration angle", facts["vibration_angle_at_the_track_deg"], "deg"),
@@ -540,7 +543,13 @@ def history_figure(study: DesignStudy, ax: "style.Axes | None" = None) -> "style
     bars = axes.bar(places, rates, hatch=["" if good else "//" for good in clean], **looks)
     target = study.request.target / PER_MINUTE
     handles = [axes.axhline(target, color=style.INK, linewidth=1.2, linestyle="--", label="asked for")]
-    labels, words = ["asked for"], {True: "only what is wanted leaves, and nothing stays", False: "denied"}
+    labels, words = (
+        ["asked for"],
+        {
+            True: "only what is wanted leaves, and nothing stays",
+            False: "something else leaves, or parts stay",
+        },
+    )
     for good in words:
         if good in clean:
             handles.append(bars[clean.index(good)])

@@ -3,7 +3,7 @@
 import gc
 import platform
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
@@ -28,6 +28,7 @@ from feederscrew.output import (
     inertia,
     machine,
     marking,
+    poses,
     proof,
     shading,
     solidbowl_views,
@@ -154,7 +155,7 @@ def aspects(case: ReportStudy) -> Chapter:
     rules = [p[case.row] for p in study.aspects.probabilities.values() if np.isfinite(p[case.row])]
     if answer is not None:
         share, low, high = (percent(ends[case.row]) for ends in (answer.p, answer.low, answer.high))
-        likely = f"{share} % of drops ({low} to {high} %), {answer.rule}"
+        likely = f"{share} % of drops ({low} to {high} %), {answer.words}"
     elif rules:
         likely = f"{percent(min(rules))} to {percent(max(rules))} % of drops, by {len(rules)} rules"
     else:
@@ -605,7 +606,22 @@ def page(
         if chapter is not None:  # else it was not asked for
             sections.append(replace(chapter, anchor=anchor, title=title))
     where = f"{case.part.material}, in {case.path or 'the default bowl'} · feeder {__version__}"
-    return Page(case.part.name, where, tuple(sections), "report")
+    aspects = case.resting.aspects
+    opening = poses.opening(case.part, aspects, _first_seen(case) if chapters is CHAPTERS else ())
+    return Page(
+        case.part.name, where, tuple(sections), "report", opening, poses.pose_finder(case.part, aspects)
+    )
+
+
+def _first_seen(case: ReportStudy) -> list[tuple[str, str]]:
+    """The orientation that leaves, or without a rate that of the track, each with a few words."""
+    with suppress(FeederError):
+        row, lying = case.rate.rate.row, case.rate.rate.orientations
+        return [(lying.lying[row].name, "leaves correctly oriented")]
+    with suppress(FeederError):
+        heading = round(float(np.degrees(case.track.seat.heading))) % 360
+        return [(f"{case.aspect}@{heading}", "on the track")]
+    return []
 
 
 def write(folder: ResultFolder, page: Page, format: str) -> None:

@@ -326,7 +326,8 @@ def number(value: float, digits: int = TABLE_DIGITS, nothing: str = "-") -> str:
 def _is_share(name: str) -> bool:
     if name.startswith("p_"):
         return name != "p_value"
-    return name in PASSED or name.rpartition("_")[2] in SHARES
+    whole = name.removesuffix("_low").removesuffix("_high").removesuffix("_static")
+    return name in PASSED or whole.rpartition("_")[2] in SHARES
 
 
 def heading(name: str, numeric: bool = True) -> tuple[str, str]:

@@ -357,7 +357,7 @@ def chain_picture(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats
 ) -> offer.Offer:
     """Offer the picture of a bowl's own devices; ``shares`` are those (M,) [1] of the orientations."""
-    alt = "Each orientation where each device bears least"
+    alt = "Each orientation where each device supports it least"
     return offer.picture("tooling.png", alt, lambda: tooling_figures.chain(devices, orientations, shares))
 
 

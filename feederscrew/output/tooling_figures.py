@@ -52,7 +52,7 @@ def chain(
     high = -(-len(rows) // panels)
     page = style.page(panels * wide, PAGE_HEAD_PX + ROW * high + PAGE_FOOT_PX)
     column = (wide - FATE_COLUMN_PX - OUT) / count
-    title = "Each orientation where each device bears least"
+    title = "Each orientation where each device supports it least"
     if wanted_row is not None:
         title = f"What lets {orientations[wanted_row].name} leave: {title[0].lower()}{title[1:]}"
     _heading(page, title, orientations, rows)

@@ -135,7 +135,7 @@ def _caption(passage: Passage, word: str) -> tuple[str, str]:
     kind = passage.device.name
     where = "half way through" if passage.verdict.passes > 0.0 else "in front of it"
     if _over_a_cut(passage):
-        where = "where it bears least; outline: support's hull, dot: weight"
+        where = "where it is supported least; outline: what supports it, dot: weight"
     return f"{passage.orientation.name} {word} the {kind}", f"{margin_words(passage.verdict)}, {where}"
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats, Ints, Points
-from feederscrew.errors import ArgumentError, ConfigError, FeederError, MeshError
+from feederscrew.errors import ArgumentError, ConfigError, Detail, FeederError, MeshError
 from feederscrew.geometry import compiled, vectors
 from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
@@ -780,7 +780,7 @@ def published_changes(
 
 def shallow_remark(
     shallow: ShallowFacets, names: tuple[str, ...], chances: dict[str, Floats], complete: dict[str, Floats]
-) -> tuple[str, ...]:
+) -> tuple[Detail, ...]:
     """Return a sentence about the published rules with every facet, if they differ; else nothing.
 
     Parameters
@@ -794,8 +794,8 @@ def shallow_remark(
 
     Returns
     -------
-    tuple of str
-        One sentence, or no sentence.
+    tuple of Detail
+        One sentence, or no sentence: the recommended rule does not depend on it.
     """
     changes = {rule: np.abs(chances[rule] - complete[rule]) for rule in complete}
     if not len(shallow.inside) or max(change.max() for change in changes.values()) < MIN_CHANGE:
@@ -810,9 +810,11 @@ def shallow_remark(
         ("1 facet is no aspect", "it") if count == 1 else (f"{count} facets are no aspects", "them")
     )
     return (
-        f"{facets} here, although the part stands on {them} (foot of the centre of "
-        f"mass up to {shallow.inside.max() / MM:.2g} mm inside), because next to nothing tips it to a "
-        f"neighbour; the rules as published count {them}: {pieces}",
+        Detail(
+            f"{facets} here, although the part stands on {them} (foot of the centre of "
+            f"mass up to {shallow.inside.max() / MM:.2g} mm inside), because next to nothing tips it to a "
+            f"neighbour; the rules as published count {them}: {pieces}"
+        ),
     )
 
 

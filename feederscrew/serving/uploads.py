@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import FeederError, printable
+from feederscrew.errors import Detail, FeederError, printable
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output.folder import safe_name
 from feederscrew.output.page.as_html import html
@@ -193,7 +193,8 @@ class Uploads:
             study = aspects(load(str(path), units=units))
             table = aspects_output.aspects(study).only(("aspect", "lies", "stable", "height_mm"))
             blocks = *aspect_views(study.part, study), Table(table)
-            warnings = tuple(in_words_of_the_page(text) for text in study.aspects.warnings)
+            told = (text for text in study.aspects.warnings if not isinstance(text, Detail))
+            warnings = tuple(map(in_words_of_the_page, told))
             view = html(Page(name, "", (Chapter(blocks, warnings=warnings),), "aspects"))
         except FeederError as fault:
             lines = " ".join(fault.lines).replace(str(path), name)

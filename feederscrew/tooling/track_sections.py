@@ -233,7 +233,7 @@ def until_returned(
 
 
 def _hole_shift(device: Device, orientation: Orientation) -> float | None:
-    """By how much [rad] a hole with an edge across the track is ahead of the part where it bears least."""
+    """By how much [rad] a hole with an edge across the track is ahead of the part, where least holds it."""
     hole = device.hole_on(orientation.track)
     return None if hole is None else footprints.least(orientation.axial_foot, hole)[1]
 

@@ -155,3 +155,17 @@ def test_micrometres_may_be_typed_with_their_sign(run_json, stl):
     """'Did you mean m?' was said of it, a factor of a million."""
     for unit in ("um", "\u00b5m", "\u03bcm"):
         assert run_json("inertia", stl, "--units", unit, "-q")["volume_mm3"] == pytest.approx(6e-6)
+
+
+def test_what_a_newcomer_cannot_act_on_is_said_with_verbose_and_stays_in_the_document(run, run_json):
+    """24 facets of a bolt came as a warning, with shares by a rule that nobody had asked for."""
+    bolt, quick = str(PARTS / "hexbolt_m8x25.stl"), ("--rule", "closed")
+    remark = "facets are no aspects"
+    assert remark not in run("aspects", bolt, *quick).stderr
+    assert remark in run("aspects", bolt, *quick, "-v").stderr
+    assert any(remark in line for line in run_json("aspects", bolt, *quick)["warnings"])
+
+
+def test_the_launch_of_the_recommended_answer_is_explained_where_it_is_first_named(run):
+    said = run("aspects", NUT, "--rule", "closed", "--launch", "flip").stderr
+    assert "launch flip (spun as a coin)" in said

@@ -30,6 +30,7 @@ def test_the_help_of_a_command_fits_a_screen_names_each_option_and_has_short_sen
     is_grouped = isinstance(command, grouped.Grouped)
     short, whole = (run(name, f"--help{more}").stdout for more in ("", "-all" * is_grouped))
     listed = whole.partition("\nOptions:\n")[2]
+    assert "docs/glossary.md" in short and "docs/glossary.md" in whole
     assert len(short.splitlines()) <= 60 and words(short.partition("\n")[2]).startswith("Example: feeder")
     for each in [command, *getattr(command, "commands", {}).values()]:
         assert each.help.startswith(f"Example: feeder {name}") and each.short_help, each.name

@@ -479,7 +479,7 @@ def test_the_labels_of_bars_without_height_do_not_lie_on_each_other(rates):
 def test_the_captions_of_views_side_by_side_stay_over_their_own(monkeypatch):
     """They ran into each other where a device has a long name."""
     words = ("A@188 is laid over at the narrowed track beside a height bar",
-             "margin -0.64 mm, where it bears least; outline: support's hull, dot: weight")  # fmt: skip
+             "margin -0.64 mm, where it is supported least; outline: what supports it")  # fmt: skip
     monkeypatch.setattr(tooling_views, "_views", lambda *chain: [(None, words, "k"), (None, words, "k")])
     monkeypatch.setattr(tooling_views, "_draw_view", lambda *view: None)
     figure = tooling_views.figure([], [], np.ones(1), 0)

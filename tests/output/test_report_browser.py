@@ -97,6 +97,44 @@ def test_a_fault_of_the_page_and_what_may_not_load_are_seen(visit):
     assert "Content Security Policy" in "".join(console)
 
 
+PHONE = """<script>
+(() => {
+  const page = document.documentElement, shown = (e) => e.getClientRects().length > 0;
+  const white = [...document.querySelectorAll("tr")].filter(shown).map((row) => {
+    const lines = [...row.cells].filter(shown).map((cell) => {
+      const text = document.createRange();
+      text.selectNodeContents(cell);
+      return text.getBoundingClientRect().height;
+    });
+    const tops = [...row.cells].filter(shown).map((cell) => Math.round(cell.getBoundingClientRect().top));
+    return new Set(tops).size > 1 ? 0 : Math.max(...lines) - Math.min(...lines);
+  });
+  const over = page.scrollWidth - innerWidth;
+  document.title = JSON.stringify({ wide: innerWidth, over, white: Math.max(0, ...white) });
+})();
+</script></body>"""
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_no_row_of_a_table_is_white_beside_a_long_text(probed, width):
+    """A reason of nine lines made rows of 300 px with nothing in the other columns, on a telephone."""
+    why = "the trial rejects this design: 3 of 20 parts left in a wrong orientation; " * 6
+    rows = {
+        "trial": [1, 2],
+        "wanted": ["A@188", "B@0"],
+        "purity": [0.5, np.nan],
+        "what goes wrong": [why, "-"],
+    }
+    page = Page("cap", "", (Chapter((Table(tables.frame(rows)),), title="The loop"),))
+    text = escape(html(page).replace("</body>", PHONE))
+    frame = f'<iframe style="width:{width}px;height:900px;border:0" srcdoc="{text}">'
+    said, _ = probed(
+        f"<html><head><title></title></head><body>{frame}</iframe></body></html>",
+        "<script>onload = () => { document.title = frames[0].document.title; }</script></body>",
+    )
+    assert said["wide"] == width and said["over"] <= 0 and said["white"] < 120
+
+
 def test_without_webgl_the_still_picture_stays(visit, text, tmp_path):
     dom, console = visit(text, "--disable-3d-apis", "--dump-dom")
     assert console == []

@@ -7,14 +7,16 @@ import io
 import json
 import re
 import struct
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from html import escape as html_escape
+from html import unescape
 from importlib import resources
 from itertools import groupby
 
 from feederscrew.errors import printable
 from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
+from feederscrew.output.page.words import GLOSSARY
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 CSS_DPI = 96  # pixels of a page to the inch
@@ -44,7 +46,17 @@ THREE = "vendor/three"  # the folder of three.js
 RENAMED = r"([\w$]+) as ([\w$]+)"  # in the imports and exports of a module
 SHORT = 3  # significant digits of a percentage, and of a number at the head of a page
 LONG_LETTERS = 36  # of a cell that needs a wide column
+CARD_LETTERS = 110  # of a cell that takes more than four lines of that column
 NOTHING = "–"  # in an empty cell
+WHERE_WORDS = "The glossary of feeder, docs/glossary.md, explains the words with pictures."
+DETAILS = "Details for those who compare the rules"  # over remarks that call for no step
+# In HTML, apart from scripts and tags: orientations 'A@188', and cells with nothing but 'A'.
+NAMES = re.compile(
+    r'<script.*?</script>|<table class="sheet".*?</table>'  # cells to copy stay as they are
+    r'|(?P<td><td(?: data-head="[^"]*")?>)(?P<cell>[^<>@\s]{1,12})</td>|<[^>]*>'
+    r"|(?P<name>[^\W\d_][\w-]{0,11}@\d{1,3})(?![\w@])",
+    re.DOTALL,
+)
 FOLLOWING = (  # what the script shows: its name, what a reader calls it
     ("velocity", "velocity"), ("regime", "the part"), ("throw", "throw number"),
     ("stroke", "stroke, end to end"), ("rate", "rate"),
@@ -53,7 +65,7 @@ FOLLOWING = (  # what the script shows: its name, what a reader calls it
 
 def html(page: kinds.Page) -> str:
     """Return the page as HTML."""
-    all_blocks = [block for section in page.sections for block in section.blocks]
+    all_blocks = [*page.opening, *(block for section in page.sections for block in section.blocks)]
     matrices = [block for block in all_blocks if isinstance(block, kinds.Matrix)]
     cells = (cell for block in matrices for row in block.rows for cell in row)
     linked = any(cell.picture and cell.picture.link for cell in cells)
@@ -71,23 +83,30 @@ def html(page: kinds.Page) -> str:
         f"<small>{escape(tile.note)}</small></div>"
         for tile in page.tiles
     ]
-    head += ['<div class="tiles">', *tiles, "</div>"] if tiles else []
-    head.append(_list(page.warnings, "loud") if page.warnings else "")
+    shown = ['<div class="tiles">', *tiles, "</div>"] if tiles else []
+    shown.append(_list(page.warnings, "loud") if page.warnings else "")
+    if page.opening:
+        shown = ['<div class="opening">', *map(_views, page.opening), "<div>", *shown, "</div>", "</div>"]
+    names = PoseNames(page.pose)
+    head.append(names.marked("\n".join(shown)))
     links, sections = [], []
     for section in page.sections:
         anchor, title = f' id="{section.anchor}"' if section.anchor else "", escape(section.title)
         links += [f'<a href="#{section.anchor}">{title}</a>'] if title else []
         body = "\n".join(_run(*run) for run in groupby(section.blocks, _may_share_row))
+        body += f"\n{_folded(DETAILS, _list(section.details, 'notes'))}" if section.details else ""
         title = f"<h2>{title}</h2>\n" if title else ""
-        sections.append(f"<section{anchor}>\n{title}{body}\n</section>")
+        sections.append(f"<section{anchor}>\n{title}{names.marked(body)}\n</section>")
     head += ["<nav>", *links, "</nav>"] if links else []
+    scripts += [_script("poses.js")] * bool(names.found)
+    sections += [_glossary("".join(sections))] if links else []
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
             f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f"<title>{escape(': '.join(filter(None, (page.title, page.kind))))}</title>",
-            f"<style>\n{_asset('page.css')}</style>\n</head>\n<body>",
+            f"<style>\n{_asset('page.css')}{names.style()}</style>\n</head>\n<body>",
             *head,
             "</header>",
             *sections,
@@ -95,6 +114,39 @@ def html(page: kinds.Page) -> str:
             "</body>\n</html>\n",
         ]
     )
+
+
+class PoseNames:
+    """Marks the names of a page that stand for poses, and keeps the pictures of those that it found."""
+
+    def __init__(self, find: Callable[[str], kinds.Pose | None] | None) -> None:
+        self.find = find or (lambda name: None)
+        self.found: dict[str, kinds.Pose] = {}
+
+    def marked(self, body: str) -> str:
+        """Return HTML with its names marked; the first can have the focus, and has a picture on paper."""
+        met: set[str] = set()
+
+        def mark(match: re.Match[str]) -> str:
+            name = match["name"] or match["cell"]
+            pose = self.find(unescape(name)) if name else None
+            if pose is None:
+                return match[0]
+            self.found[name] = pose
+            is_first, place = name not in met, list(self.found).index(name)
+            met.add(name)
+            first = ' first" tabindex="0' if is_first else ""
+            text = f'<span class="pose pose-{place}{first}" data-words="{escape(pose.words)}">{name}</span>'
+            return f"{match['td']}{text}</td>" if match["cell"] else text
+
+        return NAMES.sub(mark, body)
+
+    def style(self) -> str:
+        """Return the style sheet's lines with the pictures."""
+        return "".join(
+            f'.pose-{place} {{ --pose: url("{_data("image/png", pose.content)}"); }}\n'
+            for place, pose in enumerate(self.found.values())
+        )
 
 
 def escape(text: str) -> str:
@@ -178,6 +230,8 @@ def _block(block: kinds.Block) -> str:
             return _list(lines, "loud" if loud else "notes")
         case kinds.Code(text):
             return f"<pre>{escape(text)}</pre>"
+        case kinds.Folded(title, text):
+            return _folded(title, f"<pre>{escape(text)}</pre>")
         case kinds.Table(frame, printed=printed):
             return _table(frame) if printed else f'<div class="on-screen">{_table(frame)}</div>'
         case kinds.Knobs():
@@ -207,6 +261,23 @@ def _block(block: kinds.Block) -> str:
         case kinds.Matrix(heads, rows, sortable):
             return _matrix(heads, rows, sortable)
     raise ValueError(f"{type(block).__name__} is not a block of a page")
+
+
+def _glossary(body: str) -> str:
+    """The words of a page that the glossary has, folded, and where there is more."""
+    shown = re.sub(r"<script.*?</script>|<[^>]*>", " ", body, flags=re.S).lower()
+    used = [
+        (word, meaning)
+        for word, meaning in GLOSSARY.items()
+        if any(re.search(rf"\b{re.escape(each)}s?\b", shown) for each in word.split(", "))
+    ]
+    listed = "\n".join(f"<dt>{escape(word)}</dt><dd>{escape(meaning)}</dd>" for word, meaning in used)
+    folded = f"{_folded('Words of this page', f'<dl>{listed}</dl>')}\n" if used else ""
+    return f'<footer>\n{folded}<p class="quiet">{WHERE_WORDS}</p>\n</footer>'
+
+
+def _folded(title: str, body: str) -> str:
+    return f"<details>\n<summary>{escape(title)}</summary>\n{body}\n</details>"
 
 
 def _list(lines: Iterable[str], mark: str) -> str:
@@ -255,12 +326,19 @@ def _table(frame: tables.Frame) -> str:
         for place, (cell, count) in enumerate(zip(column, decimals)):
             if number and count < most and "e" not in cell and cell != NOTHING:
                 pad[place] = f' data-pad="{"" if count else "."}{"0" * (most - count)}"'
+    # a text of several lines leaves the cells beside it white: on a phone each row of such a table is a card
+    is_cards = any(len(cell) > CARD_LETTERS for column in columns for cell in column)
+    titles = [f' data-head="{escape(" ".join(names).strip())}"' * is_cards for names in heads]
     lines = []
     for own, row in zip(zip(*pads), zip(*columns)):
-        cells = (f"<td{_long(m, cell)}{pad}>{escape(cell)}</td>" for m, pad, cell in zip(marks, own, row))
+        cells = (
+            f"<td{_long(mark, cell)}{pad}{title if cell != NOTHING else ''}>{escape(cell)}</td>"
+            for mark, pad, title, cell in zip(marks, own, titles, row)
+        )
         lines.append(f"<tr>{''.join(cells)}</tr>")
-    kind = ' class="pairs"' if _pairs(kinds.Table(frame)) else ' class="many"' if len(heads) > MANY else ""
-    return _grid(kind, head, lines)
+    names = ("pairs", _pairs(kinds.Table(frame))), ("many", len(heads) > MANY), ("cards", is_cards)
+    kind = " ".join(name for name, holds in names if holds)
+    return _grid(f' class="{kind}"' if kind else "", head, lines)
 
 
 def _long(mark: str, cell: str) -> str:

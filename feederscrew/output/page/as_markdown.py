@@ -1,7 +1,7 @@
 """A page as Markdown."""
 
 from feederscrew.output.page import blocks as kinds
-from feederscrew.output.page.as_html import texts_of
+from feederscrew.output.page.as_html import WHERE_WORDS, texts_of
 
 ITALIC = "given"  # the mark of a cell that was not computed
 
@@ -15,6 +15,8 @@ def markdown(page: kinds.Page, folder: str = "") -> str:
     for section in page.sections:
         parts += [f"## {section.title}" if section.title else ""]
         parts += [_block(block, folder) for block in section.blocks]
+        parts += ["\n".join(f"- {_plain(line)}" for line in section.details)]
+    parts += [WHERE_WORDS] if any(section.title for section in page.sections) else []
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -26,6 +28,8 @@ def _block(block: kinds.Block, folder: str) -> str:
             return "\n".join(f"- {_plain(line)}" for line in lines)
         case kinds.Code(text):
             return f"```sh\n{text}\n```"
+        case kinds.Folded(title, text):
+            return f"{_plain(title)}\n\n```\n{text.rstrip()}\n```"
         case kinds.Table(frame):
             heads, numeric, columns = texts_of(frame)
             names = [f"{name} {unit}".strip() for name, unit in heads]

@@ -1,8 +1,10 @@
 """What a page is made of; the two writers turn each kind of block into HTML or Markdown."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from feederscrew.errors import Detail
 from feederscrew.output.tables import Frame
 
 
@@ -66,6 +68,14 @@ class ShareBar:
     colour: str
     share: float  # [1]
     interval: tuple[float, ...] = ()  # [1] low and high
+
+
+@dataclass(frozen=True)
+class Pose:
+    """What a name like A@188 stands for: a small picture (PNG) and words."""
+
+    content: bytes
+    words: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +147,15 @@ class Matrix:
     sortable: bool = False  # a click on a heading sorts it, words that are typed choose rows
 
 
-Block = Text | Notes | Code | Table | CsvSheet | Picture | Views | Knobs | Heading | Links | Matrix
+@dataclass(frozen=True)
+class Folded:
+    """Text of a file or of details under a title that opens it; on paper the title alone."""
+
+    title: str
+    text: str
+
+
+Block = Text | Notes | Code | Folded | Table | CsvSheet | Picture | Views | Knobs | Heading | Links | Matrix
 
 
 @dataclass(frozen=True)
@@ -159,6 +177,11 @@ class Chapter:
     anchor: str = ""
     title: str = ""
 
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The warnings that call for no step of the reader."""
+        return tuple(line for line in self.warnings if isinstance(line, Detail))
+
 
 @dataclass(frozen=True)
 class Page:
@@ -168,6 +191,8 @@ class Page:
     subtitle: str
     sections: tuple[Chapter, ...]
     kind: str = ""
+    opening: tuple[Views, ...] = ()  # what it begins with, to be turned
+    pose: Callable[[str], Pose | None] | None = None  # what a name of its texts stands for
 
     @property
     def tiles(self) -> tuple[Tile, ...]:
@@ -177,4 +202,5 @@ class Page:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a reader must not overlook, each line once."""
-        return tuple(dict.fromkeys(line for section in self.sections for line in section.warnings))
+        lines = dict.fromkeys(line for section in self.sections for line in section.warnings)
+        return tuple(line for line in lines if not isinstance(line, Detail))

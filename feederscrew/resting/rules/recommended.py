@@ -37,6 +37,10 @@ rolling class: such that it holds 95 % of the shares in drop tests of made bodie
 LAUNCH_WIDTH = 0.11  # [1]
 """... of a drop test beside its sampling: what a new share, measured under a launch of that name, keeps
 within of what is simulated (from 16 shares of four series; the same benchmark)."""
+LAUNCH_WORDS = {  # what is done to the part, by launch
+    "place": "set down by hand", "drop": "let fall", "flip": "spun as a coin", "roll": "cast or poured",
+    "feed": "from a hopper into a bowl",
+}  # fmt: skip
 WIDTH_FLOOR = 0.1  # [1] of that width that does not fall towards shares of 0 and 1
 
 
@@ -49,6 +53,12 @@ class Recommended(ReadableRecord):
     p: Floats  # (A,) [1]
     low: Floats  # (A,) [1]
     high: Floats  # (A,) [1]
+
+    @property
+    def words(self) -> str:
+        """The rule with its launch in words: 'drop test, launch feed (from a hopper into a bowl)'."""
+        launch = f"launch {self.launch}"
+        return self.rule.replace(launch, f"{launch} ({LAUNCH_WORDS.get(self.launch, 'as given')})")
 
 
 def launch_of_name(name: str) -> str:

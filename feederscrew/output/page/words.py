@@ -1,0 +1,35 @@
+"""Words that pages use, each with one meaning: rows of docs/glossary.md."""
+
+GLOSSARY = {
+    "aspect": "side on which a part rests: A is the most frequent",
+    "heading": "how far a part is turned on the track, counter-clockwise seen from above; at 0 the middle of "
+    "the face it rests on lies ahead of its centre of mass, in the direction of travel",
+    "orientation": "aspect at a heading along the wall: A@188",
+    "wall": "the outer side of the track; parts lean on it",
+    "free edge": "the inner side of the track, over which parts fall back",
+    "bank": "tilt of the track towards the wall",
+    "climb": "slope of the track in the direction of travel",
+    "amplitude, stroke": "half the way to and fro of the drive; the whole way",
+    "vibration angle": "angle between the track and the line along which it moves",
+    "throw number": "normal acceleration of the track over gravity; above 1 parts hop",
+    "leaf-spring drive": "one set of leaf springs: the bowl moves along one line (phase 0)",
+    "two-axis drive": "separate vertical and horizontal magnets: the bowl moves along an ellipse",
+    "device": "tool on the track that orients, rejects or lets fall",
+    "chain": "the devices in the order in which parts meet them",
+    "vision reject": "camera, fibre sensor or laser that compares a part with the wanted one, and air that "
+    "blows off the others",
+    "spacing section": "stretch on another climb, mostly down, on which parts come apart",
+    "rails, hanging": "two rails with a slot between them; a headed part hangs there by its head",
+    "returned": "a rejected part went back into the bowl",
+    "turned": "the part left in another orientation",
+    "jam": "a part stands and blocks the track",
+    "margin": "by how much a verdict holds: distance from the limit at which it changes",
+    "efficiency": "share of arriving parts that leave as wanted",
+    "purity": "share of wanted parts among those that leave",
+    "verdict, static rule": "what a device does with an orientation, by statics",
+    "trial": "run of single parts of true shape over the track",
+    "queue": "run of many parts that touch each other",
+    "draw, robust run": "random variation of part, friction, drive and cuts; twenty such runs of a design",
+    "launch": "what is done to a part before it comes to rest",
+    "drop test": "many simulated drops of one part on a plane",
+}
