@@ -235,6 +235,8 @@ def check_surface(
 def check_hull(surface: CheckedSurface, hull_volume: float, where: str, unit: str) -> None:
     """Refuse a surface that encloses more than its convex hull, in cubed units, or less than any part.
 
+    ``hull_volume`` is that of the hull of all corners: the part's own hull leaves out corners of a plate's
+    faces that rounding lifts, and with them as much as ten times what rounding changes in the volume.
     A wire of 0.3 mm along three edges of a cube of 100 mm fills 1.3e-4 of its hull; a surface whose facets
     hang together nowhere fills what rounding leaves. Raises MeshError.
     """

@@ -406,7 +406,7 @@ def load(
         if centre_of_mass is None:
             raise
         raise ArgumentError("centre_of_mass", fault.what, fault.mend) from None
-    gate.check_hull(surface, hull.volume / scale**3, file.where, unit)
+    gate.check_hull(surface, hull.volume_of_all / scale**3, file.where, unit)
     name, digest = file.name, file.sha256
     if chosen is not None:  # one of several bodies of a file: no trial of another is its own
         name, of_body = f"{name}-{chosen.number}", f"{digest} body {chosen.number}"

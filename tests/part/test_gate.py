@@ -333,3 +333,25 @@ def test_stray_facets_on_a_line_are_left_out(count):
     assert (mm3(part), len(part.faces)) == (pytest.approx(6000.0), 12)
     assert np.ptp(part.vertices, axis=0) * 1e3 == pytest.approx([10.0, 20.0, 30.0])
     assert [text for text in part.warnings if "left out" in text]
+
+
+# Mesh, sides [mm] and decimals of the file (None: single precision): the hull leaves out corners that rounding
+# lifts, 1e-5 of the volume at most, the gate compared its volume with that to 1e-6.
+THIN = [((60, 20, 0.5), None), ((60, 20, 0.5), 5), ((40, 10, 1), None), ((20, 20, 20), 4)]
+
+
+@pytest.mark.parametrize(("sides", "decimals"), THIN)
+def test_plates_with_parted_faces_are_not_more_than_their_hull(rng, sides, decimals):
+    plate = trimesh.creation.box(sides).subdivide().subdivide()
+    for _ in range(12):
+        turned = trimesh.transformations.random_rotation_matrix(rng.random(3))
+        triangles = plate.copy().apply_transform(turned).triangles + rng.uniform(0, 100, 3)
+        data = files.binary_stl(triangles) if decimals is None else files.ascii_stl(triangles.round(decimals))
+        assert mm3(loaded(data)) == pytest.approx(np.prod(sides), rel=1e-4 if decimals != 4 else 1e-3)
+
+
+def test_a_corner_amid_a_face_that_rounding_lifts_is_no_overlap():
+    cube = trimesh.creation.box((10, 10, 10)).subdivide()
+    middle = int(np.argmin(np.abs(cube.vertices - (0, 0, 5)).sum(axis=1)))
+    cube.vertices[middle, 2] += 5e-5  # a pyramid of 50 nm
+    assert mm3(loaded(files.ascii_stl(cube.triangles))) == pytest.approx(1000 + 1e-3, rel=1e-6)
