@@ -19,7 +19,7 @@ from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
 from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
 from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
-from feederscrew.part import card, formats, gate, given, mass, mesh_formats, scenes, threemf, topology
+from feederscrew.part import card, formats, gate, given, glb, mass, mesh_formats, step, threemf, topology
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, find_density
 from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, PartFile, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
@@ -37,8 +37,8 @@ READERS: dict[str, Callable[[Any, str, str], Soup]] = {  # by format: of its byt
     "stl-ascii": mesh_formats.read_stl,
     "ply": lambda data, kind, where: mesh_formats.read_ply(data),
     "3mf": lambda data, kind, where: threemf.read_3mf(data, where),
-    "glb": scenes.read_scene,
-    "step": scenes.read_scene,
+    "glb": lambda data, kind, where: glb.read_glb(data, where),
+    "step": lambda data, kind, where: step.read_step(data, where),
 }
 DAMAGE_REASONS: tuple[tuple[tuple[type[Exception], ...], str], ...] = (
     # what readers raise on damaged bytes, no bugs: their own words are for programmers

@@ -16,7 +16,7 @@ from readings import AGAIN, BOX, archived, exported, loaded, mm3, refused, zippe
 
 from feederscrew import bowl
 from feederscrew.errors import FeederError, MeshError
-from feederscrew.part import load, loading, scenes
+from feederscrew.part import load, loading, step
 from feederscrew.part.formats import detect_format
 
 BOLT = Path(__file__).parents[2] / "parts/hexbolt_m8x25.step"
@@ -300,7 +300,7 @@ HEAD = (
         (b"PK\x03\x04" + bytes(200), f"is a ZIP archive without a 3MF model - {NO_MESH}"),
         (b"\xd0\xcf\x11\xe0" + bytes(200), f"is a native CAD or Office file, which is not read - {NO_MESH}"),
         (b'{"asset": {}}', f"is a JSON file (glTF is read as .glb only) - {NO_MESH}"),
-        (GLB[:200], f"is a damaged GLB: it announces more than it holds - {AGAIN}"),
+        (GLB[:200], f"is a damaged GLB (it announces more than it holds) - {AGAIN}"),
         (PLY.replace(b"element vertex 8", b"element vertex 4000000000"),
          f"is a damaged PLY (it announces more than it holds) - {AGAIN}"),
         (exported("off").replace(b"8 12 0", b"4000000000 12 0"), None),
@@ -325,8 +325,8 @@ def test_paths_without_a_part(tmp_path):
 
 
 def test_missing_extra_is_named(tmp_path, monkeypatch):
-    find = scenes.importlib.util.find_spec
-    monkeypatch.setattr(scenes.importlib.util, "find_spec", lambda m: None if m == "cascadio" else find(m))
+    find = step.importlib.util.find_spec
+    monkeypatch.setattr(step.importlib.util, "find_spec", lambda m: None if m == "cascadio" else find(m))
     line = 'STEP needs cascadio, not installed - pip install "feederscrew[step]"'
     assert refused((PARTS / "hexbolt_m8x25.step").read_bytes()) == line
 
@@ -405,17 +405,9 @@ def test_a_bug_of_ours_is_not_told_as_a_damaged_file(monkeypatch, format, fault)
         raise fault("module 'x' has no attribute 'y'")
 
     monkeypatch.setattr("feederscrew.part.mesh_formats.split_facets", broken)
-    monkeypatch.setattr("feederscrew.part.scenes.refuse_size", broken)
+    monkeypatch.setattr("feederscrew.part.glb.refuse_size", broken)
     with pytest.raises(fault, match="has no attribute"):
         load("-", stdin=io.BytesIO(exported(format)))
-
-
-def test_what_trimesh_raises_of_any_class_is_a_damaged_file(monkeypatch):
-    def broken(*_, **__):
-        raise AttributeError("'NoneType' object has no attribute 'faces'")
-
-    monkeypatch.setattr("trimesh.load_scene", broken)
-    assert refused(GLB) == f"is a damaged GLB (its scene does not fit what it holds) - {AGAIN}"
 
 
 def scene(count, nodes, binary=bytes(1200), **accessor):
@@ -446,8 +438,8 @@ def test_claims_of_a_header_are_refused_in_a_line(data):
 
 @pytest.mark.needs("cascadio")
 def test_a_step_file_that_takes_too_long_is_refused(monkeypatch):
-    monkeypatch.setattr(scenes, "STEP_TIMEOUT_S", 1)
-    monkeypatch.setattr(scenes, "CONVERT_STEP_SCRIPT", "import time; time.sleep(30)")
+    monkeypatch.setattr(step, "STEP_TIMEOUT_S", 1)
+    monkeypatch.setattr(step, "CONVERT_STEP_SCRIPT", "import time; time.sleep(30)")
     assert refused(b"ISO-10303-21;") == f"is a damaged STEP (not converted within 1 s) - {AGAIN}"
 
 
@@ -471,7 +463,7 @@ def test_a_stream_without_end_is_given_up_at_half_a_gigabyte(monkeypatch):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for it")
 def test_the_converter_of_step_ends_with_its_parent():
-    waits = scenes.CONVERT_STEP_SCRIPT.partition("import cascadio")[0]
+    waits = step.CONVERT_STEP_SCRIPT.partition("import cascadio")[0]
     waits += "print(1, flush=True); import time; time.sleep(50)"
     parent = (
         "import subprocess, sys, time;"

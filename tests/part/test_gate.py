@@ -335,8 +335,8 @@ def test_stray_facets_on_a_line_are_left_out(count):
     assert [text for text in part.warnings if "left out" in text]
 
 
-# Mesh, sides [mm] and decimals of the file (None: single precision): the hull leaves out corners that rounding
-# lifts, 1e-5 of the volume at most, the gate compared its volume with that to 1e-6.
+# Sides [mm] and decimals of the file (None: single precision). The hull leaves out corners that rounding
+# lifts, 1e-5 of the volume at most; the gate compared the volume with that hull to 1e-6.
 THIN = [((60, 20, 0.5), None), ((60, 20, 0.5), 5), ((40, 10, 1), None), ((20, 20, 20), 4)]
 
 

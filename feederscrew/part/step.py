@@ -1,0 +1,95 @@
+"""STEP, made into triangles by OpenCASCADE in a process of its own."""
+
+import importlib.util
+import re
+import subprocess
+import sys
+import tempfile
+from dataclasses import replace
+from pathlib import Path, PurePosixPath
+
+from feederscrew import units
+from feederscrew.errors import MeshError
+from feederscrew.part import glb
+from feederscrew.part.formats import MESH_FORMATS, DamageError, Soup, open_archive, unpack_pieces
+
+TESSELLATION_MM, TESSELLATION_RAD = 0.01, 0.1  # between a curved face and its facets, and from facet to facet
+STEP_TIMEOUT_S = 60  # [s]
+STEP_MEMORY_BYTES = 3 << 30  # [bytes]
+CONVERT_STEP_SCRIPT = """
+import ctypes, signal, sys
+if sys.platform == "linux":
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # it ends when its parent does, however that ends
+if hasattr(signal, "alarm"):
+    signal.alarm(PATIENCE + 5)  # and after its time in any case
+try:
+    import resource  # what it needs beyond that is no fed part
+    least = min(bytes for bytes in (MOST_MEMORY, *resource.getrlimit(resource.RLIMIT_AS)) if bytes > 0)
+    resource.setrlimit(resource.RLIMIT_AS, (least, least))
+except (ImportError, ValueError, OSError):
+    pass
+import cascadio
+source, target, *tolerances = sys.argv[1:]
+sys.exit(cascadio.step_to_glb(source, target, *map(float, tolerances), use_parallel=False))
+""".replace("PATIENCE", str(STEP_TIMEOUT_S)).replace("MOST_MEMORY", str(STEP_MEMORY_BYTES))
+STEP_UNIT_PATTERNS = (  # the first that a file has; millimetres where there is none
+    (rb"CONVERSION_BASED_UNIT\s*\(\s*'INCH", "in"),
+    (rb"\.CENTI\.\s*,\s*\.METRE\.", "cm"),
+    (rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\.", "m"),
+)
+
+
+def read_step(data: bytes, where: str) -> Soup:
+    """Return the triangles of a STEP file, in the unit it was drawn in; objects are its solids.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file, or a ZIP archive of one (.stpz).
+    where : str
+        The file, for error lines.
+
+    Returns
+    -------
+    Soup
+
+    Raises
+    ------
+    MeshError
+        If cascadio is not installed.
+    ValueError
+        If the file is damaged, or its conversion takes too long.
+    """
+    format = MESH_FORMATS["step"]
+    if not all(importlib.util.find_spec(module) for module in format.needs):
+        what = f"{format.title} needs {' and '.join(format.needs)}, not installed"
+        raise MeshError(where, what, f'pip install "feederscrew[{format.extra}]"')
+    if data.startswith(b"PK"):  # zipped (.stpz)
+        with open_archive(data) as archive:
+            names = archive.namelist()
+            members = [name for name in names if re.search(r"(?i)\.ste?p$", PurePosixPath(name).name)]
+            if len(members) != 1:
+                raise DamageError(f"an archive of {len(members)} STEP files")
+            data = b"".join(unpack_pieces(archive, members[0]))
+    unit = next((name for pattern, name in STEP_UNIT_PATTERNS if re.search(pattern, data)), "mm")
+    document = glb.Document(convert(data), where)
+    pieces = list(document.pieces())
+    titles = {piece.instance: piece.mesh or piece.node for piece in pieces}
+    soup = glb.merge(pieces, tuple(titles.values()), "step", unit)
+    return replace(soup, vertices=soup.vertices / units.factor(unit, "length"))  # from metres
+
+
+def convert(data: bytes) -> bytes:
+    """Return a STEP file as GLB, in metres; ValueError where OpenCASCADE cannot, or takes too long."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder, "part.step"), Path(folder, "part.glb")
+        source.write_bytes(data)
+        arguments = [str(each) for each in (source, target, TESSELLATION_MM, TESSELLATION_RAD)]
+        call = [sys.executable, "-c", CONVERT_STEP_SCRIPT, *arguments]
+        try:
+            done = subprocess.run(call, capture_output=True, timeout=STEP_TIMEOUT_S, check=False)
+        except subprocess.TimeoutExpired:
+            raise DamageError(f"not converted within {STEP_TIMEOUT_S} s") from None
+        if done.returncode != 0 or not target.exists():
+            raise DamageError("OpenCASCADE cannot convert it")
+        return target.read_bytes()
