@@ -17,7 +17,7 @@ ORDER = [
     "solidbowl", "studies", "designing", "output", "thesis", "samples", "batch", "serving",
 ]  # fmt: skip
 DOORS = {
-    "yaml": {"feederscrew/documents.py"},
+    "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/documents.py"},
     "pandas": {"feederscrew/output", "feederscrew/records.py"},
     "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/figures.py"},
     "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/dxf.py"},

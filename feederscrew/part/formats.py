@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points, Triangles
+from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
 from feederscrew.documents import POINTER, POINTER_HEAD
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
@@ -39,6 +39,25 @@ class PartFile:
 
 
 @dataclass(frozen=True, eq=False)
+class CadFaces:
+    """The faces of a CAD model that a kernel made into facets, and what their edges say of it."""
+
+    of_facet: Ints  # (F,) int, which face each facet is of
+    titles: tuple[str, ...]  # (N,) 'face 4 of 12, a sphere of radius 60 mm'
+    leaving: Floats  # (N,) [unit of the file] how far its facets leave the box of edges
+    is_turned: Bools  # (N,) whether its facets face the other way than the file and the other faces say
+    is_wrong: Bools  # (N,) whether its facets are on the wrong side of its edges
+
+    def of_body(self, facets: Ints) -> "CadFaces":
+        """Return the faces of some facets (K,); those of others are neither turned nor wrong."""
+        used = np.zeros(len(self.titles), dtype=bool)
+        used[self.of_facet[facets]] = True
+        return CadFaces(
+            self.of_facet[facets], self.titles, self.leaving, self.is_turned & used, self.is_wrong & used
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class Soup:
     """Triangles as a file has them; corners that coincide are not yet joined."""
 
@@ -49,6 +68,7 @@ class Soup:
     warnings: tuple[str, ...] = ()
     names: tuple[str, ...] = ()  # of the objects, groups or solids that the file distinguishes; '' for none
     objects: Ints | None = None  # (F,) int, which of ``names`` each facet belongs to
+    cad_faces: CadFaces | None = None  # of a CAD file
 
 
 class DamageError(ValueError):

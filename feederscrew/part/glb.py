@@ -55,6 +55,7 @@ class Piece:
     vertices: Points  # (V, 3) [m]
     faces: Triangles  # (F, 3) int, as many as the primitive has, in its order
     extensions: dict[str, Any]  # of the primitive
+    matrix: Floats  # (4, 4) from the axes of the mesh to those of the scene
 
 
 def read_glb(data: bytes, where: str) -> Soup:
@@ -149,7 +150,7 @@ class Document:
                     raise DamageError(f"its scene shows more than {MAX_PRIMITIVES} primitives")
                 placed = self._place(primitive, matrix)
                 if placed is not None:
-                    yield Piece(names[0], names[1], instance, *placed, _extensions(primitive))
+                    yield Piece(names[0], names[1], instance, *placed, _extensions(primitive), matrix)
             instance += 1
 
     def numbers(self, number: int) -> Any:

@@ -20,6 +20,7 @@ from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, pri
 from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
 from feederscrew.part import card, formats, gate, given, glb, mass, mesh_formats, step, threemf, topology
+from feederscrew.part.cad_faces import refuse_wrong_sides
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, find_density
 from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, PartFile, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
@@ -208,6 +209,7 @@ def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileB
         vertices=soup.vertices[used],
         faces=own.reshape(-1, 3),
         objects=None if soup.objects is None else soup.objects[chosen.facets],
+        cad_faces=None if soup.cad_faces is None else soup.cad_faces.of_body(chosen.facets),
         warnings=(*soup.warnings, warning),
     )
     return alone, chosen
@@ -397,6 +399,11 @@ def load(
         mend = f"take one with `body` (its number, its name, or largest), {fault.mend}"
         listed = MeshError(fault.where, f"{what}: {_bodies_text(bodies, unit)}", mend)
         raise (listed if len(bodies) > 1 else fault) from None
+    except MeshError as fault:  # a face on the wrong side may be its cause
+        cuts = fault.crossings if isinstance(fault, gate.SelfCutError) else gate.NO_CROSSINGS
+        refuse_wrong_sides(soup, cuts, file.where, unit, allow_open)
+        raise
+    side_warnings = refuse_wrong_sides(soup, surface.crossings, file.where, unit, allow_open)
     scale = factor(unit, "length")
     vertices, solid = surface.vertices * scale, surface.solid.scale(scale)
     centre, shifted = _read_centre(centre_of_mass, unit, solid.centre)
@@ -433,6 +440,7 @@ def load(
             *unit_warnings,
             *_size_warnings(vertices, unit, units),
             *surface.warnings,
+            *side_warnings,
             *shifted,
         ),
     )

@@ -8,9 +8,11 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
+import numpy as np
+
 from feederscrew import units
 from feederscrew.errors import MeshError
-from feederscrew.part import glb
+from feederscrew.part import cad_faces, glb
 from feederscrew.part.formats import MESH_FORMATS, DamageError, Soup, open_archive, unpack_pieces
 
 TESSELLATION_MM, TESSELLATION_RAD = 0.01, 0.1  # between a curved face and its facets, and from facet to facet
@@ -30,7 +32,7 @@ except (ImportError, ValueError, OSError):
     pass
 import cascadio
 source, target, *tolerances = sys.argv[1:]
-sys.exit(cascadio.step_to_glb(source, target, *map(float, tolerances), use_parallel=False))
+sys.exit(cascadio.step_to_glb(source, target, *map(float, tolerances), use_parallel=False, include_brep=True))
 """.replace("PATIENCE", str(STEP_TIMEOUT_S)).replace("MOST_MEMORY", str(STEP_MEMORY_BYTES))
 STEP_UNIT_PATTERNS = (  # the first that a file has; millimetres where there is none
     (rb"CONVERSION_BASED_UNIT\s*\(\s*'INCH", "in"),
@@ -76,7 +78,17 @@ def read_step(data: bytes, where: str) -> Soup:
     pieces = list(document.pieces())
     titles = {piece.instance: piece.mesh or piece.node for piece in pieces}
     soup = glb.merge(pieces, tuple(titles.values()), "step", unit)
-    return replace(soup, vertices=soup.vertices / units.factor(unit, "length"))  # from metres
+    faces = cad_faces.find_cad_faces(document, pieces, data, unit)
+    # facets without area, at poles of spheres and tips of cones
+    places = soup.vertices[soup.faces]
+    whole = np.flatnonzero((places != np.roll(places, 1, axis=1)).any(axis=2).all(axis=1))
+    return replace(
+        soup,
+        vertices=soup.vertices / units.factor(unit, "length"),  # from metres
+        faces=soup.faces[whole],
+        objects=None if soup.objects is None else soup.objects[whole],
+        cad_faces=faces.of_body(whole),
+    )
 
 
 def convert(data: bytes) -> bytes:
