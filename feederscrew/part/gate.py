@@ -140,6 +140,7 @@ SHALLOW_CROSSING_SHARE, DEEP_CROSSING_SHARE = 1e-4, 2e-2  # [1] of the size: pas
 CLOSE_IN_CAD = "close it in CAD, or pass `allow_open` to compute from what there is"
 SEW_IN_CAD = "join (sew, stitch) its faces in CAD and export one solid"
 UNITE_IN_CAD = "unite what overlaps in CAD, or pass `allow_open` to compute from what there is"
+DELETE_SHEET = "delete or close it in CAD, or pass `allow_open` to compute from what there is"
 MESH_AGAIN = "mesh it again, unite what overlaps in CAD, or pass `allow_open` to compute from what there is"
 EXPORT_NEAR_ORIGIN = "export it near the origin"
 # vertices, faces, what they enclose, whether open or of several bodies, warnings, facets that may cut others
@@ -208,6 +209,17 @@ def check_surface(
             corners, sides, _, warnings = mending.mend_facets(*loose, tolerance, where, corners=False)
             whole = mending.join_cracks(corners, sides, tolerance, size, where)
             joined, mended = (joined, mended) if whole is None else (whole, warnings)
+    if joined is None or not joined.edges.is_closed:
+        sheets = mending.find_sheets(vertices, faces, edges, tolerance, where)
+        if sheets is not None and (sheets.is_flat or sheets.is_inside):
+            noun = "a sheet that bounds nothing" if sheets.is_flat else "an open surface"
+            side = "inside" if sheets.is_inside else "outside"
+            what = f"{counted(sheets.facets, 'facet')} of {noun}, at ({_place(sheets.place)})"
+            if not ((sheets.is_flat and sheets.is_inside) or allow_open):
+                raise MeshError(where, f"has {what}, {side} its closed surface", DELETE_SHEET)
+            if sheets.is_flat and sheets.is_inside:
+                vertices, faces, edges, joined = sheets.vertices, sheets.faces, sheets.edges, None
+                mended = (*mended, *sheets.notes, f"{what}, inside the body: left out")
     if joined is not None:
         vertices, faces, edges = joined.vertices, joined.faces, joined.edges
         counts = ((joined.corners, "corner"), (joined.seams, "edge"))

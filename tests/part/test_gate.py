@@ -1,6 +1,7 @@
 """The gate: every kind of damaged surface is mended with a warning, or refused in one line."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -360,3 +361,48 @@ def test_a_corner_amid_a_face_that_rounding_lifts_is_no_overlap():
     middle = int(np.argmin(np.abs(cube.vertices - (0, 0, 5)).sum(axis=1)))
     cube.vertices[middle, 2] += 5e-5  # a pyramid of 50 nm
     assert mm3(loaded(files.ascii_stl(cube.triangles))) == pytest.approx(1000 + 1e-3, rel=1e-6)
+
+
+def wall(x, y=(0.0, 20.0), z=30.0):
+    """Two facets across the box at x, corner to corner of its section where y and z are the box's."""
+    a, b, c, d = [[x, y[0], 0.0], [x, y[1], 0.0], [x, y[1], z], [x, y[0], z]]
+    return np.array([[a, b, c], [a, c, d]])
+
+
+def chambers(*places):
+    """The box, its skin parted at some x, with one wall at each."""
+    ends = (0.0, *places, 10.0)
+    pieces = [files.box((b - a, 20, 30), (a, 0, 0)) for a, b in pairwise(ends)]
+    facets = np.concatenate(pieces)
+    at_wall = [(facets[:, :, 0] == x).all(axis=1) for x in places]
+    return stl(facets[~np.any(at_wall, axis=0)], *(wall(x) for x in places))
+
+
+@pytest.mark.parametrize(
+    ("data", "facets"),
+    [
+        (stl(BOX, wall(5.0)), 2), (stl(BOX, wall(3.0), wall(7.0)), 4), (stl(BOX, wall(5.0, (3.0, 9.0))), 2),
+        (chambers(5.0), 2), (chambers(3.0, 8.0), 4),
+    ],
+    ids=["across", "two", "free", "one skin", "chambers"],
+)  # fmt: skip
+def test_sheets_within_a_body_are_no_holes(data, facets):
+    part = loaded(data)
+    assert mm3(part) == pytest.approx(VOLUME)
+    (said,) = part.warnings
+    assert said.startswith(f"{facets} facets of a sheet") and said.endswith("inside the body: left out")
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (stl(BOX, wall(5.0, (0.0, 40.0))), "2 facets of a sheet|outside"),  # it may be a rib
+        (stl(BOX, wall(50.0)), "2 facets of a sheet|outside"),
+        (stl(HOUSING, CAVITY[1:]), "11 facets of an open surface|inside"),  # a cavity
+        (stl(BOX, LOOSE[1:] + 50.0), "the surface is open|1 hole"),
+    ],
+    ids=["rib", "beside", "cavity", "body"],
+)
+def test_what_may_be_more_than_a_sheet_is_refused(data, words):
+    text = refused(data)
+    assert all(word in text for word in words.split("|"))
