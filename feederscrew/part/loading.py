@@ -81,7 +81,10 @@ def read_soup(file: PartFile) -> Soup:
     """Return the triangles of a mesh file; MeshError if it is of no known format, cut short or damaged."""
     kind, alien = formats.detect_format(file.data, file.suffix)
     if kind is None or kind == CARD_FORMAT:
-        mends = {formats.UTF16_FAULT: "save it as ASCII or UTF-8 text", documents.POINTER: documents.PULL}
+        mends = {
+            **dict.fromkeys(formats.WIDE_TEXT_FAULTS, "save it as ASCII or UTF-8 text"),
+            documents.POINTER: documents.PULL,
+        }
         mend = mends.get(alien or "", "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP")
         raise MeshError(file.where, alien or "is a part card, not a mesh", mend)
     title, data, where = MESH_FORMATS[kind].title, file.data, file.where
