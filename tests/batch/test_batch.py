@@ -307,6 +307,41 @@ def test_resume_says_how_many_it_computes_and_why(tmp_path, three, monkeypatch):
     assert stale(three[2:]) == {"failed for want of its file or of memory": 1}
 
 
+def test_a_folder_is_read_one_folder_deeper_or_what_is_left_out_is_said(tmp_path):
+    tree = tmp_path / "parts"
+    for name in ("left/nut.stl", "right/nut.stl", "right/bolt.stl", "right/deeper/pin.stl", ".git/no.stl"):
+        (tree / name).parent.mkdir(parents=True, exist_ok=True)
+        block(tree / name, 1.0, 2.0, 3.0)
+
+    def names():
+        return [Path(r.source).relative_to(tree).as_posix() for r in batch.gather([str(tree)])]
+
+    assert names() == ["left/nut.stl", "right/bolt.stl", "right/nut.stl"]
+    (said,) = batch.find_folders_within([str(tree)])
+    assert said == f"{tree}: holds no part itself: read 3 parts in 2 folders of it"
+    block(tree / "own.stl", 1.0, 2.0, 3.0)
+    assert names() == ["own.stl"]
+    (said,) = batch.find_folders_within([str(tree)])
+    assert said.endswith(f": 3 parts in 2 folders of it left out - add '{tree}/*/*.stl'")
+    assert batch.find_folders_within([str(tree / "right"), str(tree / "own.stl")])[0].startswith(
+        f"{tree}/right"
+    )
+    assert batch.find_folders_within([str(tree / "left")]) == ()
+
+
+def test_rows_of_equal_names_have_their_folder():
+    paths = ["1/a/nut.stl", "2/a/nut.stl", "bolt.stl", "3/b/bolt.stl", "pin.stl"]
+    requests = [task.Request(path, task.Conditions("bowl", None, ())) for path in paths]
+    rows = summary.rows(SimpleNamespace(), requests, finished=set())
+    assert [row["part"] for row in rows] == [
+        "1/a/nut.stl",
+        "2/a/nut.stl",
+        "bolt.stl",
+        "b/bolt.stl",
+        "pin.stl",
+    ]
+
+
 FORGED = {
     "rate": lambda record: record["row"].update(
         parts_per_minute=99999.0, parts_per_minute_low=53.9, parts_per_minute_high=86.7
