@@ -14,6 +14,7 @@ from feederscrew import units
 from feederscrew.errors import MeshError
 from feederscrew.part import cad_faces, glb
 from feederscrew.part.formats import MESH_FORMATS, DamageError, Soup, open_archive, unpack_pieces
+from feederscrew.units import listed, quantity_text
 
 TESSELLATION_MM, TESSELLATION_RAD = 0.01, 0.1  # between a curved face and its facets, and from facet to facet
 STEP_TIMEOUT_S = 60  # [s]
@@ -38,6 +39,14 @@ STEP_UNIT_PATTERNS = (  # the first that a file has; millimetres where there is 
     (rb"CONVERSION_BASED_UNIT\s*\(\s*'INCH", "in"),
     (rb"\.CENTI\.\s*,\s*\.METRE\.", "cm"),
     (rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\.", "m"),
+)
+
+LISTED_REFERENCES = 5  # names of other files in one line
+STEP_REFERENCE = re.compile(  # of "External References", MBx Interoperability Forum
+    rb"\b(?:DOCUMENT_FILE|EXTERNAL_SOURCE|\w*EXTERNAL_IDENTIFICATION_ASSIGNMENT)\s*\(([^;]{0,2000})\)\s*;"
+)
+STEP_FILE_NAME = re.compile(
+    rb"'([^']{1,200}\.(?:stpx?z?|step|p21|prt|sldprt|ipt|catpart|par|jt))'", re.IGNORECASE
 )
 
 
@@ -74,8 +83,19 @@ def read_step(data: bytes, where: str) -> Soup:
                 raise DamageError(f"an archive of {len(members)} STEP files")
             data = b"".join(unpack_pieces(archive, members[0]))
     unit = next((name for pattern, name in STEP_UNIT_PATTERNS if re.search(pattern, data)), "mm")
-    document = glb.Document(convert(data), where)
-    pieces = list(document.pieces())
+    others = _referred_files(data)
+    titles_of_others = listed([quantity_text(name) for name in others[:LISTED_REFERENCES]]) if others else ""
+    beyond = f" and {len(others) - LISTED_REFERENCES} more" if len(others) > LISTED_REFERENCES else ""
+    try:
+        document = glb.Document(convert(data), where)
+        pieces = list(document.pieces())
+    except DamageError:
+        if not others:
+            raise
+        pieces = []
+    if others and not pieces:
+        what = f"has no shape of its own, it refers to {titles_of_others}{beyond}"
+        raise MeshError(where, what, "give one of those files, or export the assembly as one file")
     titles = {piece.instance: piece.mesh or piece.node for piece in pieces}
     soup = glb.merge(pieces, tuple(titles.values()), "step", unit)
     faces = cad_faces.find_cad_faces(document, pieces, data, unit)
@@ -88,7 +108,19 @@ def read_step(data: bytes, where: str) -> Soup:
         faces=soup.faces[whole],
         objects=None if soup.objects is None else soup.objects[whole],
         cad_faces=faces.of_body(whole),
+        warnings=(*soup.warnings, f"refers to {titles_of_others}{beyond}: left out")
+        if others
+        else soup.warnings,
     )
+
+
+def _referred_files(data: bytes) -> list[str]:
+    """Names of the CAD files that a STEP file refers to, each once, as they come."""
+    names: dict[str, None] = {}
+    for entity in STEP_REFERENCE.finditer(data):
+        for name in STEP_FILE_NAME.findall(entity[1]):
+            names.setdefault(name.decode("utf-8", errors="replace"))
+    return list(names)
 
 
 def convert(data: bytes) -> bytes:

@@ -49,6 +49,39 @@ def test_a_face_that_leaves_the_box_of_all_edges_is_refused_by_name():
     assert text.startswith("face 1 of 4, a torus of radius 3 mm, is meshed on the wrong side: ")
 
 
+def assembly(*files, shape=False):
+    file = step_files.StepFile()
+    whole, kind = file.product("assembly"), file.add("DOCUMENT_TYPE('geometry')")
+    for name in files:
+        part = file.product(name.split(".")[0])
+        file.place(whole, part, (0, 0, 0))
+        document = file.add(f"DOCUMENT_FILE('{name}','','',{kind},'',$)")
+        file.add(f"APPLIED_DOCUMENT_REFERENCE({document},'',({part[0]}))")
+    if shape:
+        file.place(
+            whole, file.product("plate", [file.prism([(0, 0), (10, 0), (10, 5), (0, 5)], 3)]), (0, 0, 0)
+        )
+    return file.data
+
+
+def test_files_that_an_assembly_refers_to_are_named():
+    text = refused(assembly("gear.stp", "Shaft 2.STEP"))
+    assert text == (
+        "has no shape of its own, it refers to 'gear.stp' and 'Shaft 2.STEP' - give one of those files, or "
+        "export the assembly as one file"
+    )
+    part = loaded(assembly("gear.stp", shape=True))
+    assert mm3(part) == pytest.approx(150.0) and part.warnings == ("refers to 'gear.stp': left out",)
+
+
+def test_bodies_of_a_step_file_have_the_names_of_their_products():
+    file = step_files.StepFile()
+    whole, square = file.product("assembly"), [(0, 0), (10, 0), (10, 5), (0, 5)]
+    for k, (name, height) in enumerate({"gear": 3, "shaft": 8}.items()):
+        file.place(whole, file.product(name, [file.prism(square, height)]), (20 * k, 0, 0), f"use {k}")
+    assert mm3(loaded(file.data, body="shaft")) == pytest.approx(400.0)
+
+
 def test_many_cuts_are_refused_with_the_face_that_most_are_on():
     x = np.arange(40.0)
     corners = np.stack([np.column_stack([x, 0 * x, 0 * x + z]) for z in (0.0, 0.1, 0.2)], axis=1)
