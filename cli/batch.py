@@ -60,10 +60,10 @@ def batch(
     one to five seconds a part. A part that fails is reported, and the others go on. Exit status 1 says
     that some failed. Ctrl-C stops it with exit status 130 and a summary of what is done; --resume goes on.
 
-    PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists. A list is a CSV whose
-    first line names its columns: part, units, density, centre_of_mass, body, names, aspect and config,
-    or some. -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a
-    part in DIR/parts.
+    PARTS are part files, folders of them (or of folders of them), patterns ("parts/**/*.stl") and lists.
+    A list is a CSV whose first line names its columns: part, units, density, centre_of_mass, body, names,
+    aspect and config, or some. -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png,
+    and a folder a part in DIR/parts.
     """
     ctx.with_resource(end_within(END_AFTER_S))
     from feederscrew import batch as batches
@@ -73,6 +73,7 @@ def batch(
     if out.directory is None:
         raise click.UsageError("Missing option '-o' - say where the results go")
     requests = batches.gather(**inputs)
+    out.warn(*batches.find_folders_within(inputs["sources"]))
     out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
     workers = batches.crew(jobs, None if options.is_typed("jobs") else scheduler)
     chosen = batches.Choices(rule=rule, launch=launch, drops=drops, pictures=out.pictures)

@@ -1,6 +1,7 @@
 """``feeder tooling``."""
 
 import dataclasses
+import time
 from functools import partial
 from typing import Any
 
@@ -74,7 +75,7 @@ from feederscrew_cli.options import Output, Values
     "time",
     "10 min",
     positive=True,
-    text="Time after which the best so far is taken; the answer then says so.",
+    text="Time after which the best so far is taken and no trial begins; the answer then says so.",
 )
 @options.flag("--static", "Do not send parts through what is proposed.")
 @orientation.share_options
@@ -114,7 +115,9 @@ def tooling(
     from feederscrew.solidbowl.exact import exact_body
     from feederscrew.studies.tooling import ToolingSearch, check_named, tooling_without
     from feederscrew.studies.tooling import tooling as study
+    from feederscrew.units import counted
 
+    begun = time.monotonic()
     orientation.check_heading(request)
     if cad:
         exact_body.check()
@@ -125,14 +128,18 @@ def tooling(
     with out.folder_of(solid, aspect_shares.inputs, settings=settings) as folder:
         names_of_search = {field.name for field in dataclasses.fields(ToolingSearch)} & set(request)
         searched = {name: request.pop(name) for name in names_of_search}
+        until = begun + searched["seconds"]
         values = {"aspect_shares": aspect_shares.aspects, "search": ToolingSearch(**searched), **request}
         with progress.bar(out, "orientations") as bar:
             result = study(solid, record, progress=heed_interrupts(bar.reach), **values)
         if not (static or result.partial):
             without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
             result = tooling_trials.try_designs(
-                result, without_kinds, before=lambda: progress.tell_compiling(out, "trial")
+                result, without_kinds, before=lambda: progress.tell_compiling(out, "trial"), until=until
             )
+            if time.monotonic() > until:
+                count = counted(len(result.trials), "proposal was", "proposals were")
+                out.warn(f"the time (--limit) is over: {count} sent through a trial, no other")
         document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}
         denied, agreed = tables.trials(result)
         out.warn(*result.warnings, *denied)

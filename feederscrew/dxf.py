@@ -47,6 +47,9 @@ MAX_DXF_COORDINATE_M = 1e3  # [m] from the origin of a drawing to a corner of a 
 CHORD_ERROR_M = 1e-6  # at most between a curve and the chord read for it; the corners lie on the curve
 MAX_CHORD_ANGLE = math.radians(15.0)  # of an arc to one chord
 JOIN_M = 1e-6  # ends of lines and arcs so near are one corner
+WIDE_JOIN_M = 20e-6  # ends so near are joined, which is said: shops cut within 0.05 mm
+MAX_ENDS_AT_A_CORNER = 100  # that are looked at for lines drawn twice
+MAX_OUTLINES = 50  # that are looked at for one drawn twice
 FLAT_M = 1e-6  # by which the heights of an outline may differ
 REPEATED_M = 1e-9  # a corner so near to the last one is none
 STRAIGHT_M = 1e-12  # a corner so near to the line through its neighbours is none
@@ -77,14 +80,17 @@ class Outlines:
 
     rings: list[list[tuple[float, float]]]  # [m] corners of each
     has_unit: bool  # whether the drawing names its unit; else it was read in millimetres
+    doubled: int  # lines, arcs and outlines that lie on others: left out
+    gap: float  # [m] the widest between ends that were joined; 0 where all meet
 
 
 def outlines(path: Path, layer: str, where: str) -> Outlines:
     """Read the closed outlines of one layer of a DXF file.
 
     Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open curves
-    are joined where their ends meet. Blocks are read as what they hold. Texts and dimensions are left out. A
-    curve becomes chords that are at most ``CHORD_ERROR_M`` away from it.
+    are joined where their ends meet, or are as near as ``WIDE_JOIN_M``; what lies on another is left out.
+    Blocks are read as what they hold. Texts and dimensions are left out. A curve becomes chords that are at
+    most ``CHORD_ERROR_M`` away from it.
 
     Parameters
     ----------
@@ -97,7 +103,7 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
     Returns
     -------
     Outlines
-        Corners in m; it says whether the file names a unit.
+        Corners in m; it says whether the file names a unit, what lay on others, and which gaps were closed.
 
     Raises
     ------
@@ -124,8 +130,10 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
             drawing = ezdxf.readfile(path)
         except (*DAMAGE, ezdxf.DXFError) as error:  # type: ignore[misc]
             raise ValueError(str(error)) from None
-        code = int(drawing.header.get("$INSUNITS", NO_UNIT_CODE))
-        rings = _rings(drawing, code, layer)
+        # of a drawing that states none the reader would supply metres
+        states_unit = b"$INSUNITS" in path.read_bytes().partition(b"ENTITIES")[0]
+        code = int(drawing.header.get("$INSUNITS", NO_UNIT_CODE)) if states_unit else NO_UNIT_CODE
+        rings, doubled, gap = _rings(drawing, code, layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{name}: no such file", "check the path") from None
     except _Unread as fault:
@@ -137,11 +145,14 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
     if not rings:
         what = f"{units.printable(path.name)} has no closed outline on layer {units.quantity_text(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
-    return Outlines(rings, code != NO_UNIT_CODE)
+    return Outlines(rings, code != NO_UNIT_CODE, doubled, gap)
 
 
-def _rings(drawing: "Drawing", code: int, layer: str) -> list[list[tuple[float, float]]]:
-    """Corners (x, y) [m] of each closed outline on a layer of a drawing in a unit of $INSUNITS."""
+def _rings(drawing: "Drawing", code: int, layer: str) -> tuple[list[list[tuple[float, float]]], int, float]:
+    """Corners (x, y) [m] of each closed outline on a layer of a drawing in a unit of $INSUNITS.
+
+    Also how many lines and outlines lie on others, and the widest gap [m] that was closed.
+    """
     if code not in MILLIMETRES:
         raise _Unread(f"is drawn in unit {code} of $INSUNITS", "save the drawing in millimetres")
     size = MILLIMETRES[code] * 1e-3
@@ -161,7 +172,12 @@ def _rings(drawing: "Drawing", code: int, layer: str) -> list[list[tuple[float, 
         flat = [(point[0] * size, point[1] * size) for point in points]
         ends_meet = len(flat) > 2 and math.dist(flat[0], flat[-1]) <= JOIN_M
         (rings if closed or ends_meet else chains).append(flat)
-    return [_simplified(ring) for ring in (*rings, *_joined(chains))]
+    once = _without_doubles(chains)
+    joined, gap = _joined(once)
+    outlines = [_simplified(ring) for ring in (*rings, *joined)]
+    distinct = _distinct(outlines)
+    doubled = sum(len(chain) > 1 for chain in chains) - len(once) + len(outlines) - len(distinct)
+    return distinct, doubled, gap
 
 
 def _within_blocks(space: Iterable[Any], layer: str, depth: int) -> Iterator[Any]:
@@ -294,44 +310,107 @@ def _near(places: Iterable[float]) -> None:
         raise _Unread("has a corner at no finite place", "check the drawing's units, and save it again")
 
 
-def _joined(chains: list[list[tuple[float, float]]]) -> Iterator[list[tuple[float, float]]]:
-    """Outlines of chains whose ends meet, by a grid of their ends; raises _Unread where one stays open."""
-    ends: dict[tuple[int, int], list[tuple[int, int]]] = {}  # chain and which end, by cell
-    chains = [chain for chain in chains if len(chain) > 1]
-    for k, chain in enumerate(chains):
-        for end in (0, -1):
-            ends.setdefault(_cell(chain[end]), []).append((k, end))
-    left = set(range(len(chains)))
+def _joined(chains: list[list[tuple[float, float]]]) -> tuple[list[list[tuple[float, float]]], float]:
+    """Outlines of chains whose ends meet, by a grid of their ends, and the widest gap [m] that is closed.
+
+    Ends that are one corner are joined first, then ends as near as WIDE_JOIN_M. Raises _Unread where an
+    outline stays open, or branches.
+    """
+    ends = _grid_of_ends(chains)
+    rings, widest, left = list[list[tuple[float, float]]](), 0.0, set(range(len(chains)))
     while left:
         first = min(left)
         left.remove(first)
         ring = list(chains[first])
-        while math.dist(ring[0], ring[-1]) > JOIN_M or len(ring) < 3:
-            x, y = _cell(ring[-1])
-            contacts = [
-                (k, end)
-                for i, j in itertools.product((-1, 0, 1), repeat=2)
-                for k, end in ends.get((x + i, y + j), ())
-                if k in left and math.dist(chains[k][end], ring[-1]) <= JOIN_M
+        while (gap := math.dist(ring[0], ring[-1])) > JOIN_M or len(ring) < 3:
+            near = [
+                (math.dist(chains[k][end], ring[-1]), k, end)
+                for k, end in _ends_near(ends, ring[-1])
+                if k in left and math.dist(chains[k][end], ring[-1]) <= WIDE_JOIN_M
             ]
+            contacts = [contact for contact in near if contact[0] <= JOIN_M]
+            if not contacts and gap <= WIDE_JOIN_M and len(ring) > 3:
+                widest = max(widest, gap)
+                ring.pop()
+                break
+            contacts = contacts or near
             if len(contacts) != 1:
                 place = ring[-1]
                 at = f"at ({1e3 * place[0]:.4g}, {1e3 * place[1]:.4g}) mm"
                 if contacts:
-                    mend = "keep one closed outline on the layer"
+                    mend = "keep one closed outline on the layer, without lines that lie on others"
                     raise _Unread(f"has an outline that branches {at}", mend)
                 rest = [chains[k][end] for k in left for end in (0, -1)] + [ring[0]]
                 gap = min(math.dist(place, other) for other in rest)
                 what = f"has an outline that is open {at}: {1e3 * gap:.3g} mm to the next end"
                 raise _Unread(what, "close the outline")
-            k, end = contacts[0]
+            ((gap, k, end),) = contacts
             left.remove(k)
+            if gap > JOIN_M:
+                widest = max(widest, gap)
             ring += chains[k][1:] if end == 0 else chains[k][-2::-1]
-        yield ring
+        rings.append(ring)
+    return rings, widest
+
+
+def _without_doubles(chains: list[list[tuple[float, float]]]) -> list[list[tuple[float, float]]]:
+    """Chains of two points or more, each once: one that runs along another, either way, is left out."""
+    chains = [chain for chain in chains if len(chain) > 1]
+    ends, doubled = _grid_of_ends(chains), set[int]()
+    for k, chain in enumerate(chains):
+        for other in {
+            other for other, _ in itertools.islice(_ends_near(ends, chain[0]), MAX_ENDS_AT_A_CORNER)
+        }:
+            if other <= k or other in doubled or len(chains[other]) != len(chain):
+                continue
+            for way in (chains[other], chains[other][::-1]):
+                if all(math.dist(a, b) <= JOIN_M for a, b in zip(chain, way, strict=True)):
+                    doubled.add(other)
+    return [chain for k, chain in enumerate(chains) if k not in doubled]
+
+
+def _distinct(rings: list[list[tuple[float, float]]]) -> list[list[tuple[float, float]]]:
+    """Outlines (x, y) [m], each once: one that encloses what another does is left out."""
+    if len(rings) < 2:
+        return rings
+    import shapely
+
+    distinct = list[Any]()
+    kept = list[list[tuple[float, float]]]()
+    for ring in rings:
+        area = shapely.Polygon(ring) if len(ring) > 2 else shapely.Polygon()
+        alike = (  # by less than curves are off their chords
+            np.allclose(area.bounds, other.bounds, rtol=0.0, atol=JOIN_M)
+            and area.is_valid
+            and other.is_valid
+            and area.symmetric_difference(other).area <= 2.0 * CHORD_ERROR_M * area.length
+            for other in distinct[-MAX_OUTLINES:]
+        )
+        if area.is_empty or not any(alike):
+            kept.append(ring)
+            if not area.is_empty:
+                distinct.append(area)
+    return kept
+
+
+def _grid_of_ends(chains: list[list[tuple[float, float]]]) -> dict[tuple[int, int], list[tuple[int, int]]]:
+    """Chain and which of its ends (0 or -1), by cell of a grid as wide as WIDE_JOIN_M."""
+    ends: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    for k, chain in enumerate(chains):
+        for end in (0, -1):
+            ends.setdefault(_cell(chain[end]), []).append((k, end))
+    return ends
+
+
+def _ends_near(ends: dict[tuple[int, int], list[tuple[int, int]]], place: Point) -> Iterator[tuple[int, int]]:
+    """Chains and which of their ends in the cells about a place."""
+    x, y = _cell(place)
+    for i, j in itertools.product((-1, 0, 1), repeat=2):
+        yield from ends.get((x + i, y + j), ())
 
 
 def _cell(place: Point) -> tuple[int, int]:
-    return math.floor(place[0] / JOIN_M), math.floor(place[1] / JOIN_M)
+    return math.floor(place[0] / WIDE_JOIN_M), math.floor(place[1] / WIDE_JOIN_M)
 
 
 def _simplified(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:

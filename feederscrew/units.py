@@ -26,7 +26,15 @@ UNITS_BY_DIMENSION = {  # dimension: {unit: SI units in it}, the unit we suggest
     "angle": {"deg": DEGREE, "rad": 1.0, "mrad": 1e-3, "turn": TURN},
     "solid angle": {"sr": 1.0},
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": MINUTE, "h": HOUR},
-    "frequency": {"Hz": 1.0, "kHz": 1e3, "1/s": 1.0, "1/min": 1.0 / MINUTE, "rpm": 1.0 / MINUTE},
+    "frequency": {
+        "Hz": 1.0,
+        "kHz": 1e3,
+        "1/s": 1.0,
+        "1/min": 1.0 / MINUTE,
+        "rpm": 1.0 / MINUTE,
+        "vpm": 1.0 / MINUTE,
+        "cpm": 1.0 / MINUTE,
+    },
     "rate": {
         "/min": 1.0 / MINUTE,
         "1/min": 1.0 / MINUTE,
@@ -70,6 +78,7 @@ SPELLINGS = {
 }
 NUMBER_PATTERN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\d._,+-])", re.ASCII)
 COMMA = re.compile(r"[+-]?\d+,\d+", re.ASCII)
+GROUPED = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}(?!\d)")  # a comma that may part thousands or decimals
 PLAIN_YAML = re.compile(r"(?!- )[\w.+/-]([\w.+@/% -]*[\w.+@/%-])?")
 UNIT_CHARACTERS = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N{MINUS SIGN}": "-"})
 
@@ -196,6 +205,8 @@ def split(text: str) -> tuple[float, str]:
         whole, _, rest = plain.partition(",")
         value = None if "," in rest else f"{whole}.{rest}"
         mend = "write it without commas" if value is None else f"write {value}"
+        if value is not None and GROUPED.match(plain):  # 1,250 may be 1.25 or 1250
+            value, mend = None, f"write {value} or {whole}{rest}"
         raise QuantityError(f"{quantity_text(text)} has a comma", mend, value)
     match = NUMBER_PATTERN.match(plain)
     if match is None:

@@ -17,6 +17,7 @@ from feederscrew import units
         ("\N{MINUS SIGN}3°", "angle", -math.pi / 60), ("3600 1/min", "frequency", 60.0),
         ("9.81 m/s^2", "acceleration", 9.81), ("386.0886 in/s²", "acceleration", 9.80665044),
         ("7.85 g/cm³", "density", 7850.0), ("95.32 g·mm²", "inertia", 95.32e-9), ("120/min", "rate", 2.0),
+        ("3000 vpm", "frequency", 50.0), ("90 cpm", "frequency", 1.5),
         ("30 %", "number", 0.3), ("0.4", "number", 0.4),
     ],
 )  # fmt: skip
@@ -34,6 +35,10 @@ def test_quantities(text, dimension, value):
         ("5 ell", "length", "'5 ell': 'ell' is not a unit of length - known are mm, m, cm, um, in, ft"),
         ("0,5", "number", "'0,5' has a comma - write 0.5"),
         ("0,5 mm", "length", "'0,5 mm' has a comma - write 0.5 mm"),
+        ("1,250 mm", "length", "'1,250 mm' has a comma - write 1.250 mm or 1250 mm"),  # it ran with 1.25
+        ("-12,000", "number", "'-12,000' has a comma - write -12.000 or -12000"),
+        ("0,125 mm", "length", "'0,125 mm' has a comma - write 0.125 mm"),
+        ("1,2500 mm", "length", "'1,2500 mm' has a comma - write 1.2500 mm"),
         ("1,000,000", "number", "'1,000,000' has a comma - write it without commas"),
         ("0.4 mm", "number", "'0.4 mm' has a unit, and this is a plain number - write the number alone"),
         ("yes", "number", "'yes' is not a number - write digits with a decimal point, as in 0.4"),

@@ -1,7 +1,7 @@
 """Many parts at once: the whole pipeline for each, on several processes or machines, resumable."""
 
 from feederscrew.batch.batch_run import StoppedBatchError, count_stale, crew, run
-from feederscrew.batch.inputs import gather
+from feederscrew.batch.inputs import find_folders_within, gather
 from feederscrew.batch.task import Choices, Conditions, Outcome, Request, Task
 from feederscrew.batch.workers import Cluster, Processes
 
@@ -16,6 +16,7 @@ __all__ = [
     "Task",
     "count_stale",
     "crew",
+    "find_folders_within",
     "gather",
     "run",
 ]

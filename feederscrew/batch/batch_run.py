@@ -5,6 +5,7 @@ import csv
 import hashlib
 import io
 import json
+import math
 import os
 import shutil
 import tempfile
@@ -16,7 +17,17 @@ from typing import Any
 
 from feederscrew import __version__
 from feederscrew.batch import summary
-from feederscrew.batch.task import FAILED, NOT_COMPUTED, PARTS, Choices, Outcome, Request, Task, libraries
+from feederscrew.batch.task import (
+    DONE,
+    FAILED,
+    NOT_COMPUTED,
+    PARTS,
+    Choices,
+    Outcome,
+    Request,
+    Task,
+    libraries,
+)
 from feederscrew.batch.workers import Cluster, Processes, processors
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
@@ -27,6 +38,11 @@ from feederscrew.part import loading
 
 MARKER = "batch.json"  # says that the folder is a batch's
 STALE = ".batch-"  # how the name of what is not finished begins
+NUMBER_COLUMNS = (
+    "mass_g", "aspects", "heading_deg", "p_orientation", "velocity_mm_s", "pitch_mm", "parts_per_minute",
+    "parts_per_minute_low", "parts_per_minute_high", "drops", "p_drop",
+)  # fmt: skip
+CHANGED = "results changed or incomplete"  # since they were written
 REPLACED = "replaced"  # folder in it of results that make room for new ones
 
 
@@ -69,14 +85,14 @@ class Store:
         """Return why the results of a part cannot stay; None where they are whole and of this very input."""
         record, folder = self.record(task.request.name), self.parts / task.request.name
         if not record:
-            return "new"
+            return CHANGED if (folder / RECORD).exists() else "new"
         if record.get("status") == FAILED and not record.get("key"):
             return "failed for want of its file or of memory"
         if record.get("key") == task.key:
             paths = (path for path in folder.rglob("*") if path.is_file())
             files = {path.relative_to(folder).as_posix(): _sha256(path.read_bytes()) for path in paths}
             files.pop(RECORD, None)
-            return None if files == record.get("files", {}) else "results changed or incomplete"
+            return None if files == record.get("files", {}) else CHANGED
         inputs = record.get("inputs")
         before = inputs[0].get("sha256") if isinstance(inputs, list) and inputs else None
         if before != task.sha256:
@@ -100,7 +116,7 @@ class Store:
         }
         with self._staging() as staging:
             fresh, place = staging / "new", self.parts / outcome.name
-            text = tables.json_text({"batch": record})
+            text = tables.json_text({"batch": record | {"digest": _digest(record)}})
             for name, content in {**outcome.files, RECORD: text.encode()}.items():
                 (fresh / name).parent.mkdir(parents=True, exist_ok=True)
                 (fresh / name).write_bytes(content)
@@ -140,12 +156,43 @@ class Store:
             raise FeederError(self.path, what, mend) from error
 
     def record(self, name: str) -> dict[str, Any]:
-        """Return what is recorded of one part: key, status, reason, row, files; empty if there is none."""
+        """Return what is recorded of one part: key, status, reason, row, files.
+
+        Empty if there is none, or it is not as it was written: its digest differs, or what it says cannot be.
+        """
         try:
             record = json.loads((self.parts / name / RECORD).read_text())["batch"]
-        except (OSError, ValueError, LookupError, TypeError):
+            digest = record.pop("digest")
+            return record if digest == _digest(record) and _is_possible(record) else {}
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
             return {}
-        return record if isinstance(record, dict) else {}
+
+
+def _digest(record: dict[str, Any]) -> str:
+    """SHA-256 of a record as JSON."""
+    text = json.dumps(json.loads(tables.json_text(record)), sort_keys=True)
+    return _sha256(text.encode())
+
+
+def _is_possible(record: dict[str, Any]) -> bool:
+    """Whether the kinds of a record's values and the order of its interval are those of a result."""
+    row, inputs = record["row"], record["inputs"]
+    kinds = (("row", dict), ("files", dict), ("inputs", list), ("warnings", list), ("effective", dict))
+    if not all(isinstance(record[name], kind) for name, kind in kinds):
+        return False
+    if record["status"] not in (DONE, FAILED) or not all(isinstance(given, dict) for given in inputs):
+        return False
+    texts = [*record["warnings"], record["key"], record["reason"], *record["files"].values()]
+    if not all(text is None or isinstance(text, str) for text in texts):
+        return False
+    for name, value in row.items():
+        kind = (int, float) if name in NUMBER_COLUMNS else (str, bool, int, float)
+        if value is not None and not isinstance(value, kind):
+            return False
+        if isinstance(value, float) and not math.isfinite(value):
+            return False
+    low, rate, high = (row.get(f"parts_per_minute{end}") for end in ("_low", "", "_high"))
+    return (rate is None or rate >= 0.0) and (None in (low, rate, high) or low <= rate <= high)
 
 
 def _sha256(data: bytes) -> str:

@@ -1,5 +1,6 @@
 """From what was typed to one request a part and bowl: folders, patterns, lists of parts and of designs."""
 
+import contextlib
 import csv
 import glob
 import io
@@ -192,7 +193,8 @@ def gather(
     Parameters
     ----------
     sources : sequence of str
-        Part files, folders of them, patterns ('parts/**/*.stl') and lists ('parts.csv').
+        Part files, folders of them, patterns ('parts/**/*.stl') and lists ('parts.csv'). A folder that holds
+        no part itself is read one folder deeper; ``find_folders_within`` says so.
     configs : sequence of str
         Bowl files, folders of them and patterns; none for the defaults.
     overrides : sequence of str
@@ -267,11 +269,53 @@ def gather(
     return _named(list(requests))
 
 
+def find_folders_within(sources: Sequence[str]) -> tuple[str, ...]:
+    """Return a line for each folder of ``sources`` whose own folders hold parts: whether they are read.
+
+    A folder is read one folder deeper where it holds no part itself.
+
+    Parameters
+    ----------
+    sources : sequence of str
+        As of ``gather``.
+
+    Returns
+    -------
+    tuple of str
+    """
+    lines = []
+    for source in sources:
+        path = Path(source)
+        if not found_as(Path.is_dir, path):
+            continue
+        deeper = _files_deeper(path, MESHES | CARDS, "part")
+        folders = units.counted(len({Path(file).parent for file in deeper}), "folder")
+        count = units.counted(len(deeper), "part")
+        if deeper and any(_fits(p, MESHES | CARDS, "part") for p in path.iterdir()):
+            pattern = units.printable(str(path / "*" / f"*{Path(deeper[0]).suffix}"))
+            lines.append(f"{units.printable(source)}: {count} in {folders} of it left out - add '{pattern}'")
+        elif deeper:
+            lines.append(f"{units.printable(source)}: holds no part itself: read {count} in {folders} of it")
+    return tuple(lines)
+
+
+def _files_deeper(folder: Path, suffixes: set[str], kind: str) -> list[str]:
+    """The files one folder deeper, by folder and name; none of hidden folders, or that cannot be read."""
+    files = []
+    for inner in sorted(folder.iterdir()):
+        if not inner.name.startswith("."):
+            with contextlib.suppress(OSError):
+                files += [str(p) for p in sorted(inner.iterdir()) if _fits(p, suffixes, kind)]
+    return files
+
+
 def _expanded(typed: str, suffixes: set[str], kind: str) -> list[str]:
-    """The files of a folder or of a pattern by name; a file itself, there or not."""
+    """The files of a folder, or one folder deeper, or of a pattern by name; a file itself, there or not."""
     path = Path(typed)
     if found_as(Path.is_dir, path):
         paths = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
+        if not paths and kind == "part":
+            paths = _files_deeper(path, suffixes, kind)
         what, mend = f"holds no {kind} file", f"name a folder of {kind} files, or a pattern"
     elif glob.has_magic(typed) and not found_as(Path.exists, path):
         # each file by its shortest path: links between folders may lead round in a circle

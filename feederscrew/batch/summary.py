@@ -1,5 +1,6 @@
 """One row a part for summary and contact sheets; and the index, in pages with a line a part."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -95,12 +96,12 @@ def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = No
     tuple of dict
         By ``SUMMARY_COLUMNS``; None where there is nothing to say.
     """
-    rows = []
+    rows, titles = [], _titles({request.source for request in requests})
     for request in requests:
         is_done = finished is None or request.name in finished
         record: dict[str, Any] = store.record(request.name) if is_done else {"status": NOT_COMPUTED}
         numbers = record.get("row", {}) | {
-            "part": Path(request.source).name,
+            "part": titles[request.source],
             "folder": request.name,
             "config": request.conditions.name,
             "status": record["status"],
@@ -109,6 +110,20 @@ def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = No
         }
         rows.append({name: numbers.get(name) for name in SUMMARY_COLUMNS})
     return tuple(rows)
+
+
+def _titles(sources: set[str]) -> dict[str, str]:
+    """What each file is called: its name, and as many of its folders as tell it from others of that name."""
+    titles = {source: Path(source).name for source in sources}
+    length = dict.fromkeys(sources, 1)
+    while len(several := [name for name, count in Counter(titles.values()).items() if count > 1]):
+        longer = [source for source in sources if titles[source] in several]
+        for source in longer:
+            length[source] += 1
+            titles[source] = Path(*Path(source).parts[-length[source] :]).as_posix()
+        if all(length[source] > len(Path(source).parts) for source in longer):
+            return titles | {source: source for source in longer}
+    return titles
 
 
 def frame(rows: Rows) -> tables.Frame:
@@ -149,7 +164,7 @@ def _words(row: dict[str, Any]) -> str:
     if row["status"] != DONE:  # without the path of its file in front
         reason = row["reason"] or ""
         place, colon, rest = reason.partition(": ")
-        is_path = colon and Path(place.split(":")[0]).name == row["part"]
+        is_path = colon and Path(place.split(":")[0]).name == Path(row["part"]).name
         return f"failed: {rest if is_path else reason}"
     number, note = row["parts_per_minute"], row.get("note")
     if number is None and note:

@@ -1,6 +1,8 @@
 """The trial of what the static rule proposes: both verdicts side by side."""
 
 import functools
+import math
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -94,12 +96,14 @@ def try_designs(
     seed: int = 1,
     jobs: int = 1,
     before: Callable[[], None] | None = None,
+    until: float = math.inf,
 ) -> ToolingStudy:
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
     ``without_kinds`` returns the same study without some kinds of devices: where the trial denies the chain
     of the orientation that was asked for, others are tried, five in all, and the most efficient of those that
-    the trial confirms is taken. ``before`` is called before anything is compiled. The study has its
+    the trial confirms is taken. ``before`` is called before anything is compiled. No trial begins
+    after ``until``, a ``time.monotonic()`` [s]; one that has begun ends. The study has its
     ``trials``: of a chain that the trial confirms where one is found, else of the first. Chains that isolate
     nothing are not tried. After an interrupt from the keyboard it is ``partial``, with the trials that ended.
     """
@@ -113,6 +117,8 @@ def try_designs(
     trials: tuple[TriedDesign, ...] = ()
     try:
         for proposed in best[:BEST]:
+            if time.monotonic() > until:
+                break
             trials = (*trials, _try_design(study, proposed, run))
     except KeyboardInterrupt:
         return replace(study, trials=trials, partial=True)
@@ -120,7 +126,7 @@ def try_designs(
     if study.design is None or without_kinds is None or not trials or not trials[0].faults:
         return first
     studies, pending, searched, is_stopped = [study], _ways_on((), study.design), 0, False
-    while pending and searched < SEARCHES and len(trials) < TRIES:
+    while pending and searched < SEARCHES and len(trials) < TRIES and time.monotonic() <= until:
         kinds, searched = pending.pop(0), searched + 1
         try:
             other = without_kinds(kinds)

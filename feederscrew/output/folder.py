@@ -19,7 +19,7 @@ from feederscrew.output import tables
 RECORD, ANOTHER = "run.json", "give another folder to `directory`"
 STAGING_PREFIX = ".feeder."  # of a folder that is being written
 STAGING_AGE_S = 3600.0  # older ones were left by a run that was killed
-LIBRARIES = ("embreex", "matplotlib", "numba", "numpy", "pandas", "scipy", "trimesh")
+LIBRARIES = ("embreex", "matplotlib", "numba", "numpy", "pandas", "scipy")
 NO_FILE = {"path": "", "sha256": ""}  # in place of an input where all is by default
 RESERVED = {"CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))}
 NO_LETTERS = {chr(0xDC00 + byte) for byte in range(256)}  # bytes of a file name that are not UTF-8

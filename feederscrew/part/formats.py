@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points, Triangles
+from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
 from feederscrew.documents import POINTER, POINTER_HEAD
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
@@ -39,6 +39,25 @@ class PartFile:
 
 
 @dataclass(frozen=True, eq=False)
+class CadFaces:
+    """The faces of a CAD model that a kernel made into facets, and what their edges say of it."""
+
+    of_facet: Ints  # (F,) int, which face each facet is of
+    titles: tuple[str, ...]  # (N,) 'face 4 of 12, a sphere of radius 60 mm'
+    leaving: Floats  # (N,) [unit of the file] how far its facets leave the box of edges
+    is_turned: Bools  # (N,) whether its facets face the other way than the file and the other faces say
+    is_wrong: Bools  # (N,) whether its facets are on the wrong side of its edges
+
+    def of_body(self, facets: Ints) -> "CadFaces":
+        """Return the faces of some facets (K,); those of others are neither turned nor wrong."""
+        used = np.zeros(len(self.titles), dtype=bool)
+        used[self.of_facet[facets]] = True
+        return CadFaces(
+            self.of_facet[facets], self.titles, self.leaving, self.is_turned & used, self.is_wrong & used
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class Soup:
     """Triangles as a file has them; corners that coincide are not yet joined."""
 
@@ -49,6 +68,7 @@ class Soup:
     warnings: tuple[str, ...] = ()
     names: tuple[str, ...] = ()  # of the objects, groups or solids that the file distinguishes; '' for none
     objects: Ints | None = None  # (F,) int, which of ``names`` each facet belongs to
+    cad_faces: CadFaces | None = None  # of a CAD file
 
 
 class DamageError(ValueError):
@@ -94,9 +114,10 @@ FORMAT_MARKS = (  # pattern at the start of a file, and its format
     (rb"(?:#[^\n]*\n|\s)*(?:ST)?C?N?OFF\b", "off"),
     (rb"\s*(?:/\*[^*]*\*/\s*)?ISO-10303-21", "step"),
 )
-UTF16_FAULT = "is text in UTF-16"
+WIDE_TEXT_FAULTS = UTF16_FAULT, UTF32_FAULT = "is text in UTF-16", "is text in UTF-32"
 OTHER_FILES = (  # what people save under a mesh's name by mistake
     (re.escape(POINTER_HEAD), POINTER),
+    (rb"\xff\xfe\0\0|\0\0\xfe\xff|(?:[\t-~]\0{3}){8}|(?:\0{3}[\t-~]){8}", UTF32_FAULT),
     (rb"\xff\xfe[\t-~]\0|\xfe\xff\0[\t-~]|(?:[\t-~]\0){8}|(?:\0[\t-~]){8}", UTF16_FAULT),
     (rb"(?i)\s*solid\b[^\0]*\bfacet\s+normal[^\0]*\0", "is ASCII STL with NUL bytes in the middle"),
     (rb"(?is)\s*<.{,2000}?(?<=<)(?:!doctype\s+html|html\b|head\b|body\b)", "is an HTML page, not a part"),
@@ -107,6 +128,20 @@ OTHER_FILES = (  # what people save under a mesh's name by mistake
     (rb"\x89PNG|\xff\xd8\xff|GIF8|BM", "is a picture, not a part"),
     (rb"%PDF", "is a PDF document, not a part"),
     (rb"\xd0\xcf\x11\xe0", "is a native CAD or Office file, which is not read"),
+    (
+        rb"(?s)(?:DBRep_DrawableShape)?\s*(?:CASCADE|Open CASCADE) Topology V",
+        "is a BREP file, which is not read",
+    ),
+    (rb"[^\n]{72}S[ 0]{6}1\s", "is an IGES file, which is not read"),
+    (rb"\*\*ABCDEFGHIJKLMNOPQRSTUVWXYZ|PS\0\0", "is a Parasolid file, which is not read"),
+    (
+        rb"\d{3,5} \d+ \d+ \d+\s*\n\d+ (?:\S+ )*|ACIS BinaryFile|ASM BinaryFile",
+        "is an ACIS file (SAT), which is not read",
+    ),
+    (rb"Version \d+\.\d+ +JT ", "is a JT file, which is not read"),
+    (rb"#VRML|#X3D", "is a VRML file, which is not read"),
+    (rb"\s*0\s*\n\s*SECTION\b|AutoCAD Binary DXF", "is a DXF file, a drawing and not a part"),
+    (rb"AC10\d\d", "is a DWG file, a drawing and not a part"),
     (rb"\s*\{", "is a JSON file (glTF is read as .glb only)"),
 )
 ASCII_ONLY = bytes(byte if byte < 128 else ord("?") for byte in range(256))
@@ -171,6 +206,7 @@ def refuse_text_size(data: bytes | bytearray) -> None:
 
 
 COMMA_NUMBERS = re.compile(rb"(?:[-+]?(?:\d+(?:,\d*)?|,\d+)(?:[eE][-+]?\d+)?\s*)*")
+FORTRAN_EXPONENT = re.compile(rb"(?<=[\d.])[dD](?=[-+]?\d)")
 THOUSANDS = re.compile(rb"[-+]?\d{1,3}(?:,\d{3})+")  # thousands, or three decimals
 
 
@@ -179,6 +215,7 @@ class Decimals:
 
     def __init__(self) -> None:
         self.points = self.commas = self.whole = False  # whether there are such, and numbers with neither
+        self.fortran = False  # whether there are exponents of D, as Fortran writes them
         self.grouped = True  # whether every comma has three digits behind it
 
     def read(self, words: list[bytes]) -> Floats:
@@ -191,6 +228,10 @@ class Decimals:
         if b"_" in text:
             raise DamageError("an underscore in a number")
         self.points = self.points or b"." in text
+        if FORTRAN_EXPONENT.search(text):
+            self.fortran = True
+            text = FORTRAN_EXPONENT.sub(b"e", text)
+            words = text.split()
         if b"," in text:
             self.commas = True
             if not COMMA_NUMBERS.fullmatch(text):
@@ -209,7 +250,11 @@ class Decimals:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to say of the numbers that were read."""
-        return ("its numbers have decimal commas: read as decimal points",) if self.commas else ()
+        commas = ("its numbers have decimal commas: read as decimal points",) if self.commas else ()
+        return (
+            *commas,
+            *(("its numbers have exponents of D, as in Fortran: read as E",) if self.fortran else ()),
+        )
 
 
 POINT_FACET_SIZE = 1e-300  # [unit of the file] a facet smaller than that is a point

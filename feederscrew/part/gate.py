@@ -135,10 +135,13 @@ HULL_OVERLAP_SHARE = 1e-6  # [1] of the hull's volume: more than the hull by so 
 LEAST_FILL_SHARE, OPEN_LEAST_FILL_SHARE = 1e-5, 1e-3  # [1] of the hull's volume that a part fills
 LOOSE_SHARE = 1e-3  # [1] of the area: so much may lie back to back where holes are filled
 MOMENT_ROUNDING = 1e-9  # [1] of the largest: what rounding does to moments
+MANY_CROSSINGS, MANY_CROSSINGS_SHARE = 50, 0.05  # pairs, and pairs of all facets [1]: a sheet lies on another
 SHALLOW_CROSSING_SHARE, DEEP_CROSSING_SHARE = 1e-4, 2e-2  # [1] of the size: passed unsaid, and at all
 CLOSE_IN_CAD = "close it in CAD, or pass `allow_open` to compute from what there is"
 SEW_IN_CAD = "join (sew, stitch) its faces in CAD and export one solid"
 UNITE_IN_CAD = "unite what overlaps in CAD, or pass `allow_open` to compute from what there is"
+DELETE_SHEET = "delete or close it in CAD, or pass `allow_open` to compute from what there is"
+MESH_AGAIN = "mesh it again, unite what overlaps in CAD, or pass `allow_open` to compute from what there is"
 EXPORT_NEAR_ORIGIN = "export it near the origin"
 # vertices, faces, what they enclose, whether open or of several bodies, warnings, facets that may cut others
 Enclosed = tuple[Points, Triangles, mass.Solid, bool, tuple[str, ...], Ints]
@@ -153,6 +156,15 @@ class CheckedSurface:
     solid: mass.Solid  # [powers of the unit of the file]
     open_surface: bool  # or several bodies, with allow_open
     warnings: tuple[str, ...]
+    crossings: "Crossings"  # facets that cut each other, among those that are looked at
+
+
+class SelfCutError(MeshError):
+    """A surface that passes through itself, with the facets that do."""
+
+    def __init__(self, where: object, what: str, mend: str, crossings: "Crossings") -> None:
+        super().__init__(where, what, mend)
+        self.crossings = crossings
 
 
 def check_surface(
@@ -197,6 +209,17 @@ def check_surface(
             corners, sides, _, warnings = mending.mend_facets(*loose, tolerance, where, corners=False)
             whole = mending.join_cracks(corners, sides, tolerance, size, where)
             joined, mended = (joined, mended) if whole is None else (whole, warnings)
+    if joined is None or not joined.edges.is_closed:
+        sheets = mending.find_sheets(vertices, faces, edges, tolerance, where)
+        if sheets is not None and (sheets.is_flat or sheets.is_inside):
+            noun = "a sheet that bounds nothing" if sheets.is_flat else "an open surface"
+            side = "inside" if sheets.is_inside else "outside"
+            what = f"{counted(sheets.facets, 'facet')} of {noun}, at ({_place(sheets.place)})"
+            if not ((sheets.is_flat and sheets.is_inside) or allow_open):
+                raise MeshError(where, f"has {what}, {side} its closed surface", DELETE_SHEET)
+            if sheets.is_flat and sheets.is_inside:
+                vertices, faces, edges, joined = sheets.vertices, sheets.faces, sheets.edges, None
+                mended = (*mended, *sheets.notes, f"{what}, inside the body: left out")
     if joined is not None:
         vertices, faces, edges = joined.vertices, joined.faces, joined.edges
         counts = ((joined.corners, "corner"), (joined.seams, "edge"))
@@ -213,14 +236,16 @@ def check_surface(
         warnings += ("all facets pointed inwards; reversed",)
     if solid.volume <= EMPTY_VOLUME_SHARE * size**3:
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
+    cuts = NO_CROSSINGS
     if len(unseen):
         cuts = find_crossings(vertices, faces[unseen], tolerance)
         deepest, pairs = float(cuts.depths.max(initial=0.0)), counted(len(cuts.pairs), "pair")
-        if deepest > SHALLOW_CROSSING_SHARE * size:
+        many = len(cuts.pairs) > max(MANY_CROSSINGS, MANY_CROSSINGS_SHARE * len(faces))
+        if deepest > SHALLOW_CROSSING_SHARE * size or many:
             what = f"the surface passes through itself: {pairs} of facets cut each other, the deepest"
             what += f" by {deepest:.2g} {unit} at ({_place(cuts.points[np.argmax(cuts.depths)])})"
-            if deepest > DEEP_CROSSING_SHARE * size and not allow_open:
-                raise MeshError(where, what, UNITE_IN_CAD)
+            if (deepest > DEEP_CROSSING_SHARE * size or many) and not allow_open:
+                raise SelfCutError(where, what, MESH_AGAIN if many else UNITE_IN_CAD, cuts)
             warnings += (f"{what}: what lies inside twice counts twice",)
     # second moments that no mass within the part's corners has: facets are missing or overlap
     spreads = vectors.eigen(0.5 * np.trace(solid.inertia) * np.eye(3) - solid.inertia)[0] / solid.volume
@@ -229,12 +254,14 @@ def check_surface(
         moments = ", ".join(f"{moment:.3g}" for moment in mass.principal_inertia(solid.inertia)[0])
         what = f"no body has the principal moments {moments} {unit}5 (at density 1)"
         raise MeshError(where, f"{what}: facets are missing or overlap", EXPORT_SOLID)
-    return CheckedSurface(vertices, faces, solid, is_open, slivers + blurred + mended + warnings)
+    return CheckedSurface(vertices, faces, solid, is_open, slivers + blurred + mended + warnings, cuts)
 
 
 def check_hull(surface: CheckedSurface, hull_volume: float, where: str, unit: str) -> None:
     """Refuse a surface that encloses more than its convex hull, in cubed units, or less than any part.
 
+    ``hull_volume`` is that of the hull of all corners: the part's own hull leaves out corners of a plate's
+    faces that rounding lifts, and with them as much as ten times what rounding changes in the volume.
     A wire of 0.3 mm along three edges of a cube of 100 mm fills 1.3e-4 of its hull; a surface whose facets
     hang together nowhere fills what rounding leaves. Raises MeshError.
     """
@@ -421,6 +448,9 @@ class Crossings:
     pairs: Ints  # (N, 2) int
     depths: Floats  # (N,) [unit of the file] how far each goes through, the least of all directions
     points: Points  # (N, 3) [unit of the file] one point of each cut
+
+
+NO_CROSSINGS = Crossings(np.empty((0, 2), dtype=int), np.empty(0), np.empty((0, 3)))
 
 
 def find_crossings(vertices: Points, faces: Triangles, tolerance: float) -> Crossings:

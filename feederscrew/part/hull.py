@@ -31,6 +31,7 @@ class Hull:
     heights: Floats  # (T,) [m] of the centre of mass over each triangle's plane
     areas: Floats  # (T,) [m2]
     volume: float  # [m3]
+    volume_of_all: float  # [m3] of the hull of all corners, those left out for rounding too
     radius: float  # [m] largest distance from the centre of mass to a corner
 
     @property
@@ -64,6 +65,7 @@ def convex_hull(points: Points, centre: Vector, where: str = "part", centre_give
     points = check.shaped("points", points, (-1, 3)) - centre
     try:
         qhull = spatial.ConvexHull(points)
+        volume_of_all = float(qhull.volume)
         triangles, neighbours, areas = _orient_triangles(points, qhull)
         # corners of the hull at which it turns, by more than rounding
         origins, targets = triangles[:, [1, 2, 0]].ravel(), triangles[:, [2, 0, 1]].ravel()
@@ -111,6 +113,7 @@ def convex_hull(points: Points, centre: Vector, where: str = "part", centre_give
         heights=check.frozen(heights),
         areas=check.frozen(areas),
         volume=float(qhull.volume),
+        volume_of_all=volume_of_all,
         radius=radius,
     )
 

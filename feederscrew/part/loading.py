@@ -19,7 +19,8 @@ from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
 from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
 from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
-from feederscrew.part import card, formats, gate, given, mass, mesh_formats, scenes, threemf, topology
+from feederscrew.part import card, formats, gate, given, glb, mass, mesh_formats, step, threemf, topology
+from feederscrew.part.cad_faces import refuse_wrong_sides
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, find_density
 from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, PartFile, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
@@ -37,8 +38,8 @@ READERS: dict[str, Callable[[Any, str, str], Soup]] = {  # by format: of its byt
     "stl-ascii": mesh_formats.read_stl,
     "ply": lambda data, kind, where: mesh_formats.read_ply(data),
     "3mf": lambda data, kind, where: threemf.read_3mf(data, where),
-    "glb": scenes.read_scene,
-    "step": scenes.read_scene,
+    "glb": lambda data, kind, where: glb.read_glb(data, where),
+    "step": lambda data, kind, where: step.read_step(data, where),
 }
 DAMAGE_REASONS: tuple[tuple[tuple[type[Exception], ...], str], ...] = (
     # what readers raise on damaged bytes, no bugs: their own words are for programmers
@@ -80,7 +81,10 @@ def read_soup(file: PartFile) -> Soup:
     """Return the triangles of a mesh file; MeshError if it is of no known format, cut short or damaged."""
     kind, alien = formats.detect_format(file.data, file.suffix)
     if kind is None or kind == CARD_FORMAT:
-        mends = {formats.UTF16_FAULT: "save it as ASCII or UTF-8 text", documents.POINTER: documents.PULL}
+        mends = {
+            **dict.fromkeys(formats.WIDE_TEXT_FAULTS, "save it as ASCII or UTF-8 text"),
+            documents.POINTER: documents.PULL,
+        }
         mend = mends.get(alien or "", "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP")
         raise MeshError(file.where, alien or "is a part card, not a mesh", mend)
     title, data, where = MESH_FORMATS[kind].title, file.data, file.where
@@ -208,6 +212,7 @@ def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileB
         vertices=soup.vertices[used],
         faces=own.reshape(-1, 3),
         objects=None if soup.objects is None else soup.objects[chosen.facets],
+        cad_faces=None if soup.cad_faces is None else soup.cad_faces.of_body(chosen.facets),
         warnings=(*soup.warnings, warning),
     )
     return alone, chosen
@@ -397,6 +402,11 @@ def load(
         mend = f"take one with `body` (its number, its name, or largest), {fault.mend}"
         listed = MeshError(fault.where, f"{what}: {_bodies_text(bodies, unit)}", mend)
         raise (listed if len(bodies) > 1 else fault) from None
+    except MeshError as fault:  # a face on the wrong side may be its cause
+        cuts = fault.crossings if isinstance(fault, gate.SelfCutError) else gate.NO_CROSSINGS
+        refuse_wrong_sides(soup, cuts, file.where, unit, allow_open)
+        raise
+    side_warnings = refuse_wrong_sides(soup, surface.crossings, file.where, unit, allow_open)
     scale = factor(unit, "length")
     vertices, solid = surface.vertices * scale, surface.solid.scale(scale)
     centre, shifted = _read_centre(centre_of_mass, unit, solid.centre)
@@ -406,7 +416,7 @@ def load(
         if centre_of_mass is None:
             raise
         raise ArgumentError("centre_of_mass", fault.what, fault.mend) from None
-    gate.check_hull(surface, hull.volume / scale**3, file.where, unit)
+    gate.check_hull(surface, hull.volume_of_all / scale**3, file.where, unit)
     name, digest = file.name, file.sha256
     if chosen is not None:  # one of several bodies of a file: no trial of another is its own
         name, of_body = f"{name}-{chosen.number}", f"{digest} body {chosen.number}"
@@ -433,6 +443,7 @@ def load(
             *unit_warnings,
             *_size_warnings(vertices, unit, units),
             *surface.warnings,
+            *side_warnings,
             *shifted,
         ),
     )

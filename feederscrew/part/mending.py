@@ -5,15 +5,15 @@ Lengths are in the unit of the file.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, combinations, pairwise
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points, Triangles
+from feederscrew.arrays import Floats, Ints, Points, Triangles, Vector
 from feederscrew.errors import MeshError
 from feederscrew.geometry import graphs, vectors
 from feederscrew.heavy import heavy
-from feederscrew.part import topology
+from feederscrew.part import mass, topology
 from feederscrew.part.topology import MeshEdges, edge_table
 from feederscrew.units import counted
 
@@ -21,6 +21,15 @@ spatial = heavy("scipy.spatial")
 
 EXPORT_SOLID = "export it as a closed solid"
 MAX_SEAM_EDGES = 5000  # open edges: with more than that the surface has worse than T-junctions
+MAX_PATCHES = (
+    1000  # parts of a surface between edges of more than two facets: with more no sheet is looked for
+)
+MAX_SHEETS, MAX_ODD_PATCHES = (
+    3,
+    8,
+)  # sheets that meet the skin all round, and patches they are looked for among
+EQUAL_VOLUME_SHARE = 1e-9  # [1] by which volumes are equal
+MAX_SHEET_PROBES = 64  # facets of a sheet that say whether it lies within the body
 Notes = tuple[str, ...]  # what was done, a sentence each
 Step = tuple[Points, Triangles, Notes]  # a surface after one repair
 
@@ -86,6 +95,91 @@ def leave_out_strays(vertices: Points, faces: Triangles, edges: MeshEdges, toler
         return vertices, faces, ()
     text = f"{counted(len(stray), 'stray facet')} without area left out: corners on a line"
     return *topology.drop_unused_corners(vertices, np.delete(faces, stray, axis=0)), (text,)
+
+
+@dataclass(frozen=True, eq=False)
+class Sheets:
+    """Facets that bound nothing beside a closed surface, and that surface without them."""
+
+    vertices: Points  # (V, 3) [unit of the file] of the closed surface
+    faces: Triangles  # (F, 3) int
+    edges: MeshEdges
+    notes: Notes  # of its repair
+    facets: int  # how many are in the sheets
+    place: Vector  # (3,) [unit of the file] the centre of one
+    is_inside: bool  # whether all of them lie within the closed surface
+    is_flat: bool  # whether each sheet is; else it may be a cavity or a body that lacks facets
+
+
+def find_sheets(
+    vertices: Points, faces: Triangles, edges: MeshEdges, tolerance: float, where: str
+) -> Sheets | None:
+    """Find the sheets without which an open surface is closed: walls within a body, or what sticks out.
+
+    A sheet ends in free edges, or where it meets the body's skin: there three facets share an edge. Of the
+    patches that such edges part, those with a free edge are taken away; else those, up to
+    ``MAX_SHEETS``, that leave each edge an even number of facets and the most enclosed.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of those faces; the surface is open.
+    tolerance : float [unit of the file]
+        Corners that are closer are one.
+    where : str
+        The file, for the lines of faults.
+
+    Returns
+    -------
+    Sheets or None
+        None where no sheets can be told from the rest.
+    """
+    mates = edges.mates(edges.count == 2)
+    number, patch = graphs.components(mates[:, 0], mates[:, 1], len(faces))
+    if not 1 < number <= MAX_PATCHES:
+        return None
+    crowded = np.flatnonzero(edges.count != 2)
+    meets = np.zeros((len(crowded), number), dtype=int)  # facets of each patch at each such edge
+    for row, edge in enumerate(crowded.tolist()):
+        at = edges.start[edge] + np.arange(edges.count[edge])
+        np.add.at(meets[row], patch[edges.order[at] // 3], 1)
+    free = np.flatnonzero(meets[meets.sum(axis=1) == 1].any(axis=0)).tolist()
+    odd = np.flatnonzero((meets % 2 == 1).any(axis=0)).tolist()[:MAX_ODD_PATCHES]
+    choices = [tuple(free)] if free else list(chain.from_iterable(
+        combinations(odd, size) for size in range(1, MAX_SHEETS + 1)))  # fmt: skip
+    best, most = None, 0.0
+    for chosen in choices:
+        left = meets.sum(axis=1) - meets[:, list(chosen)].sum(axis=1)
+        if (left % 2).any() or len(chosen) == number:
+            continue
+        is_sheet = np.isin(patch, chosen)
+        rest = topology.drop_unused_corners(vertices, faces[~is_sheet])
+        try:
+            corners, skin, table, notes = mend_facets(*rest, tolerance, where)
+        except MeshError:
+            continue
+        volume = abs(mass.integrate_solid(corners[skin]).volume)
+        if table.is_closed and volume > most * (1.0 + EQUAL_VOLUME_SHARE):
+            best, most = (corners, skin, table, notes, is_sheet), volume
+    if best is None:
+        return None
+    corners, skin, table, notes, is_sheet = best
+    centres = vertices[faces[is_sheet]].mean(axis=1)
+    probes = centres[:: -(-len(centres) // MAX_SHEET_PROBES)]
+    around = corners[skin]
+    turns = [vectors.solid_angles(place, around).sum() / (4.0 * np.pi) for place in probes]
+    is_inside = bool((np.abs(turns) > 0.5).all())
+    is_flat = all(_is_flat(vertices[np.unique(faces[patch == k])], tolerance) for k in set(patch[is_sheet]))
+    return Sheets(corners, skin, table, notes, len(centres), centres[0], is_inside, is_flat)
+
+
+def _is_flat(points: Points, tolerance: float) -> bool:
+    """Whether points (N, 3) lie in one plane."""
+    offsets = points - points.mean(axis=0)
+    _, axes = vectors.eigen(vectors.product(offsets.T, offsets))
+    return float(np.ptp(vectors.product(offsets, axes[:, 0]))) <= tolerance
 
 
 def _drop_repeats(vertices: Points, faces: Triangles, edges: MeshEdges) -> Step:

@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from feederscrew.arrays import Ints, Triangles
 from feederscrew.errors import MeshError
 from feederscrew.part import formats
 from feederscrew.part.formats import DamageError, Decimals, Soup, mask_non_ascii, refuse_size, split_facets
@@ -114,6 +115,7 @@ PLY_TYPES = {  # names of the specification, and of later writers
     **{"float": "f4", "double": "f8", "float32": "f4", "float64": "f8", "int64": "i8", "uint64": "u8"},
 }
 PLY_BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+PLY_STRIPS = ("tristrips", "tristrip")  # elements of triangles that share sides, as scanners write them
 PLY_CORNER_LISTS = ("vertex_indices", "vertex_index")
 
 
@@ -155,8 +157,6 @@ def read_ply(data: bytes) -> Soup:
                 elements[-1].properties.append(PlyProperty(name, PLY_TYPES[type]))
     if order is None:
         raise DamageError("its header names no format")
-    if any(element.name in ("tristrips", "tristrip") and element.rows for element in elements):
-        raise DamageError("triangle strips are not read")
     decimals = Decimals()
     if order == "":
         formats.refuse_text_size(data)
@@ -171,7 +171,28 @@ def read_ply(data: bytes) -> Soup:
     sizes, corners = next(lists, (empty, empty))
     refuse_size(len(vertices), int(sizes.sum()) - 2 * len(sizes))
     faces, _ = split_facets(vertices, sizes, corners)
+    for name in PLY_STRIPS:
+        lists = (columns[f"{name}.{kind}"] for kind in PLY_CORNER_LISTS if f"{name}.{kind}" in columns)
+        faces = np.concatenate([faces, *(_strip_facets(size, ends, len(vertices)) for size, ends in lists)])
     return Soup(vertices, faces, "ply", warnings=decimals.warnings)
+
+
+def _strip_facets(sizes: Ints, corners: Ints, count: int) -> Triangles:
+    """Triangles (F, 3) of strips among ``count`` corners; a corner below 0 begins the next strip.
+
+    Every other triangle runs the other way round. Ends where a corner repeats have no area, and are none.
+    """
+    if len(corners) and corners.max() >= count:
+        raise DamageError("a strip names a corner that is not there")
+    refuse_size(0, len(corners))
+    strip = np.repeat(np.arange(len(sizes)), sizes)
+    new = np.append(True, (strip[1:] != strip[:-1]) | (corners[:-1] < 0))[: len(corners)]
+    first = np.maximum.accumulate(np.where(new, np.arange(len(corners)), 0))
+    at = np.arange(max(len(corners) - 2, 0))
+    at = at[(first[at] == first[at + 2]) & (corners[at + 2] >= 0)] if len(at) else at
+    odd = (at - first[at]) % 2
+    faces = np.stack([corners[at], corners[at + 1 + odd], corners[at + 2 - odd]], axis=1)
+    return faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
 
 
 def _ply_from_bytes(data: bytes, at: int, elements: list[PlyElement], order: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import zipfile
 from array import array
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 from urllib.parse import unquote
 from xml.parsers import expat
@@ -39,8 +39,10 @@ UNITS_3MF = {  # of the specification: one of ours, and how many of it they are
     "meter": ("m", 1.0),
 }
 PART_ROLE, NEGATIVE_ROLE, MODIFIER_ROLE = "part", "negative", "modifier"
+SURFACE_ROLE = "surface"  # a part if it is closed: FreeCAD 0.20 and 0.21 call every object that
+UNDECIDED_ROLES = (PART_ROLE, SURFACE_ROLE)  # a slicer may say otherwise
 SUPPORT_ROLE, UNPRINTED_ROLE = "support", "unprintable"
-ROLES_BY_TYPE = {"model": PART_ROLE, "": PART_ROLE}  # all other types are supports
+ROLES_BY_TYPE = {"model": PART_ROLE, "": PART_ROLE, "surface": SURFACE_ROLE}  # all others are supports
 ROLE_PATTERNS = (  # pattern of what slicers call a volume, and what it is
     (re.compile(r"(?i)negative"), NEGATIVE_ROLE),
     (re.compile(r"(?i)modifier|infill_mesh|cutting_mesh"), MODIFIER_ROLE),
@@ -49,6 +51,7 @@ ROLE_PATTERNS = (  # pattern of what slicers call a volume, and what it is
 LEFT_OUT_ROLES = {  # role: noun, what is done
     SUPPORT_ROLE: ("support or helper object", "left out"),
     MODIFIER_ROLE: ("modifier", "ignored"),
+    SURFACE_ROLE: ("open surface object", "left out"),
     UNPRINTED_ROLE: ("object marked as not printable", "left out"),
 }
 UNREAD_EXTENSIONS = re.compile(r"(?i)beamlattice|boolean|securecontent|displacement|implicit|volumetric")
@@ -94,13 +97,17 @@ def read_3mf(data: bytes, where: str) -> Soup:
     with formats.open_archive(data) as archive:
         package = _Package(archive, where)
         package.place_build()
-    pieces = package.pieces
+    pieces = [_as_part(piece) if piece.role == SURFACE_ROLE else piece for piece in package.pieces]
     name = package.root.unit.strip().lower().rstrip("s").replace("metre", "meter") or "millimeter"
     if name not in UNITS_3MF:
         what = f"its unit is {quantity_text(package.root.unit)}"
         raise MeshError(where, what, f"write {' or '.join(UNITS_3MF)} there")
     unit, factor = UNITS_3MF[name]
     warnings = []
+    closed = sum(a is not b for a, b in zip(pieces, package.pieces))
+    if closed:
+        number = counted(closed, "object of type surface is closed", "objects of type surface are closed")
+        warnings.append(f"{number}: read as a part" if closed == 1 else f"{number}: read as parts")
     left_out = package.left_out + Counter(piece.role for piece in pieces if piece.role in LEFT_OUT_ROLES)
     for role, (noun, done) in LEFT_OUT_ROLES.items():
         names = dict.fromkeys(piece.name for piece in pieces if piece.role == role and piece.name)
@@ -174,7 +181,7 @@ class _Package:
         title = here.name or self.names.get((name, ""), title)
         for parent in parents[-1:]:
             title = self.names.get((parent, name), title)
-            role = self.roles.get((parent, name), role) if role == PART_ROLE else role
+            role = self.roles.get((parent, name), role) if role in UNDECIDED_ROLES else role
         for component in here.components:
             # the inner transform within the outer one
             inner = _read_transform(component)
@@ -204,7 +211,7 @@ class _Package:
             return
         for first, last in ranges:
             key = (name, str(first))
-            kind = self.roles.get(key, role) if role == PART_ROLE else role
+            kind = self.roles.get(key, role) if role in UNDECIDED_ROLES else role
             corners, own = np.unique(faces[first : last + 1], return_inverse=True)
             named = self.names.get(key, title)
             self.pieces.append(Piece3MF(named, kind, item, vertices[corners], own.reshape(-1, 3)))
@@ -314,7 +321,13 @@ class ModelReader:
                 what = f"is a 3MF in the extension {extension[0].lower()}, which is not read"
                 raise MeshError(self.where, what, "export it as plain triangles")
         if local == "vertex":
-            self.here.corners.extend((float(attributes["x"]), float(attributes["y"]), float(attributes["z"])))
+            try:
+                corner = float(attributes["x"]), float(attributes["y"]), float(attributes["z"])
+            except ValueError:
+                if any("," in attributes[axis] for axis in "xyz"):
+                    raise formats.CommaError("a comma in a number") from None
+                raise
+            self.here.corners.extend(corner)
             self._count("corners")
         elif local == "triangle":
             self.here.facets.extend((int(attributes["v1"]), int(attributes["v2"]), int(attributes["v3"])))
@@ -335,7 +348,7 @@ class ModelReader:
             self.model.unit = attributes.get("unit", "millimeter")
 
     def _take_mark(self, text: str) -> None:
-        if text.strip().lower() in ("true", "1") and self.here.role == PART_ROLE:
+        if text.strip().lower() in ("true", "1") and self.here.role in UNDECIDED_ROLES:
             self.here.role = _role(self.mark)
 
     def _count(self, what: str, most: int | None = None) -> None:
@@ -343,6 +356,13 @@ class ModelReader:
         self.size[what] += 1
         if self.size[what] > most:
             raise formats.BombError(f"has more than {most} {what}")
+
+
+def _as_part(surface: Piece3MF) -> Piece3MF:
+    """An object of type surface as a part where it is closed, else as it is."""
+    vertices, faces = topology.weld_corners(surface.vertices, surface.faces)
+    is_part = len(faces) > 0 and topology.edge_table(faces, len(vertices)).is_closed
+    return replace(surface, role=PART_ROLE) if is_part else surface
 
 
 def _role(text: str) -> str:

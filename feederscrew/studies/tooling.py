@@ -291,6 +291,7 @@ def tooling(
     An interrupt from the keyboard ends the search: the study is ``partial`` then, with the chains that were
     found; of the first orientation the first chain there is. A second one is raised.
     """
+    begun = time.monotonic()
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     looked = check.kind("search", search or ToolingSearch(), ToolingSearch, "give a ToolingSearch")
     rule = looked.rule
@@ -315,7 +316,7 @@ def tooling(
     holes = HoleSearch(
         seed=arguments.whole("seed", looked.seed, 0),
         verdicts=arguments.whole("verdicts", looked.verdicts),
-        until=time.monotonic() + arguments.amount("seconds", looked.seconds, "time", 0.0),
+        until=begun + arguments.amount("seconds", looked.seconds, "time", 0.0),
     )
     may_use = DesignConstraints(
         outcome=check.choice("outcome", outcome, OutcomeKind),
@@ -397,6 +398,8 @@ def _best(
         return best
     names = [orientation.name for orientation in lying]
     for width in designing.widths(lying, shares, wanted, request["margin"]):
+        if time.monotonic() > request["search"].until:
+            break
         if width not in tracks:
             bowl = replace(own, track=replace(own.track, width=width))
             tracks[width] = bowl, _coming(part, aspects, bowl), {}

@@ -1,5 +1,6 @@
 """Many parts: how they are named, shared out, kept and taken up again."""
 
+import hashlib
 import json
 import os
 import re
@@ -304,6 +305,82 @@ def test_resume_says_how_many_it_computes_and_why(tmp_path, three, monkeypatch):
     ran(three[2:], out, workers=Here())
     away.rename(three[2].source)
     assert stale(three[2:]) == {"failed for want of its file or of memory": 1}
+
+
+def test_a_folder_is_read_one_folder_deeper_or_what_is_left_out_is_said(tmp_path):
+    tree = tmp_path / "parts"
+    for name in ("left/nut.stl", "right/nut.stl", "right/bolt.stl", "right/deeper/pin.stl", ".git/no.stl"):
+        (tree / name).parent.mkdir(parents=True, exist_ok=True)
+        block(tree / name, 1.0, 2.0, 3.0)
+
+    def names():
+        return [Path(r.source).relative_to(tree).as_posix() for r in batch.gather([str(tree)])]
+
+    assert names() == ["left/nut.stl", "right/bolt.stl", "right/nut.stl"]
+    (said,) = batch.find_folders_within([str(tree)])
+    assert said == f"{tree}: holds no part itself: read 3 parts in 2 folders of it"
+    block(tree / "own.stl", 1.0, 2.0, 3.0)
+    assert names() == ["own.stl"]
+    (said,) = batch.find_folders_within([str(tree)])
+    assert said.endswith(f": 3 parts in 2 folders of it left out - add '{tree}/*/*.stl'")
+    assert batch.find_folders_within([str(tree / "right"), str(tree / "own.stl")])[0].startswith(
+        f"{tree}/right"
+    )
+    assert batch.find_folders_within([str(tree / "left")]) == ()
+
+
+def test_rows_of_equal_names_have_their_folder():
+    paths = ["1/a/nut.stl", "2/a/nut.stl", "bolt.stl", "3/b/bolt.stl", "pin.stl"]
+    requests = [task.Request(path, task.Conditions("bowl", None, ())) for path in paths]
+    rows = summary.rows(SimpleNamespace(), requests, finished=set())
+    assert [row["part"] for row in rows] == [
+        "1/a/nut.stl",
+        "2/a/nut.stl",
+        "bolt.stl",
+        "b/bolt.stl",
+        "pin.stl",
+    ]
+
+
+FORGED = {
+    "rate": lambda record: record["row"].update(
+        parts_per_minute=99999.0, parts_per_minute_low=53.9, parts_per_minute_high=86.7
+    ),
+    "text": lambda record: record["row"].update(mass_g="x"),
+    "negative": lambda record: record["row"].update(parts_per_minute=-1.0, parts_per_minute_low=-2.0),
+    "list": lambda record: record.update(row=[]),
+    "null": lambda record: record.update(row=None),
+    "inputs": lambda record: record.update(inputs=["a"]),
+    "files": lambda record: record.update(files=[]),
+    "warnings": lambda record: record.update(warnings=[{}]),
+    "status": lambda record: record.update(status=3),
+    "missing": lambda record: record.pop("key"),
+}
+
+
+def test_resume_believes_no_record_that_was_changed(tmp_path, three):
+    """A record of 99,999 parts a minute beside 53.9 to 86.7 went into the summary; others were tracebacks."""
+    out = tmp_path / "out"
+    ran(three, out, workers=Here())
+    path = out / "parts/a/run.json"
+    whole, choices = path.read_text(), batch.Choices(rule="closed", pictures=False)
+    for name, forge in FORGED.items():
+        for is_signed in (False, True):
+            document = json.loads(whole)
+            record = document["batch"]
+            forge(record)
+            if is_signed:
+                record.pop("digest")
+                record["digest"] = hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()
+            path.write_text(json.dumps(document))
+            stale = batch.count_stale(three, out, choices)
+            assert stale == {"results changed or incomplete": 1}, (name, is_signed)
+    for text in ("[]", "null", '{"batch": null}', "[" * 4000, ""):
+        path.write_text(text)
+        assert batch.count_stale(three, out, choices) == {"results changed or incomplete": 1}, text[:9]
+    again = Here()
+    assert ran(three, out, workers=again, resume=True).reused == 2 and again.done == ["a"]
+    assert path.read_text() == whole
 
 
 def test_tables_stay_until_new_ones_are_there_and_what_a_killed_run_left_is_put_back_or_cleared(

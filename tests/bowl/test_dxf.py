@@ -68,7 +68,7 @@ def test_rings_come_back_as_they_were_written(rings, caplog):
     # Its own lines stood on stderr beside the answer: 'Found non-unique entity handle'.
     few = (Path(__file__).parents[1] / "fuzz/few.dxf").read_text()
     start, end = few.index("0\nLWPOLYLINE"), few.rindex("0\nENDSEC")
-    assert len(rings(few[:end] + few[start:end] + few[end:], "CUT")) == 2
+    assert len(rings(few[:end] + few[start:end] + few[end:], "CUT")) == 1
     assert caplog.records == []
 
 
@@ -210,6 +210,7 @@ def fitted(space, look):
 
 REFUSED = {
     "open": (line((0, 0), (4, 0), (4, 4)), "open"),
+    "gap": (line((0, 0), (4, 0), (4, 4), (0, 0.03)), "open"),
     "branches": (line((0, 0), (4, 0), (4, 4), (4, 0), (9, 9)), "branches"),
     "a tail": (line((0, 0), (4, 0), (4, 4), (0, 0), (-1, -1)), "open"),
     "not flat": (line((0, 0, 0), (4, 0, 0), (4, 4, 1), (0, 0, 0)), "not flat"),
@@ -239,6 +240,52 @@ def test_several_outlines_and_corners_on_a_straight_side(drawn):
 
     _, corner = drawn(draw)
     assert len(corner) == 3 and area(corner) == pytest.approx(4.5)
+
+
+def slot_twice(space, look):
+    """A slot of lines and arcs, each drawn twice, once the other way."""
+    for _ in range(2):
+        slot_of_lines(space, look)
+    space.add_line((8.5, 0), (0, 0), dxfattribs=look)
+
+
+def slot_with_gaps(space, look):
+    """A slot whose arcs end 5 um before its lines."""
+    for start, end in (((0.005, 0), (8.495, 0)), ((8.495, 3.5), (0.005, 3.5))):
+        space.add_line(start, end, dxfattribs=look)
+    space.add_arc((8.5, 1.75), 1.75, -90, 90, dxfattribs=look)
+    space.add_arc((0, 1.75), 1.75, 90, 270, dxfattribs=look)
+
+
+def slot_outlined_twice(space, look):
+    """A slot as a polyline, and as lines and arcs that begin elsewhere."""
+    slot(space, look)
+    slot_of_lines(space, look)
+
+
+@pytest.mark.parametrize(
+    ("draw", "doubled", "gap"),
+    [(slot_of_lines, 0, 0.0), (slot_twice, 5, 0.0), (slot_outlined_twice, 1, 0.0), (slot_with_gaps, 0, 5e-6)],
+)
+def test_what_is_drawn_twice_or_with_small_gaps_is_read(drawn, tmp_path, draw, doubled, gap):
+    (ring,) = drawn(draw)
+    assert area(ring) == pytest.approx(SLOT, abs=0.03)
+    read = dxf.outlines(tmp_path / "drawn.dxf", "HOLE", "bowl.yaml:3")
+    assert (read.doubled, read.gap) == (doubled, pytest.approx(gap, rel=1e-6))
+    path = tmp_path / "bowl.yaml"
+    text = "track: {width: 400 mm, radius: 500 mm}\ndevices:\n  - cut_out: {dxf: drawn.dxf, layer: HOLE}\n"
+    path.write_text(text)
+    said = "".join(bowls.remarks(bowls.settings(path)))
+    assert ("drawn twice" in said) is (doubled > 0) and ("gaps up to 0.005 mm" in said) is (gap > 0.0)
+
+
+def test_a_drawing_without_a_header_is_in_millimetres(rings):
+    """As OpenSCAD 2021.01 writes it; the library that reads it supplies metres."""
+    corners = [(10, 5), (20, 5), (20, 10), (10, 10)]
+    sides = zip(corners, corners[1:] + corners[:1])
+    lines = "".join(f"0\nLINE\n8\nHOLE\n10\n{a}\n20\n{b}\n11\n{c}\n21\n{d}\n" for (a, b), (c, d) in sides)
+    (ring,) = rings(f"0\nSECTION\n2\nENTITIES\n{lines}0\nENDSEC\n0\nEOF\n")
+    assert area(ring) == pytest.approx(50.0)
 
 
 def test_only_a_file_of_some_size_is_read(tmp_path):

@@ -209,6 +209,14 @@ def test_only_what_the_trial_does_not_deny_is_tried_with_more_and_purity_denies(
     assert document["purity"] == one.purity
 
 
+def test_no_trial_begins_after_the_limit(monkeypatch, study, single):
+    """Parts were sent through three proposals after the time was over: a limit of 25 s took 40."""
+    calls = single[0]
+    late = tooling_trials.try_designs(study, until=-np.inf)
+    assert late.trials == () and not calls and not late.partial
+    assert len(tooling_trials.try_designs(study, until=np.inf).trials) == 1
+
+
 def test_what_is_printed_is_the_trials_and_a_least_without_one(study):
     found, place = study.design, study.wanted
     whole, half = found.efficiency, 0.5 * found.efficiency

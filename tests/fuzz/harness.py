@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from fuzz import mutate, readers, together
+from fuzz import mutate, readers, together, valid
 
 ROOT = Path(__file__).parent.parent.parent
 PATIENCE = 10.0  # [s] of computing for one input
@@ -44,12 +44,14 @@ BESIDE = {  # files that lie beside the damaged one, whole
 }
 PARTLY = ("batch",)  # commands that keep what went well beside what failed
 TOGETHER = "together"  # the kind of case in which a part, a bowl and the options are damaged at once
-KINDS = (*PLAN, *readers.READERS, TOGETHER)
+DAMAGED = {f"odd {name.removeprefix('valid ')}": name for name in valid.MAKERS}  # valid files, damaged
+KINDS = (*PLAN, *readers.READERS, *valid.MAKERS, *DAMAGED, TOGETHER)
 ROUND = 50  # inputs of one kind at a time
 QUICK = {  # of readers, so that each takes some seconds
     "read stl": 1500, "read open stl": 1500, "read bowl": 300, "read verified": 300,
     "read card": 300, "read names": 300, "read cache": 2000, "read obj": 500, "read ply": 500,
     "read off": 500, "read glb": 200, "read 3mf": 500, "read 3mf model": 500,
+    **dict.fromkeys(valid.MAKERS, 300), **dict.fromkeys(DAMAGED, 300),
     "read counts": 4000, "read list": 2000, "read launches": 4000, "read dxf": 1000,
 }  # fmt: skip
 
@@ -66,6 +68,15 @@ class Case:
         rng = np.random.default_rng(self.seed)
         if self.kind == TOGETHER:
             return together.job(ROOT, rng)
+        if self.kind in valid.MAKERS:
+            file = valid.make(self.kind, rng)
+            return {file.name: file.data, **file.beside}, ["valid", file.name]
+        if self.kind in DAMAGED:
+            first, second = (valid.make(DAMAGED[self.kind], rng) for _ in range(2))
+            return {first.name: mutate.mutated(first.data, second.data, rng), **first.beside}, [
+                "odd",
+                first.name,
+            ]
         if self.kind in readers.READERS:
             seeds, name, _ = readers.READERS[self.kind]
             calls = ["read FILE"]
@@ -131,7 +142,7 @@ def _warm():
     from feederscrew.studies import aspects
 
     aspects.MAX_DROPS = arrival.FIRST_PARTS = arrival.MAX_ARRIVALS = arrival.LONGER_TIME_PARTS = 20
-    for kind in (*PLAN, *readers.READERS):
+    for kind in (*PLAN, *readers.READERS, *valid.MAKERS):
         fault(Case(kind, 0))
 
 
@@ -164,6 +175,11 @@ def fault(case):
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         for name, data in files.items():
             Path(name).write_bytes(data)
+        if command == "valid":
+            file = valid.make(case.kind, np.random.default_rng(case.seed))
+            return readers.outcome(valid.fault, file)
+        if command == "odd":
+            return readers.outcome(valid.read, *rest)
         if command in ("read", "gather"):
             return readers.fault(case.kind if command == "read" else "read list", *rest)
         return _called([command, *rest])

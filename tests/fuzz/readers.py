@@ -121,15 +121,24 @@ READERS = {  # seeds, how the damaged file is called, and what reads it
 
 def fault(kind, name):
     """What is wrong with how a reader takes a file of the working folder; '' if nothing is."""
+    return outcome(READERS[kind][2], name)
+
+
+def outcome(read, argument):
+    """What is wrong with a call: what it says, a traceback, or a warning of Python's; '' if nothing is."""
     from feederscrew.errors import FeederError
+
+    said = ""
 
     with warnings.catch_warnings(record=True) as noise:
         warnings.simplefilter("always")
         try:
-            READERS[kind][2](name)
+            said = read(argument)
         except FeederError as told:
             if not all(": " in line and " - " in line for line in told.lines):
                 return f"no place or no mend: {told}"
         except Exception:  # noqa: BLE001 - any other is what is looked for
             return traceback.format_exc()
-    return f"Python warns: {noise[0].message} ({noise[0].filename}:{noise[0].lineno})" if noise else ""
+    if noise:
+        return f"Python warns: {noise[0].message} ({noise[0].filename}:{noise[0].lineno})"
+    return said if isinstance(said, str) else ""

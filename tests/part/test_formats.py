@@ -9,6 +9,7 @@ import time
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import part_files as files
 import pytest
 import trimesh
@@ -16,7 +17,7 @@ from readings import AGAIN, BOX, archived, exported, loaded, mm3, refused, zippe
 
 from feederscrew import bowl
 from feederscrew.errors import FeederError, MeshError
-from feederscrew.part import load, loading, scenes
+from feederscrew.part import load, loading, step
 from feederscrew.part.formats import detect_format
 
 BOLT = Path(__file__).parents[2] / "parts/hexbolt_m8x25.step"
@@ -192,6 +193,26 @@ def test_facets_of_several_sizes_keep_their_outline(name):
     assert part.warnings == ()
 
 
+@pytest.mark.parametrize("order", ["ascii", "binary_little_endian", "binary_big_endian"])
+def test_strips_of_ply(order):
+    """Strips, each begun by -1 or a row of its own; each other triangle runs the other way round."""
+    # a box of 10 x 6 x 4: round its walls, and each cap
+    corners = [(x, y, z) for z in (0.0, 4.0) for x, y in ((0, 0), (10, 0), (10, 6), (0, 6))]
+    walls, caps = [4, 0, 5, 1, 6, 2, 7, 3, 4, 0], [0, 3, 1, 2, -1, 4, 5, 7, 6]
+    head = (
+        f"ply\nformat {order} 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+        "element tristrips 2\nproperty list int int vertex_indices\nend_header\n"
+    )
+    rows = [len(walls), *walls, len(caps), *caps]
+    if order == "ascii":
+        data = (head + " ".join(map(str, (*(c for row in corners for c in row), *rows)))).encode()
+    else:
+        end = "<" if "little" in order else ">"
+        data = head.encode() + np.array(corners, end + "f4").tobytes() + np.array(rows, end + "i4").tobytes()
+    part = loaded(data)
+    assert (mm3(part), len(part.faces), part.warnings) == (pytest.approx(240.0), 12, ())
+
+
 def test_a_concave_quadrilateral_is_split_within_its_outline():
     arrow = [(0, 0), (8, 4), (0, 8), (3, 4)]  # the last corner points inwards; area 20
     corners = [(x, y, z) for z in (0, 5) for x, y in arrow]
@@ -220,6 +241,8 @@ TEXTS = {
     "off, commas": (off().replace("10 0 0", "10,0 0 0", 1), "comma"),
     "ply, commas": (ply("ascii").replace("10 255", "10,0 255", 1), "comma"),
     "obj from 0": (obj(0), "from 0"),
+    "fortran": (text_stl().replace("10.000", "1.0D+01").replace("6.000", "0.6d1"), "exponents of D"),
+    "obj, fortran": (obj(1).replace("v 10 0 0", "v 1D1 0 0"), "exponents of D"),
 }
 
 
@@ -261,6 +284,15 @@ NO_MESH = "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP"
 STL, ASCII = files.binary_stl(BOX), files.ascii_stl(BOX)
 GLB, PLY = exported("glb", BOX / 1000), exported("ply")
 AS_UTF8 = "is text in UTF-16 - save it as ASCII or UTF-8 text"
+OF_CAD = (  # heads of files that are no mesh, and what they are
+    (b"DBRep_DrawableShape\n\nCASCADE Topology V1, (c) Matra-Datavision\n", "a BREP file"),
+    (b"\nOpen CASCADE Topology V3 (c)\n\0\1", "a BREP file"),
+    (b"part".ljust(72) + b"S      1\n1H,,1H;,4Hpart".ljust(75) + b"G      1\n", "an IGES file"),
+    (b"**ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz****\n", "a Parasolid file"),
+    (b"400 0 1 0\n16 Autodesk AutoCAD 19 ASM 221 0 24 Mon\n", "an ACIS file (SAT)"),
+    (b"Version 9.5 JT  DM 6.0.0.0".ljust(80) + bytes(20), "a JT file"),
+    (b"#VRML V2.0 utf8\nShape{}\n", "a VRML file"),
+)
 UTF16 = ("utf-16", "utf-16-le", "utf-16-be")  # the first opens with a mark
 SHORT, NO_FACETS = "is cut short:", "has no facets - export the part again as a solid"
 POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:%s\nsize 120484\n" % (b"0" * 64)
@@ -295,12 +327,15 @@ HEAD = (
         (b"\x89PNG\r\n\x1a\n" + bytes(200), f"is a picture, not a part - {NO_MESH}"),
         *((ASCII.decode().encode(code), AS_UTF8) for code in UTF16),
         (files.obj(BOX).decode().encode("utf-16"), AS_UTF8),
+        *((ASCII.decode().encode(code), AS_UTF8.replace("16", "32")) for code in ("utf-32", "utf-32-be")),
+        *((head, f"is {kind}, which is not read - {NO_MESH}") for head, kind in OF_CAD),
+        (b"  0\nSECTION\n  2\nENTITIES\n", f"is a DXF file, a drawing and not a part - {NO_MESH}"),
         (ASCII[:1000] + bytes(100) + ASCII[1100:], f"is ASCII STL with NUL bytes in the middle - {NO_MESH}"),
         (b"%PDF-1.7\n" + bytes(200), f"is a PDF document, not a part - {NO_MESH}"),
         (b"PK\x03\x04" + bytes(200), f"is a ZIP archive without a 3MF model - {NO_MESH}"),
         (b"\xd0\xcf\x11\xe0" + bytes(200), f"is a native CAD or Office file, which is not read - {NO_MESH}"),
         (b'{"asset": {}}', f"is a JSON file (glTF is read as .glb only) - {NO_MESH}"),
-        (GLB[:200], f"is a damaged GLB: it announces more than it holds - {AGAIN}"),
+        (GLB[:200], f"is a damaged GLB (it announces more than it holds) - {AGAIN}"),
         (PLY.replace(b"element vertex 8", b"element vertex 4000000000"),
          f"is a damaged PLY (it announces more than it holds) - {AGAIN}"),
         (exported("off").replace(b"8 12 0", b"4000000000 12 0"), None),
@@ -325,8 +360,8 @@ def test_paths_without_a_part(tmp_path):
 
 
 def test_missing_extra_is_named(tmp_path, monkeypatch):
-    find = scenes.importlib.util.find_spec
-    monkeypatch.setattr(scenes.importlib.util, "find_spec", lambda m: None if m == "cascadio" else find(m))
+    find = step.importlib.util.find_spec
+    monkeypatch.setattr(step.importlib.util, "find_spec", lambda m: None if m == "cascadio" else find(m))
     line = 'STEP needs cascadio, not installed - pip install "feederscrew[step]"'
     assert refused((PARTS / "hexbolt_m8x25.step").read_bytes()) == line
 
@@ -405,17 +440,9 @@ def test_a_bug_of_ours_is_not_told_as_a_damaged_file(monkeypatch, format, fault)
         raise fault("module 'x' has no attribute 'y'")
 
     monkeypatch.setattr("feederscrew.part.mesh_formats.split_facets", broken)
-    monkeypatch.setattr("feederscrew.part.scenes.refuse_size", broken)
+    monkeypatch.setattr("feederscrew.part.glb.refuse_size", broken)
     with pytest.raises(fault, match="has no attribute"):
         load("-", stdin=io.BytesIO(exported(format)))
-
-
-def test_what_trimesh_raises_of_any_class_is_a_damaged_file(monkeypatch):
-    def broken(*_, **__):
-        raise AttributeError("'NoneType' object has no attribute 'faces'")
-
-    monkeypatch.setattr("trimesh.load_scene", broken)
-    assert refused(GLB) == f"is a damaged GLB (its scene does not fit what it holds) - {AGAIN}"
 
 
 def scene(count, nodes, binary=bytes(1200), **accessor):
@@ -446,8 +473,8 @@ def test_claims_of_a_header_are_refused_in_a_line(data):
 
 @pytest.mark.needs("cascadio")
 def test_a_step_file_that_takes_too_long_is_refused(monkeypatch):
-    monkeypatch.setattr(scenes, "STEP_TIMEOUT_S", 1)
-    monkeypatch.setattr(scenes, "CONVERT_STEP_SCRIPT", "import time; time.sleep(30)")
+    monkeypatch.setattr(step, "STEP_TIMEOUT_S", 1)
+    monkeypatch.setattr(step, "CONVERT_STEP_SCRIPT", "import time; time.sleep(30)")
     assert refused(b"ISO-10303-21;") == f"is a damaged STEP (not converted within 1 s) - {AGAIN}"
 
 
@@ -471,7 +498,7 @@ def test_a_stream_without_end_is_given_up_at_half_a_gigabyte(monkeypatch):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for it")
 def test_the_converter_of_step_ends_with_its_parent():
-    waits = scenes.CONVERT_STEP_SCRIPT.partition("import cascadio")[0]
+    waits = step.CONVERT_STEP_SCRIPT.partition("import cascadio")[0]
     waits += "print(1, flush=True); import time; time.sleep(50)"
     parent = (
         "import subprocess, sys, time;"

@@ -98,6 +98,9 @@ def beside(kind="model", more="", mark="", item=2):
         (prusa("SupportBlocker"), 240.0, "support"),
         *((beside(kind, 'name="tree"'), 240.0, "support|'tree'") for kind in NO_PARTS),
         (beside(mark=CURA.format("True")), 240.0, "support"),
+        (beside("surface", mark=CURA.format("True")), 240.0, "support"),
+        (package(thing(1, mesh(BLOCK), "surface")), 240.0, "type surface|read as a part"),  # of FreeCAD 0.20
+        (package(thing(1, mesh(BLOCK)), thing(2, mesh(PIN[1:]), "surface"), built=(1, 2)), 240.0, "open sur"),
         (beside(item='<item objectid="2" printable="0"/>'), 240.0, "not printable"),
     ],
 )  # fmt: skip
@@ -150,11 +153,14 @@ def test_a_unit_as_people_write_it(unit, size):
                  others={SETTINGS: OPEN}), "negative|CAD"),
         (package(thing(1, mesh(BLOCK).replace("</mesh>", BEAMS))), "beamlattice"),
         *((package(thing(1, mesh(BLOCK)), unit=unit), "unit") for unit in ("furlong", "mil", "\u202emm")),
+        (package(thing(1, mesh(BLOCK[1:]), "surface")), "no facets|open surface"),
+        (package(thing(1, mesh(BLOCK).replace('x="10.0"', 'x="10,0"'))), "comma|decimal point"),
         (package(thing(1, mesh(BLOCK)), head=ENTITY), "document type"),
         (package(thing(1, mesh(BLOCK) + MANY)), "kinds of elements"),
         (package(thing(1, mesh(BLOCK) + " " * 30_000_000)), "times its size"),
     ],
-    ids=["supports alone", "bodies", "open negative", "extension", "furlong", "mil", "bidi", "entities",
+    ids=["supports alone", "bodies", "open negative", "extension", "furlong", "mil", "bidi", "open surface",
+         "commas", "entities",
          "names", "packed"],
 )  # fmt: skip
 def test_projects_that_are_refused(data, words):

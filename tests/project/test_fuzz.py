@@ -4,10 +4,11 @@ from types import SimpleNamespace
 
 import pytest
 from fuzz import __main__ as runs
-from fuzz import harness, mutate, readers
+from fuzz import harness, mutate, readers, valid
 
 COUNTS = {"stl": 15, "bowl": 25, "card": 30, "counts": 30, "names": 12, "list": 80, "batch": 3, "dxf": 40}
 COUNTS |= dict.fromkeys(readers.READERS, 60)
+COUNTS |= dict.fromkeys(valid.MAKERS, 60) | dict.fromkeys(harness.DAMAGED, 60)
 PAST = (  # seeds that were at fault once
     (harness.TOGETHER, 1856),  # a corner beyond any bowl, whose square overflowed
     ("list", 1795355655052),  # a name that no disk can hold: asking whether it is a folder was refused
@@ -21,7 +22,7 @@ def test_damaged_files_give_a_line_and_never_a_traceback(kind):
 
 
 def test_every_kind_is_tried_and_what_was_at_fault_once_is_again():
-    assert {*harness.PLAN, *readers.READERS} == set(COUNTS)
+    assert {*harness.KINDS} - {harness.TOGETHER} == set(COUNTS)
     assert harness.run(harness.Case(*case) for case in PAST) == []
 
 

@@ -3,11 +3,14 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from feederscrew import units
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ConfigError
+
+if TYPE_CHECKING:
+    from feederscrew.dxf import Outlines
 
 Corner = tuple[float, float]  # [m]
 CORNER_ADVICE = "write [9 mm, 8 mm]"
@@ -138,8 +141,10 @@ def polygon(entry: Entry) -> dict[str, Any]:
             count = f"holds {len(read.rings)} closed polylines"
             what = f"layer {units.quantity_text(layer)} of {path.name} {count}"
             raise ConfigError(arguments["layer"].value.where, what, "give each cut_out a layer of its own")
-        what = f"{node.where}: {units.printable(path.name)} names no unit ($INSUNITS), read in mm"
-        corners, assumption = read.rings[0], "" if read.has_unit else f"{what} - save it in millimetres"
+        corners, assumption = (
+            read.rings[0],
+            _remark_on_drawing(read, f"{node.where}: {units.printable(path.name)}"),
+        )
     where, kind = entry.value.where, entry.key
     if len(corners) < 3:
         raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
@@ -154,6 +159,21 @@ def polygon(entry: Entry) -> dict[str, Any]:
     if abs(twice) <= 1e-9 * size**2:
         raise ConfigError(where, f"{kind} has no area", "move a corner off the line through the others")
     return {"corners": tuple(corners), "assumption": assumption}
+
+
+def _remark_on_drawing(read: "Outlines", name: str) -> str:
+    """What was taken for granted of a drawing, in a line; '' of nothing."""
+    remarks = []
+    if not read.has_unit:
+        remarks.append(("names no unit ($INSUNITS), read in mm", "save it in millimetres"))
+    if read.doubled:
+        remarks.append(
+            (f"has {units.counted(read.doubled, 'line')} drawn twice, read once", "delete doubles")
+        )
+    if read.gap:
+        remarks.append((f"has gaps up to {1e3 * read.gap:.2g} mm, joined", "let the ends of lines meet"))
+    facts, mends = (", and ".join(column) for column in zip(*remarks)) if remarks else ("", "")
+    return f"{name} {facts} - {mends}" if remarks else ""
 
 
 def opening(entry: Entry) -> dict[str, Any]:
