@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from feederscrew.designing import (
     calm_drive,
     exploring,
     hazards,
+    long_proof,
     nearest,
     proposals,
     queues,
@@ -22,7 +23,7 @@ from feederscrew.designing import (
 )
 from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind
-from feederscrew.designing.progress import Progress, SearchProgress, SearchStage
+from feederscrew.designing.progress import Progress, SearchProgress, SearchStage, TrialBudget
 from feederscrew.designing.record import (
     DRAWS_HELD,
     RATE_KEPT,
@@ -31,6 +32,7 @@ from feederscrew.designing.record import (
     DesignRequest,
     DesignStudy,
     NearestDesign,
+    ProofKind,
     RobustRun,
 )
 from feederscrew.designing.search import Candidate, Search
@@ -44,7 +46,7 @@ from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating import chain as static
 from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.trial.fills import FilledQueue
+from feederscrew.trial.fills import FedRow, FilledQueue
 from feederscrew.trial.long_ride import long_ride
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.wanted import wanted_rows
@@ -109,8 +111,13 @@ def design(
                 _prove_whole(search, proofs, likeliest, None)
     except KeyboardInterrupt:
         return replace(_list_alternatives(search, proofs, classes, _best(search, proofs)), partial=True)
-    best = _list_alternatives(search, proofs, classes, nearby or _best(search, proofs))
-    if any(study.partial for study, _ in proofs):  # which of them it is
+    chosen = nearby or _best(search, proofs)
+    if chosen.status in HELD and not any(study.partial for study, _ in proofs):
+        shown = prove_long(chosen, said)
+        proofs[:] = [(shown if study is chosen else study, candidate) for study, candidate in proofs]
+        chosen = shown
+    best = _list_alternatives(search, proofs, classes, chosen)
+    if best.partial or any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
     return best if best.status in HELD else replace(best, nearest=near)
 
@@ -295,13 +302,20 @@ def prove_design(
     if robust.partial or not (whole or robust.share >= DRAWS_HELD):
         return study
     # queues; parts that touch on their way come as they enter the track
-    line = queues.FollowedRow(
+    row = FedRow(
         search.part, candidate.bowl, shares.aspects, oriented, candidate.weights,
         candidate.trial.states, proposal.any_heading, ride.entering,
-        seed=request.seed, tell=search.tell, least=RATE_KEPT * request.target,
-        longest=longest_time(request.target) if longest is None else longest,
-        progress=search.run(SearchStage.QUEUE).progress, jobs=request.jobs,
     )  # fmt: skip
+    study = replace(study, row=row)
+    line = queues.FollowedRow(
+        *(getattr(row, each.name) for each in fields(row)),
+        seed=request.seed,
+        tell=search.tell,
+        least=RATE_KEPT * request.target,
+        longest=longest_time(request.target) if longest is None else longest,
+        progress=search.run(SearchStage.QUEUE).progress,
+        jobs=request.jobs,
+    )
     try:
         search.tell(f"queue: {name}, {proposal.sentence}")
         study = _with_queues(study, queues.follow_fills(line, whole=whole))
@@ -313,6 +327,40 @@ def prove_design(
         wanted_orientation, candidate.bowl, study.queues, orientations=frequent, seed=request.seed
     )
     return replace(study, risks=risks)
+
+
+def prove_long(study: DesignStudy, said: SearchProgress) -> DesignStudy:
+    """Return a design that holds with the queues of a long proof, where one is asked for.
+
+    Parameters
+    ----------
+    study : DesignStudy
+        That holds, with the row of parts that was fed into its queues.
+    said : SearchProgress
+        Whom it tells how far it is.
+
+    Returns
+    -------
+    DesignStudy
+        Its queues are those of the long proof: it may fall short by them. It is as it was where no long proof
+        is asked for, and partial where the user stopped it.
+
+    Raises
+    ------
+    FeederError
+        If a process ends over a run.
+    """
+    request = study.request
+    if request.proof is not ProofKind.LONG or study.row is None:
+        return study
+    budget = TrialBudget([*study.attempts], request.budget, request.draws)
+    run = said.watch(request.run, SearchStage.LONG_PROOF, budget)
+    plan = long_proof.LongPlan.to_show(request.agreed_jams)
+    try:
+        fills = long_proof.follow_long(study.row, plan, request.agreed_jams, run, said.tell)
+    except KeyboardInterrupt:
+        return replace(study, partial=True)
+    return _with_queues(study, fills)
 
 
 def _with_queues(study: DesignStudy, fills: tuple[FilledQueue, ...]) -> DesignStudy:
