@@ -281,6 +281,10 @@ def prove_design(
             weights = np.nan_to_num(oriented.rules[request.rule])
             candidate = replace(candidate, orientations=oriented, weights=weights / weights.sum())
             shares = own
+    # what may come more often than is known passes by the devices, or does not
+    known = replace(candidate.trial, orientations=candidate.orientations, shares=candidate.weights)
+    tried = exploring.try_untried(search, candidate.bowl, known, candidate.weights, candidate.proposal)
+    candidate = replace(candidate, trial=tried)
     # a ride along the track to the tooling, where another mix arrives
     search.tell(f"{name}: a few parts of each orientation on the bare track, up to the tooling")
     oriented, proposal = candidate.orientations, candidate.proposal
@@ -326,7 +330,8 @@ def prove_design(
     risks = hazards.risks(
         wanted_orientation, candidate.bowl, study.queues, orientations=frequent, seed=request.seed
     )
-    return replace(study, risks=risks)
+    seldom = hazards.seldom_risks(candidate.trial, search.highest_shares(oriented), study.queues)
+    return replace(study, risks=(*risks, *seldom))
 
 
 def prove_long(study: DesignStudy, said: SearchProgress) -> DesignStudy:

@@ -21,7 +21,7 @@ from feederscrew.designing.fill_verdicts import (
     longest_time,
     shows_purity,
 )
-from feederscrew.designing.findings import Cause, Fault, FaultKind, Hooking, Move
+from feederscrew.designing.findings import Cause, Fault, FaultKind, Hooking, Move, SeldomPart
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.records import ReadableRecord
@@ -210,23 +210,26 @@ class Pair:
 
 
 class RiskKind(enum.StrEnum):
-    """In which way parts may hinder each other; files print the word."""
+    """In which way parts may hinder each other, or do what they should not; files print the word."""
 
     SHINGLES = "shingles"
     CLIMBS = "climbs"
     HOOKS = "hooks"
     NESTS = "nests"
     WEDGES = "wedges"
+    LEAVES = "leaves"  # in another orientation than is wanted
+    STANDS = "stands"  # at a device
 
 
 @dataclass(frozen=True, eq=False)
 class Risk:
-    """What may go wrong between parts."""
+    """What may go wrong between parts, or with one that comes seldom."""
 
     kind: RiskKind
     text: str
     pair: Pair | None = None  # what is drawn of it
     hooking: Hooking | None = None  # of parts that hook
+    seldom: SeldomPart | None = None  # of one that leaves or stands
 
 
 @dataclass(frozen=True, eq=False)
