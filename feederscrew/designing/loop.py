@@ -377,6 +377,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
     bowl, oriented, weights = candidate.bowl, candidate.orientations, candidate.weights
     request, proposal, name = search.request, candidate.proposal, candidate.attempt.wanted
     own = candidate.attempt.aspect.casefold()
+    wanted = " or ".join((name, *(aspect for aspect in request.up if aspect.casefold() != own)))
     gain = short_trials.gain(oriented, weights, candidate.trial.states)
     tooling = None
     if proposal.cuts:  # its chain as `feeder tooling` would have found it
@@ -390,12 +391,13 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         tooling = ToolingStudy(
             search.part, bowl, shares.aspects, request.rule, margin, oriented.lying, weights,
             tuple(static_design if k == row else None for k in range(len(weights))), row, request.up,
+            state=wanted,
         )  # fmt: skip
     return DesignStudy(
         part=search.part,
         request=request,
         bowl=bowl,
-        wanted=" or ".join((name, *(aspect for aspect in request.up if aspect.casefold() != own))),
+        wanted=wanted,
         wanted_aspect=candidate.attempt.aspect,
         turn=proposal.row,
         cuts=proposal.cuts,
