@@ -500,6 +500,7 @@ def trial_of(study: DesignStudy) -> Verified | None:
         study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
         fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part), study.outcome,
         "" if study.worst_fill is None else study.worst_fill.fill, study.condition,
+        study.purity[1],
     )  # fmt: skip
 
 
