@@ -74,6 +74,13 @@ REQUEST = (  # what shall leave, and what may be used
         "Jams that the buyer tolerates: what acceptance.csv demands.",
         positive=True,
     ),
+    options.choice(
+        "--proof",
+        ["usual", "long"],
+        default="usual",
+        text="How long the design that holds is followed. 'long': until --agreed-jams is shown, hours of "
+        "computing; started again it goes on where it was.",
+    ),
     options.whole(
         "--draws",
         1,
@@ -90,7 +97,7 @@ OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_m
 
 @grouped.command(
     short_help="From a part and a rate to a bowl that its own trial confirms.",
-    rare=("heading", "budget", "draws", "tolerance", "agreed_jams"),
+    rare=("heading", "budget", "draws", "tolerance", "agreed_jams", "proof"),
 )
 @options.part
 @click.argument("more_parts", metavar="[PART...]", nargs=-1, type=options.FILE)

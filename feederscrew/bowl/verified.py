@@ -89,6 +89,7 @@ class Verified:
     outcome: str = ""  # LYING or HANGING; '' where the file does not say
     fill: str = ""  # the worst one, of which rate and purity are; '' where the file does not say
     condition: str = ""  # under which it holds, what meets it and what to change; '' of any other status
+    purity_low: float | None = None  # [1] lower bound of the purity (one-sided, 95 %); None where not said
 
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
         """Say what is other than was tried, a sentence each; nothing where the block holds.
@@ -301,11 +302,15 @@ def _contradictions(block: Verified) -> Iterator[str]:
         "less than the target was delivered": not block.target > 0.0
         or block.low < enough * RATE_KEPT * block.target,
         f"the purity is below {100.0 * PURE:.3g} %": (block.purity or 0.0) < enough * PURE,
+        f"no purity above {100.0 * SHOWN_PURITY:.3g} % is shown": block.purity_low is not None
+        and block.purity_low < enough * SHOWN_PURITY,
         "there were jams": block.jams > 0,
         "too few draws held": block.held < DRAWS_HELD * block.draws or not block.draws,
     }
     why = " and ".join(text for text, is_so in shortfalls.items() if is_so)
     if block.status in HELD and why:
         yield f"its status is '{block.status}', and {why}"
+    if block.purity_low is not None and block.purity_low > (block.purity or 0.0) / enough:
+        yield "purity_low is more than the purity"
     if block.condition and block.status != Status.HOLDS_SINGLE:
         yield f"its status is '{block.status}', and it has a condition under which it holds"

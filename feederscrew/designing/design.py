@@ -19,7 +19,7 @@ from feederscrew.designing import families, loop
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.nearest import nearest_from_study
-from feederscrew.designing.record import DesignRequest, DesignStudy
+from feederscrew.designing.record import DesignRequest, DesignStudy, ProofKind
 from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sizing
 from feederscrew.machine.drive_sizing import is_two_axis
@@ -46,6 +46,9 @@ class DesignSearch:
     # trials of the answer with part, friction, drive and cuts drawn from their spread
     draws: int = DesignRequest.draws
     agreed_jams: Quantity = DesignRequest.agreed_jams  # that the buyer tolerates, '1/h'
+    # 'usual', or 'long': what holds is followed until the agreed jams are shown, three hours of bowl time at
+    # each fill for 1 an hour; runs are kept, and a proof that was stopped goes on
+    proof: str = DesignRequest.proof
 
 
 class DesignOptions(TypedDict, total=False):
@@ -133,8 +136,8 @@ def design(
     aspect_shares : Shares, optional
         Of ``shares``; what lies on the moving floor of the designed bowl without it.
     search : DesignSearch, optional
-        Rule, number of short trials and of draws, whether dearer chains are proved too, and the jams that a
-        buyer tolerates.
+        Rule, number of short trials and of draws, whether dearer chains are proved too, the jams that a
+        buyer tolerates, and whether these are shown ('long').
     seed : int
         Of everything that is drawn.
     jobs : int
@@ -165,6 +168,7 @@ def design(
         alternatives=bool(looked.alternatives),
         draws=arguments.whole("draws", looked.draws),
         agreed_jams=arguments.amount("agreed_jams", looked.agreed_jams, "rate", MIN_POSITIVE),
+        proof=check.choice("proof", looked.proof, ProofKind),
         seed=arguments.whole("seed", seed, 0),
         jobs=arguments.whole("jobs", jobs),
     )

@@ -71,6 +71,16 @@ def rate_at_most(count: int, time: float, confidence: float = CONFIDENCE) -> flo
     return _mean_at_most(count, confidence) / time if time > 0.0 else math.inf
 
 
+def rate_at_least(count: int, time: float, confidence: float = CONFIDENCE) -> float:
+    """Return the lower bound [1/s] of a rate of events, as ``rate_at_most`` returns the upper one.
+
+    It is the rate at which ``count`` or more have a chance of 1 - confidence; 0 of no event.
+    """
+    if count <= 0 or not time > 0.0:
+        return 0.0
+    return float(special.gammaincinv(count, 1.0 - confidence)) / time
+
+
 def _mean_at_most(count: int, confidence: float) -> float:
     return float(special.gammaincinv(count + 1, confidence))  # half of chi-square
 

@@ -521,7 +521,44 @@ def _short(
     first = [k for k in rows if k in right] or [proposal.row]
     others = [k for k in rows if k not in first]
     trial = single(rows=first, count=policy.trial_parts)
-    if not trial.efficiency > 0.0 or not others:
+    if not trial.efficiency > 0.0:
         return trial
-    each = policy.trial_parts if len(others) <= short_trials.FEW_OTHERS else 1
-    return trial.join(single(rows=others, count=each))
+    if others:
+        each = policy.trial_parts if len(others) <= short_trials.FEW_OTHERS else 1
+        trial = trial.join(single(rows=others, count=each))
+    return trial if any(find_denials(trial)) else try_untried(search, bowl, trial, weights, proposal)
+
+
+def try_untried(
+    search: Search, bowl: Bowl, trial: short_trials.ShortTrial, weights: Floats, proposal: Proposal
+) -> short_trials.ShortTrial:
+    """Return a short trial with every orientation that may come often enough to matter.
+
+    Parameters
+    ----------
+    search : Search
+    bowl : Bowl
+        With the devices of the trial.
+    trial : ShortTrial
+        In which what is wanted leaves.
+    weights : (M,) array [1]
+        Shares of its orientations.
+    proposal : Proposal
+        The chain that was tried.
+
+    Returns
+    -------
+    ShortTrial
+        Its velocity is that of the orientations that come often.
+    """
+    ways = trial.orientations
+    right = {*wanted_rows(ways, trial.states), proposal.row, *trial.rows.tolist()}
+    possible = short_trials.possible_rows(weights, search.highest_shares(ways))
+    rows = [k for k in possible if k not in right]
+    if not rows:
+        return trial
+    more = short_trials.try_parts(
+        search.part, bowl, ways, trial.shares, proposal.rows, rows=rows, count=search.policy.trial_parts,
+        run=search.request.run, aspects=search.arrivals.aspects, any_heading=proposal.any_heading,
+    )  # fmt: skip
+    return replace(trial.join(more), velocity=trial.velocity)

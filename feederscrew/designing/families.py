@@ -10,7 +10,7 @@ from feederscrew.designing import calm_drive, exploring, loop, proposals
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.loop import merit
 from feederscrew.designing.progress import Progress, SearchProgress
-from feederscrew.designing.record import DesignRequest, DesignStudy
+from feederscrew.designing.record import DesignRequest, DesignStudy, ProofKind
 from feederscrew.designing.search import Search
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
@@ -99,6 +99,7 @@ def family(
     plain, first = replace(plain, track=track), widths.index(max(widths))
     keys = frozenset(kept_keys) | {"track.radius", "track.width"}
 
+    asked, request = request, replace(request, proof=ProofKind.USUAL)  # a long proof is of what all share
     own: dict[str, Any] = {"tell": tell, "before": before, "progress": progress}
 
     def member(part: Part, lead: DesignStudy | None) -> DesignStudy:
@@ -123,7 +124,16 @@ def family(
             if designs[k].partial:
                 return FamilyStudy(tuple(designs[n] for n in sorted(designs)))
         members = tuple(designs[k] for k in range(len(parts)))
-        return FamilyStudy(_unify_chains(members, request, keys | set(SHARED_TRACK_KEYS), tell, before))
+        members = _unify_chains(members, request, keys | set(SHARED_TRACK_KEYS), tell, before)
+        if asked.proof is not ProofKind.LONG:
+            return FamilyStudy(members)
+        said = SearchProgress(tell, before, progress)
+        for k, made in enumerate(members):
+            asked_long = replace(made, request=replace(made.request, proof=asked.proof))
+            designs[k] = loop.prove_long(asked_long, said) if made.status in HELD else asked_long
+            if designs[k].partial:
+                return FamilyStudy(tuple(designs[n] for n in sorted(designs)))
+        return FamilyStudy(tuple(designs[k] for k in range(len(parts))))
     except KeyboardInterrupt:
         if not designs:
             raise

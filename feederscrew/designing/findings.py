@@ -117,6 +117,24 @@ class Move:
 
 
 @dataclass(frozen=True)
+class SeldomPart:
+    """An orientation, not wanted, that leaves or stays in its short trial, and is let be: it comes seldom."""
+
+    orientation: str  # its name
+    parts: int  # that were tried
+    left: int  # of them
+    held: int  # of them that stay at a device
+    share: float  # [1] in which it comes
+    share_high: float  # [1] upper end of the interval of that share
+    break_even: float | None  # [1] share from which the purity is too low; None where none leaves
+
+    @property
+    def may_spoil(self) -> bool:
+        """Whether it may come often enough to make the purity too low."""
+        return self.break_even is not None and self.share_high >= self.break_even
+
+
+@dataclass(frozen=True)
 class Hooking:
     """How two parts of one kind hold each other."""
 

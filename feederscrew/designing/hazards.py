@@ -12,8 +12,10 @@ from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.bowl import default
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing.findings import Hooking
+from feederscrew.designing import short_trials, texts
+from feederscrew.designing.findings import Hooking, SeldomPart
 from feederscrew.designing.record import Pair, Risk, RiskKind
+from feederscrew.designing.short_trials import ShortTrial
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import zero_rows
@@ -133,6 +135,45 @@ def risks(
             Risk(RiskKind.WEDGES, text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width))
         )
         break
+    return tuple(listed)
+
+
+def seldom_risks(trial: ShortTrial, highs: Floats, queues: Sequence[FilledQueue]) -> tuple[Risk, ...]:
+    """Return what leaves, or stands at a device, beside what is wanted, and is no fault: it comes seldom.
+
+    Parameters
+    ----------
+    trial : ShortTrial
+        The short trial of the design, with M orientations.
+    highs : (M,) array [1]
+        Upper ends of the intervals of their shares.
+    queues : sequence of FilledQueue
+        Of its fills: what leaves there as wanted and otherwise, of the parts offered. The trial's own
+        shares are taken where there is none.
+
+    Returns
+    -------
+    tuple of Risk
+        In the order of the trial. The break-even share is the least of all fills.
+    """
+    offered = [queue for queue in queues if queue.offered]
+    shares = [
+        (queue.right / queue.offered, (queue.left - queue.right) / queue.offered) for queue in offered
+    ] or [(trial.efficiency, trial.wrong_share)]
+    wanted, listed = set(trial.wanted), list[Risk]()
+    for place, row in enumerate(trial.rows.tolist()):
+        wrong, held, parts = (int(counts[place]) for counts in (trial.wrong, trial.held, trial.parts))
+        if row in wanted or not wrong + held:
+            continue
+        share = float(trial.shares[row])
+        known = trial.orientations.lying[row].name, parts, wrong, held, share, max(share, float(highs[row]))
+        if wrong:
+            break_even = min(short_trials.break_even(*own, wrong / parts) for own in shares)
+            leaving = SeldomPart(*known, break_even)
+            listed.append(Risk(RiskKind.LEAVES, texts.seldom_text(leaving), seldom=leaving))
+        if held:
+            standing = SeldomPart(*known, None)
+            listed.append(Risk(RiskKind.STANDS, texts.seldom_text(standing), seldom=standing))
     return tuple(listed)
 
 

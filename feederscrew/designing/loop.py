@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from feederscrew.designing import (
     calm_drive,
     exploring,
     hazards,
+    long_proof,
     nearest,
     proposals,
     queues,
@@ -22,7 +23,7 @@ from feederscrew.designing import (
 )
 from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind
-from feederscrew.designing.progress import Progress, SearchProgress, SearchStage
+from feederscrew.designing.progress import Progress, SearchProgress, SearchStage, TrialBudget
 from feederscrew.designing.record import (
     DRAWS_HELD,
     RATE_KEPT,
@@ -31,6 +32,7 @@ from feederscrew.designing.record import (
     DesignRequest,
     DesignStudy,
     NearestDesign,
+    ProofKind,
     RobustRun,
 )
 from feederscrew.designing.search import Candidate, Search
@@ -44,7 +46,7 @@ from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating import chain as static
 from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.trial.fills import FilledQueue
+from feederscrew.trial.fills import FedRow, FilledQueue
 from feederscrew.trial.long_ride import long_ride
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.wanted import wanted_rows
@@ -109,8 +111,13 @@ def design(
                 _prove_whole(search, proofs, likeliest, None)
     except KeyboardInterrupt:
         return replace(_list_alternatives(search, proofs, classes, _best(search, proofs)), partial=True)
-    best = _list_alternatives(search, proofs, classes, nearby or _best(search, proofs))
-    if any(study.partial for study, _ in proofs):  # which of them it is
+    chosen = nearby or _best(search, proofs)
+    if chosen.status in HELD and not any(study.partial for study, _ in proofs):
+        shown = prove_long(chosen, said)
+        proofs[:] = [(shown if study is chosen else study, candidate) for study, candidate in proofs]
+        chosen = shown
+    best = _list_alternatives(search, proofs, classes, chosen)
+    if best.partial or any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
     return best if best.status in HELD else replace(best, nearest=near)
 
@@ -274,6 +281,10 @@ def prove_design(
             weights = np.nan_to_num(oriented.rules[request.rule])
             candidate = replace(candidate, orientations=oriented, weights=weights / weights.sum())
             shares = own
+    # what may come more often than is known passes by the devices, or does not
+    known = replace(candidate.trial, orientations=candidate.orientations, shares=candidate.weights)
+    tried = exploring.try_untried(search, candidate.bowl, known, candidate.weights, candidate.proposal)
+    candidate = replace(candidate, trial=tried)
     # a ride along the track to the tooling, where another mix arrives
     search.tell(f"{name}: a few parts of each orientation on the bare track, up to the tooling")
     oriented, proposal = candidate.orientations, candidate.proposal
@@ -295,13 +306,20 @@ def prove_design(
     if robust.partial or not (whole or robust.share >= DRAWS_HELD):
         return study
     # queues; parts that touch on their way come as they enter the track
-    line = queues.FollowedRow(
+    row = FedRow(
         search.part, candidate.bowl, shares.aspects, oriented, candidate.weights,
         candidate.trial.states, proposal.any_heading, ride.entering,
-        seed=request.seed, tell=search.tell, least=RATE_KEPT * request.target,
-        longest=longest_time(request.target) if longest is None else longest,
-        progress=search.run(SearchStage.QUEUE).progress, jobs=request.jobs,
     )  # fmt: skip
+    study = replace(study, row=row)
+    line = queues.FollowedRow(
+        *(getattr(row, each.name) for each in fields(row)),
+        seed=request.seed,
+        tell=search.tell,
+        least=RATE_KEPT * request.target,
+        longest=longest_time(request.target) if longest is None else longest,
+        progress=search.run(SearchStage.QUEUE).progress,
+        jobs=request.jobs,
+    )
     try:
         search.tell(f"queue: {name}, {proposal.sentence}")
         study = _with_queues(study, queues.follow_fills(line, whole=whole))
@@ -312,7 +330,42 @@ def prove_design(
     risks = hazards.risks(
         wanted_orientation, candidate.bowl, study.queues, orientations=frequent, seed=request.seed
     )
-    return replace(study, risks=risks)
+    seldom = hazards.seldom_risks(candidate.trial, search.highest_shares(oriented), study.queues)
+    return replace(study, risks=(*risks, *seldom))
+
+
+def prove_long(study: DesignStudy, said: SearchProgress) -> DesignStudy:
+    """Return a design that holds with the queues of a long proof, where one is asked for.
+
+    Parameters
+    ----------
+    study : DesignStudy
+        That holds, with the row of parts that was fed into its queues.
+    said : SearchProgress
+        Whom it tells how far it is.
+
+    Returns
+    -------
+    DesignStudy
+        Its queues are those of the long proof: it may fall short by them. It is as it was where no long proof
+        is asked for, and partial where the user stopped it.
+
+    Raises
+    ------
+    FeederError
+        If a process ends over a run.
+    """
+    request = study.request
+    if request.proof is not ProofKind.LONG or study.row is None:
+        return study
+    budget = TrialBudget([*study.attempts], request.budget, request.draws)
+    run = said.watch(request.run, SearchStage.LONG_PROOF, budget)
+    plan = long_proof.LongPlan.to_show(request.agreed_jams)
+    try:
+        fills = long_proof.follow_long(study.row, plan, request.agreed_jams, run, said.tell)
+    except KeyboardInterrupt:
+        return replace(study, partial=True)
+    return _with_queues(study, fills)
 
 
 def _with_queues(study: DesignStudy, fills: tuple[FilledQueue, ...]) -> DesignStudy:
@@ -324,6 +377,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
     bowl, oriented, weights = candidate.bowl, candidate.orientations, candidate.weights
     request, proposal, name = search.request, candidate.proposal, candidate.attempt.wanted
     own = candidate.attempt.aspect.casefold()
+    wanted = " or ".join((name, *(aspect for aspect in request.up if aspect.casefold() != own)))
     gain = short_trials.gain(oriented, weights, candidate.trial.states)
     tooling = None
     if proposal.cuts:  # its chain as `feeder tooling` would have found it
@@ -337,12 +391,13 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         tooling = ToolingStudy(
             search.part, bowl, shares.aspects, request.rule, margin, oriented.lying, weights,
             tuple(static_design if k == row else None for k in range(len(weights))), row, request.up,
+            state=wanted,
         )  # fmt: skip
     return DesignStudy(
         part=search.part,
         request=request,
         bowl=bowl,
-        wanted=" or ".join((name, *(aspect for aspect in request.up if aspect.casefold() != own))),
+        wanted=wanted,
         wanted_aspect=candidate.attempt.aspect,
         turn=proposal.row,
         cuts=proposal.cuts,

@@ -22,10 +22,16 @@ class SearchStage(enum.StrEnum):
     TRIAL = "trial"
     DRAWS = "draws"
     QUEUE = "queue"
+    LONG_PROOF = "long proof"
 
 
-# [s] a trial, a draw, all queues, before any was timed
-USUAL_S = {SearchStage.TRIAL: 4.0, SearchStage.DRAWS: 1.0, SearchStage.QUEUE: 60.0}
+# [s] a trial, a draw, all queues, all runs of a long proof, before any was timed
+USUAL_S = {
+    SearchStage.TRIAL: 4.0,
+    SearchStage.DRAWS: 1.0,
+    SearchStage.QUEUE: 60.0,
+    SearchStage.LONG_PROOF: 7200.0,
+}
 
 
 def _silent(text: str) -> None:
@@ -48,6 +54,7 @@ class Clock:
         self.begun = self.last = self.since = time.monotonic()
         self.stage: SearchStage | None = None
         self.done, self.total, self.counts = 0, 0, True
+        self.found = 0  # done before the stage began: runs that were kept
         self.durations: dict[
             SearchStage, tuple[float, float]
         ] = {}  # of each stage seconds, and how many they were
@@ -80,6 +87,7 @@ class Clock:
         """Note how many of a stage are done; return whether it is time to tell so."""
         if stage is not self.stage or done < self.done:
             self.begin(stage)
+            self.found = done
         self.done, self.total = done, total
         if done < total and time.monotonic() - self.last < TELL_EVERY_S:
             return False
@@ -114,6 +122,10 @@ class Clock:
             return max(draws - self._count_done, 0.0) * self.each(SearchStage.DRAWS) + self.each(
                 SearchStage.QUEUE
             )
+        if self.stage is SearchStage.LONG_PROOF:
+            made = self.done - self.found
+            gone = time.monotonic() - self.since
+            return (self.total - self.done) * gone / made if made else USUAL_S[SearchStage.LONG_PROOF]
         if self.stage is SearchStage.QUEUE:
             return max(1.0 - self._count_done, 0.1) * self.each(SearchStage.QUEUE)
         left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))

@@ -21,7 +21,7 @@ from feederscrew.designing.fill_verdicts import (
     longest_time,
     shows_purity,
 )
-from feederscrew.designing.findings import Cause, Fault, FaultKind, Hooking, Move
+from feederscrew.designing.findings import Cause, Fault, FaultKind, Hooking, Move, SeldomPart
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.records import ReadableRecord
@@ -32,6 +32,7 @@ from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.trial.fills import (
+    FedRow,
     FilledQueue,
     LeavingCounts,
     LeavingPose,
@@ -40,7 +41,14 @@ from feederscrew.trial.fills import (
 )
 from feederscrew.trial.long_ride import LongRide
 from feederscrew.trial.result import TrialRun
-from feederscrew.units import HOUR, counted
+from feederscrew.units import HOUR, MINUTE, counted
+
+
+class ProofKind(enum.StrEnum):
+    """For how long a design that holds is followed."""
+
+    USUAL = "usual"  # until each fill is settled
+    LONG = "long"  # until the agreed jams an hour are shown
 
 
 @dataclass(frozen=True)
@@ -63,6 +71,7 @@ class DesignRequest:
     jobs: int = 1
     alternatives: bool = False  # whether dearer cost classes are searched too where one holds
     agreed_jams: float = AGREED_JAMS  # [1/s] that the buyer tolerates
+    proof: ProofKind = ProofKind.USUAL  # of the design that holds
 
     @property
     def run(self) -> RunSettings:
@@ -73,6 +82,7 @@ class DesignRequest:
         check.of_an_aspect(self.aspect, self.heading)
         require_rule(self.rule)
         object.__setattr__(self, "drive", check.choice("drive", self.drive, DriveKind))
+        object.__setattr__(self, "proof", check.choice("proof", self.proof, ProofKind))
         object.__setattr__(self, "outcome", check.choice("outcome", self.outcome, OutcomeKind))
         for name in ("up", "without"):  # names may come as a text
             object.__setattr__(self, name, listed(getattr(self, name)))
@@ -200,23 +210,26 @@ class Pair:
 
 
 class RiskKind(enum.StrEnum):
-    """In which way parts may hinder each other; files print the word."""
+    """In which way parts may hinder each other, or do what they should not; files print the word."""
 
     SHINGLES = "shingles"
     CLIMBS = "climbs"
     HOOKS = "hooks"
     NESTS = "nests"
     WEDGES = "wedges"
+    LEAVES = "leaves"  # in another orientation than is wanted
+    STANDS = "stands"  # at a device
 
 
 @dataclass(frozen=True, eq=False)
 class Risk:
-    """What may go wrong between parts."""
+    """What may go wrong between parts, or with one that comes seldom."""
 
     kind: RiskKind
     text: str
     pair: Pair | None = None  # what is drawn of it
     hooking: Hooking | None = None  # of parts that hook
+    seldom: SeldomPart | None = None  # of one that leaves or stands
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,6 +260,7 @@ class DesignStudy(ReadableRecord):
     machine_warnings: tuple[str, ...] = ()  # what of its drawn machine is out of limits
     machine_lacks: tuple[str, ...] = ()  # of the drive that was tried: why it does not hold
     alternatives: tuple[Alternative, ...] = ()  # the best of each cost class, the cheapest first
+    row: FedRow | None = None  # how parts were fed into its queues; None of what was not followed
     long_ride: LongRide | None = None  # from the track's entry to the tooling; None of what was not proved
 
     @property
@@ -406,7 +420,9 @@ class DesignStudy(ReadableRecord):
             lines += self._lacks_of(queue)
         if not self.queues and self.robust.share >= DRAWS_HELD:  # draws that fail end a proof
             lines.append("no queue was followed")
-        if self.jams:
+        if self.request.proof is ProofKind.LONG:
+            lines += [self._jams_of(queue) for queue in self.queues if queue.jams]
+        elif self.jams:
             lines.append(f"{counted(self.jams, 'jam')} in {self.queue_seconds:.3g} s of queue")
         if self.robust.share < DRAWS_HELD:
             worst = "" if self.robust.worst is None else f": {self.robust.worst_text}"
@@ -454,6 +470,15 @@ class DesignStudy(ReadableRecord):
         if not (lines or queue.jams):
             lines.append(f"{at} parts were followed for {queue.seconds:.3g} s only")
         return lines
+
+    def _jams_of(self, queue: FilledQueue) -> str:
+        """How many jams a fill of a long proof had, what that shows, and what is agreed."""
+        shown, agreed = HOUR * rate_at_most(queue.jams, queue.seconds), HOUR * self.request.agreed_jams
+        return (
+            f"at {queue.fill} fill {counted(queue.jams, 'jam')} in {queue.seconds / MINUTE:.3g} min: "
+            f"fewer than {shown:.3g} an hour are shown (upper bound, 95 %, one-sided), and {agreed:.3g} an "
+            "hour are agreed"
+        )
 
     @property
     def cause(self) -> Cause:

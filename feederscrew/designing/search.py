@@ -18,6 +18,7 @@ from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
+from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.tooling.devices.base import ComparedValue
@@ -170,6 +171,25 @@ class Search:
         own = self.arrivals if shares is None else shares
         ways = proposals.follow_orientations(self.part, own.aspects, bowl)
         return stream.oriented(ways, own.measured)
+
+    def highest_shares(self, orientations: Orientations) -> Floats:
+        """Return the upper ends (M,) [1] of the shares in which orientations come.
+
+        Parameters
+        ----------
+        orientations : Orientations
+            M of them, with the shares as they are known.
+
+        Returns
+        -------
+        (M,) array [1]
+            Of the 95 % interval by the recommended rule; the shares themselves by another rule, or without
+            an interval.
+        """
+        shares = np.nan_to_num(orientations.rules[self.request.rule])
+        if self.request.rule == RECOMMENDED_ANSWER:
+            shares = np.fmax(shares, orientations.interval[:, 1])
+        return shares
 
     @property
     def budget(self) -> TrialBudget:

@@ -14,6 +14,7 @@ import shapely
 from feederscrew import check
 from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.verified import PURE
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.designing import calm_drive
 from feederscrew.designing.findings import End, Fault, FaultKind
@@ -149,6 +150,47 @@ def frequent_rows(shares: Floats, rows: Sequence[int] = ()) -> list[int]:
     """Return the rows (R,) that come often enough to matter, the most frequent first; some in any case."""
     order = np.argsort(-shares, kind="stable")
     return [int(k) for k in order if shares[k] >= SELDOM_SHARE or k in rows]
+
+
+def possible_rows(shares: Floats, highs: Floats) -> list[int]:
+    """Return the rows (R,) that may come often enough to matter, the most frequent first.
+
+    Parameters
+    ----------
+    shares : (M,) array [1]
+        In which the orientations come, as far as is known.
+    highs : (M,) array [1]
+        Upper ends of the intervals of these shares: none of 400 parts may still be 0.75 %.
+
+    Returns
+    -------
+    list of int
+        Those of which share or upper end is ``SELDOM_SHARE`` or more.
+    """
+    return frequent_rows(np.maximum(shares, highs))
+
+
+def break_even(wanted: float, wrong: float, passing: float) -> float:
+    """Return the share of an orientation from which on too little of what leaves is wanted.
+
+    Of the parts that come in other orientations g leave as wanted and w otherwise; of its own p leave. At its
+    share b the purity is (1 - b) g / ((1 - b) (g + w) + b p). That is ``PURE`` where, with
+    d = g - PURE (g + w), b = d / (d + PURE p).
+
+    Parameters
+    ----------
+    wanted, wrong : float [1]
+        Shares g and w of the parts that come otherwise.
+    passing : float [1]
+        Share p of its own parts that leave, above 0.
+
+    Returns
+    -------
+    float [1]
+        0 where the others alone are too many.
+    """
+    spare = max(wanted - PURE * (wanted + wrong), 0.0)
+    return spare / (spare + PURE * passing)
 
 
 def try_parts(
@@ -556,14 +598,17 @@ def find_faults(trial: ShortTrial, returnable: Iterable[int] = ()) -> list[Fault
 def find_denials(trial: ShortTrial) -> Iterator[Fault]:
     """Yield the faults for which a short trial denies a chain.
 
-    Those are all but two kinds. Little that is carried through is let be while the purity is CLEAN. A wanted
-    orientation of which most parts leave, and none stays, is a loss of parts a minute.
+    Those are all but three kinds. What comes so seldom that it was not seen is named as a risk. Little that
+    is carried through is let be while the purity is CLEAN. A wanted orientation of which most parts leave,
+    and none stays, is a loss of parts a minute.
     """
     if not trial.efficiency > 0.0:
         yield Fault(FaultKind.NOTHING_LEAVES)
     wanted, rows = trial.wanted, trial.rows.tolist()
     for fault in find_faults(trial, find_returnable_rows(trial)):
         if fault.kind is FaultKind.CARRIED and trial.purity >= CLEAN:
+            continue
+        if fault.row not in wanted and trial.shares[fault.row] < SELDOM_SHARE:
             continue
         place = rows.index(fault.row)
         mostly = fault.row in wanted and 2 * trial.right[place] > trial.parts[place]

@@ -4,8 +4,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from feederscrew.bowl.verified import PURE
 from feederscrew.designing.fill_verdicts import DifferenceKind, FillDifference
-from feederscrew.designing.findings import End, Fault, FaultKind, Hooking, Move, MoveKind
+from feederscrew.designing.findings import End, Fault, FaultKind, Hooking, Move, MoveKind, SeldomPart
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.trial.course import Fate
 from feederscrew.trial.fills import LeavingCounts
@@ -106,6 +107,20 @@ def change_text(hooking: Hooking) -> str:
             "thinnest limb, or make that limb thicker than the mouth"
         )
     return f"on the part, close its openings, or make them narrower than its thinnest limb, {limb}"
+
+
+def seldom_text(seldom: SeldomPart) -> str:
+    """Return that an orientation leaves or stays too, from which share on that matters, and its share."""
+    own = f"{100.0 * seldom.share:.2g} % of the parts come so, {100.0 * seldom.share_high:.2g} % at the most"
+    of = counted(seldom.parts, "part")
+    if seldom.break_even is None:
+        stays = f"({seldom.held} of {of} tried)"
+        return f"{seldom.orientation} stands at a device and blocks the track {stays}; {own}"
+    return (
+        f"{seldom.orientation} leaves too ({seldom.left} of {of} tried): from "
+        f"{100.0 * seldom.break_even:.2g} % of {seldom.orientation} on, purity is below "
+        f"{100.0 * PURE:.3g} %; {own}"
+    )
 
 
 def difference_text(difference: FillDifference) -> str:

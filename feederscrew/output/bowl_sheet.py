@@ -5,6 +5,7 @@ the stretches of the track and their development in sheet metal.
 """
 
 import itertools
+import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -37,6 +38,7 @@ GENERAL = "ISO 2768-m"
 NARROW_LETTERS = 38  # letters of a line in the left column of the title block
 PIECE_ANGLE = np.pi  # [rad] of one piece of the track's development, at most
 DEVELOPED_PLACES = 61  # along a piece at which it is developed
+CONDITION_LETTERS, CONDITION_LINE_MM = 240, 2.8  # of a line of the condition; from line to line
 
 
 def draw_sheets(
@@ -63,12 +65,22 @@ def draw_sheets(
     _draw_list(drawing, study, whole, (246.0, 134.0))
     _draw_title_block(drawing, study, order, whole, sizes, scale, trial, fields, f"1 of {count}")
     drawing.mark(of_trial(trial, mark))
+    if trial is not None and trial.condition:
+        _draw_condition(drawing, trial)
     if solid.plan.stretch is not None:
         _draw_devices(drawing, whole.plan, solid.plan.stretch, order.part.name, fields, f"2 of {count}")
         drawing.mark(of_trial(trial, mark))
     _draw_track(drawing, whole.plan, order.part.name, fields, f"{count} of {count}")
     drawing.mark(of_trial(trial, mark))
     return drawing
+
+
+def _draw_condition(drawing: Drawing, trial: Verified) -> None:
+    """The condition under which the bowl holds, in the margin above the frame: nobody builds it without."""
+    left, _, _, top = FRAME
+    lines = textwrap.wrap(f"{trial.status}: {trial.condition}", CONDITION_LETTERS)
+    for k, line in enumerate(reversed(lines)):
+        drawing.text(left, top + 1.5 + CONDITION_LINE_MM * k, line, 1.85, layer="NOTE")
 
 
 def _scale(size: float, room: float) -> float:

@@ -52,6 +52,7 @@ ATTEMPT_COLUMNS = (
     "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
     "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
 )  # fmt: skip
+SELDOM = "orientation parts left held share share_high break_even"
 LOWER_BOUND, UPPER_BOUND = (f"{side} bound (95 %, one-sided)" for side in ("lower", "upper"))
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
 
@@ -72,7 +73,8 @@ def document(study: DesignStudy) -> dict[str, Any]:
             pair = {"turn": risk.pair.turn.tolist(), "place_mm": (risk.pair.place / MM).tolist()}
         elif risk.pair is not None:
             pair = {"walls_mm": risk.pair.walls / MM}
-        findings.append({"kind": risk.kind, "text": risk.text, "pair": pair})
+        seldom = None if risk.seldom is None else row_of(risk.seldom, SELDOM)
+        findings.append({"kind": risk.kind, "text": risk.text, "pair": pair, "seldom": seldom})
     bowl = None
     if study.bowl is not None and facts is not None:
         track, other = study.bowl.track, study.drive_mismatch
@@ -498,6 +500,7 @@ def trial_of(study: DesignStudy) -> Verified | None:
         study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
         fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part), study.outcome,
         "" if study.worst_fill is None else study.worst_fill.fill, study.condition,
+        study.purity[1],
     )  # fmt: skip
 
 

@@ -77,6 +77,7 @@ def document(study: ToolingStudy) -> dict[str, Any]:
             entry["basis"] = QUASI_STATIC
     return values | {
         **row_of(orientation, "aspect heading_deg"),
+        "leaves_as": study.leaves_as,
         "isolated": study.isolates(wanted_row),
         "status": status(study, wanted_row),
         "isolated_static": design.isolated,
@@ -210,12 +211,13 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     orientation, tried = study.orientations[wanted_row], study.trial_of(wanted_row)
     at_least = "at least " * (design.least < design.efficiency)
     pure_at_least = "at least " * bool(design.purity_is_least)
+    as_what = "so" if study.leaves_as == orientation.name else study.leaves_as
     leave = (
-        f"{at_least}{100.0 * design.least:.3g} % of the parts offered leave so, {pure_at_least}"
+        f"{at_least}{100.0 * design.least:.3g} % of the parts offered leave {as_what}, {pure_at_least}"
         f"{100.0 * design.purity:.4g} % of what leaves"
     )
     if not design.efficiency > 0.0:
-        leave = "none of the parts offered leaves so"
+        leave = f"none of the parts offered leaves {as_what}"
     if tried is not None and tried.faults:
         lead = f"{orientation.name} is not isolated: {tried.verdicts}"
     elif tried is None:
@@ -224,7 +226,7 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
         lead = (
             f"{orientation.name} is {'' if design.isolated else 'not '}isolated: of {tried.parts} parts "
             f"tried {tried.figures}; by the static rule {100.0 * design.efficiency:.3g} % of those offered "
-            f"leave so, and {tried.verdict}"
+            f"leave {as_what}, and {tried.verdict}"
         )
     return [*stopped, lead, *design.reasons]
 
@@ -378,7 +380,7 @@ def _draw_section(
     outline = np.add(wanted.outline, [0.0, wanted.distance])
     places = [station.start + 0.5 * station.length for station in strip.stations if station.hole is None]
     ghosts = [(outline, place) for place in (0.6 * wanted.length, *places)]
-    titles = [("tooling for", study.part.name), ("leaves as", wanted.name)]
+    titles = [("tooling for", study.part.name), ("leaves as", study.leaves_as)]
     look = {"thickness": study.bowl.sizing.sheet, "fields": fields, "titles": titles}
     return getattr(tooling_drawing, kind)(strip, ghosts, mark, **look)
 

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from feederscrew.bowl.verified import HELD
 from feederscrew.serving.orders import ANY_HEADING, MayUse, PageOrder
 
 MOST_STEPS = 3
-HOLDS = "holds"  # also 'holds if parts arrive single': nothing is left to try
 TWO_AXIS = "two"
 
 
@@ -39,7 +39,7 @@ def next_steps(order: PageOrder, answer: Mapping[str, Any]) -> list[NextStep]:
         Empty of a design that holds.
     """
     status = answer.get("status")
-    if not isinstance(status, str) or status.startswith(HOLDS):
+    if not isinstance(status, str) or status in HELD:
         return []
     if answer.get("partial"):
         return [NextStep("Design it again, to the end", {})]

@@ -221,11 +221,7 @@ def once(
     Record
         Of this part, or of one that no number tells from it.
     """
-    digest = hashlib.sha256(repr((float(part.mass), aspects.names)).encode())
-    arrays = (part.vertices, part.faces, part.centre_of_mass, part.inertia, aspects.normals, aspects.stable)
-    for array in arrays:
-        digest.update(np.ascontiguousarray(array).tobytes())
-    key = {"kind": kind, "part": digest.hexdigest(), "settings": repr(settings)}
+    key = part_key(part, aspects, kind, settings)
     place = tuple(key.values())
     if place not in _RECORDS:
         record = None
@@ -241,6 +237,30 @@ def once(
         while len(_RECORDS) > MAX_RECORDS:
             _RECORDS.popitem(last=False)
     return _RECORDS[place]
+
+
+def part_key(part: Part, aspects: Aspects, kind: str, settings: tuple) -> dict[str, str]:
+    """Return the key of what is simulated of a part, as ``read`` and ``write`` take it.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of the part.
+    kind : str
+        Of the simulation: 'arrival', 'drop'.
+    settings : tuple
+        All that decides it beside the part, written out the same whenever it is the same.
+
+    Returns
+    -------
+    dict of str
+    """
+    digest = hashlib.sha256(repr((float(part.mass), aspects.names)).encode())
+    arrays = (part.vertices, part.faces, part.centre_of_mass, part.inertia, aspects.normals, aspects.stable)
+    for array in arrays:
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return {"kind": kind, "part": digest.hexdigest(), "settings": repr(settings)}
 
 
 def forget() -> None:

@@ -13,6 +13,7 @@ from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import check_written, shank_remarks
 from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.verified import HANGING
 from feederscrew.documents import hint, nearest
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
@@ -157,6 +158,18 @@ class ToolingStudy(ReadableRecord):
     tolerance: float = designing.TOLERANCE_M  # [m] of its size, within the margin
     trials: tuple[Any, ...] = ()  # of TriedDesign: what was tried, that of `design` first
     partial: bool = False  # stopped by the user before all was searched and tried
+    state: str = ""  # what leaves, as a design that was tried says it: 'hanging', 'A@2 or B'
+
+    @property
+    def leaves_as(self) -> str:
+        """How parts of the orientation asked for leave its design: 'A@188', or 'hanging' of rails.
+
+        Empty where every orientation is studied.
+        """
+        if self.wanted is None or self.design is None:
+            return ""
+        own = HANGING if any(device.hangs for device in self.design.devices) else ""
+        return self.state or own or self.orientations[self.wanted].name
 
     def trial_of(self, place: int) -> Any:
         """Return what the trial of an orientation's design said: its TriedDesign; None without one."""

@@ -34,7 +34,7 @@ BLOCK = {
 }  # fmt: skip
 OPTIONAL = {
     "up": '"A, B"', "outcome": "lying", "trial_parts": "6", "seed": "1", "tried": '"2020-02-29"',
-    "body": f'"{body_fingerprint(PART)}"',
+    "body": f'"{body_fingerprint(PART)}"', "purity_low": "0.98",
 }  # fmt: skip
 SAME = replace(PART, sha256=BLOCK["part"].strip('"'))
 NEVER = ("", "nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣", "[1]", "{a: 1}", '"\\e[31m"', '"a\\nb"')
@@ -51,7 +51,7 @@ WRONG = {
     "outcome": ("standing", "hanging"),  # the bowl has no rails
     "trial_parts": ("0", "1.5", "10" * 15), "seed": ("1.5",),
     "tried": ("2026-13-01", "yesterday", "2999-12-31", "2021-02-29"),
-    "body": ("abc", '"0"'),
+    "body": ("abc", '"0"'), "purity_low": ("0.9", "1.5", "96 %"),
 }  # fmt: skip
 # A text may be any name, and a name may look like a number.
 NAMES = {"wanted": {"nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣"}, "up": set(NEVER)}
@@ -130,7 +130,7 @@ def test_blocks_of_no_mapping_and_of_a_queue_that_nothing_left(block):
     for text in ("verified:\n", "verified: 3\n", "verified: [1, 2]\n"):
         assert "mapping" in next(block(text).void(None, BOWL, VERSION))
     nothing = dict.fromkeys(("delivered", "delivered_low", "delivered_high"), "0/min")
-    tried = block(status="falls short", purity="none", **nothing)
+    tried = block(status="falls short", purity="none", purity_low="0", **nothing)
     assert tried.purity is None and "nothing left" in tried.sentence and "nan" not in tried.sentence
 
 

@@ -4,6 +4,7 @@ import csv
 import functools
 import json
 import re
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -30,7 +31,8 @@ def short_queues():
         patch.setattr(fills, "TOUCHING_PARTS", 4)
         patch.setattr(loop, "longest_time", lambda target: 8.0)
         patch.setattr(fill_verdicts, "FIRST_LOOK_S", 2.0)
-        patch.setattr(fill_verdicts, "SHOWN_PURITY", 0.0)  # which the parts of two seconds do not show
+        for module in (fill_verdicts, import_module("feederscrew.bowl.verified")):
+            patch.setattr(module, "SHOWN_PURITY", 0.0)  # which the parts of two seconds do not show
         yield
 
 

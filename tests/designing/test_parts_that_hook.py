@@ -13,7 +13,7 @@ from feederscrew.bowl.verified import HELD, Status
 from feederscrew.designing import design, hazards, loop
 from feederscrew.designing.findings import Hooking
 from feederscrew.designing.record import Risk, RiskKind
-from feederscrew.output import design_pages, designs, machine, marking, proof, tables
+from feederscrew.output import bowl_sheet, design_pages, designs, machine, marking, proof, tables
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 
@@ -81,6 +81,13 @@ def test_every_paper_bears_the_condition_and_keeps_its_name(hooking):
     assert mark in files["bowl.png"].alt
     drawn = [file.name for file in files.values() if file.name.endswith(".dxf")]
     assert drawn and all(mark.encode() in bytes(files[name].make()) for name in drawn)
+    # the drawing has the condition in words, once
+    sheets = bowl_sheet.draw_sheets(built.drawn, trial, mark)
+    words = f"{WORDS}: {hooking.condition}".split()
+    lines = [text for text in sheets.texts() if set(text.split()) <= set(words) and len(text.split()) > 5]
+    assert sorted(" ".join(lines).split()) == sorted(words)
+    plain = bowl_sheet.draw_sheets(built.drawn, designs.trial_of(proved(PART, bowls.default())))
+    assert not any("separate them" in text for text in plain.texts())
     # what a maker is asked for begins with it, its document has it
     first = machine.summary(built.sheet, trial).rows()[0]
     assert (first["quantity"], first["value"]) == (WORDS, hooking.condition)

@@ -21,7 +21,7 @@ from feederscrew.output import shading, solid_files, tooling_drawing, tooling_fi
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
-from feederscrew.studies.tooling import ToolingSearch, tooling
+from feederscrew.studies.tooling import ToolingSearch, ToolingStudy, tooling
 from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
 from feederscrew.tooling.devices.kinds import make_device
@@ -286,3 +286,17 @@ def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
     for margin, text in words.items():
         judged = Verdict(margin=margin, passes=float(not margin < 0.0))
         assert tooling_figures.margin_words(judged) == text
+
+
+@pytest.mark.parametrize(("devices", "state", "leaves"), [
+    ((), "", "A@188"), (("gap",), "", "A@188"), (("gap", "rails"), "", "hanging"),
+    (("rails",), "hanging 2", "hanging 2"), ((), "A@188 or B", "A@188 or B"),
+])  # fmt: skip
+def test_what_leaves_between_rails_hangs_as_the_design_says(devices, state, leaves):
+    values = {"gap": {"limit": 8e-3}, "rails": {"span": (2e-3, 6e-3)}}
+    chain = SimpleNamespace(devices=[make_device(kind, "here", **values[kind]) for kind in devices])
+    lying = (SimpleNamespace(name="B@0"), SimpleNamespace(name="A@188"))
+    study = ToolingStudy(
+        BRACKET, bowls.default(), None, "csa", 0.0, lying, np.ones(2), (None, chain), 1, state=state
+    )
+    assert study.leaves_as == leaves and replace(study, wanted=None).leaves_as == ""
