@@ -175,7 +175,7 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
     for row in rows:
         kind, bars = "not stable", list[ShareBar]()
         if resting.stable[row]:
-            kind, answer = f"{resting.forms[row]} ×{resting.faces[row]}", resting.recommended
+            kind, answer = f"{resting.lies[row]} ×{resting.faces[row]}", resting.recommended
             if answer is not None:  # the table has the rules
                 share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
                 bars.append(ShareBar("recommended", style.ANSWER, share, (low, high)))

@@ -305,7 +305,17 @@ def test_the_sheet_has_one_panel_a_class_in_one_scale_and_the_recommended_answer
     scales = [np.ptp(axes.images[0].get_extent()[:2]) / axes.get_window_extent().width for axes in images]
     assert scales == pytest.approx([scales[0]] * 3)
     texts = words(figure)
-    assert {"A", "B", "C", "flat ×2", "PMI", "CSA", "stability", "box", "centre of mass"} <= set(texts)
+    assert {
+        "A",
+        "B",
+        "C",
+        "on its largest face ×2",
+        "PMI",
+        "CSA",
+        "stability",
+        "box",
+        "centre of mass",
+    } <= set(texts)
     assert all(f"{100.0 * chance[0]:.1f} %" in texts for chance in found.probabilities.values())
     share, low, high = (100.0 * ends[0] for ends in (answer.p, answer.low, answer.high))
     assert f"{share:.0f} % ({low:.0f}–{high:.0f})" in texts
