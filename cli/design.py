@@ -36,7 +36,9 @@ REQUEST = (  # what shall leave, and what may be used
         default="any",
         text="Lying on the track, or hanging by the head between rails.",
     ),
-    options.option("--without", "KINDS", "Kinds of devices that are not used: 'profile,wiper'.", default=""),
+    options.option(
+        "--without", "KINDS", "Kinds of devices that are not used: 'wiper,vision reject'.", default=""
+    ),
     options.choice(
         "--drive",
         ["leaf-spring", "two-axis", "any"],

@@ -47,7 +47,9 @@ from feederscrew_cli.options import Output, Values
     default="any",
     text="How parts must leave: as they lie, hanging between rails, or either.",
 )
-@options.option("--without", "KIND,...", "Kinds of devices that are not used: wiper,cut_out.", default="")
+@options.option(
+    "--without", "KIND,...", "Kinds of devices that are not used: 'wiper,vision reject'.", default=""
+)
 @options.quantity(
     "--step",
     "length",

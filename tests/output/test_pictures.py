@@ -169,7 +169,7 @@ def test_a_contact_sheet_says_why_a_rate_is_zero_or_a_part_failed():
 def test_a_ride_is_named_by_its_device_and_the_history_of_a_loop_can_be_read():
     values = {"gap": "9 mm", "cut-out": "[[0 mm]]", "vision reject": "{of: A@90, play: 0.2 mm}"}
     devices = [
-        SimpleNamespace(name=name, short=short, is_one_value=name == "gap") for name, short in values.items()
+        SimpleNamespace(kind=name, short=short, is_one_value=name == "gap") for name, short in values.items()
     ]
     section = SimpleNamespace(stations=[SimpleNamespace(device=one) for one in devices])
     titles = [
@@ -504,8 +504,8 @@ def test_the_captions_of_views_side_by_side_stay_over_their_own(monkeypatch):
 def test_devices_and_shares_of_a_design_are_in_words_on_its_page():
     """The page had a dump of YAML, and a yield of 0.0030 where the text says 0.299 %."""
     narrowed, sorter = (
-        make_device("narrowed_track", "test", limit=13.35e-3).rewritten(),
-        make_device("sorter", "test", like=("A", 0.5 * np.pi, 2e-4)).rewritten(),
+        make_device("narrowed track", "test", limit=13.35e-3).rewritten(),
+        make_device("vision reject", "test", like=("A", 0.5 * np.pi, 2e-4)).rewritten(),
     )
     assert (narrowed.brief, sorter.brief) == ("narrowed track 13.35 mm", "vision reject")
     chain = ("sorter: {of: A@90}",), ("camera from above",)
