@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 
 REQUEST = (  # what shall leave, and what may be used
     options.target("Parts that must leave the bowl: 60/min."),
-    options.option(
-        "--aspect",
-        "NAME",
+    options.aspect(
         "Aspect on which they must leave.  [default: the one that delivers most]",
     ),
     options.heading("DEG", "Heading of that aspect.  [default: the one that delivers most]"),

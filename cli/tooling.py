@@ -14,7 +14,7 @@ from feederscrew_cli.options import Output, Values
     rare=("step", "cutter", "play", "tolerance", "cad", "verdicts", "seconds"),
 )
 @options.part
-@options.option("--aspect", "NAME", "Aspect on which the part must leave.  [default: every orientation]")
+@options.aspect("Aspect on which the part must leave.  [default: every orientation]")
 @options.heading("DEG", "Heading of that aspect.  [default: the most frequent]")
 @options.rule
 @options.quantity(
