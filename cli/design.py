@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 
 REQUEST = (  # what shall leave, and what may be used
     options.target("Parts that must leave the bowl: 60/min."),
-    options.option(
-        "--aspect",
-        "NAME",
+    options.aspect(
         "Aspect on which they must leave.  [default: the one that delivers most]",
     ),
     options.heading("DEG", "Heading of that aspect.  [default: the one that delivers most]"),
@@ -36,7 +34,9 @@ REQUEST = (  # what shall leave, and what may be used
         default="any",
         text="Lying on the track, or hanging by the head between rails.",
     ),
-    options.option("--without", "KINDS", "Kinds of devices that are not used: 'profile,wiper'.", default=""),
+    options.option(
+        "--without", "KINDS", "Kinds of devices that are not used: 'wiper,vision reject'.", default=""
+    ),
     options.choice(
         "--drive",
         ["leaf-spring", "two-axis", "any"],

@@ -23,7 +23,7 @@ def vibration_angle(value: str) -> float:
 
 @grouped.command(short_help="Forces and motion of a part on the bowl floor.")
 @options.part
-@options.option("--aspect", "NAME", LIKELIEST)
+@options.aspect(LIKELIEST)
 @options.heading("ANGLE", "theta, counter-clockwise from above.", default="0deg")
 @options.as_published("Solve the thesis's printed equations, [4.13] to [4.28].")
 @options.bowl
@@ -55,7 +55,7 @@ def floor(
 
 @grouped.command(short_help="Reactions and motion of a part on the track, against the wall.")
 @options.part
-@options.option("--aspect", "NAME", LIKELIEST)
+@options.aspect(LIKELIEST)
 @options.heading("ANGLE", "As laid down.  [default: the most frequent]")
 @options.as_published("Solve the thesis's printed equations, [4.29] to [4.62].")
 @options.vary("Twice, for a map: track.bank=0:30:61.  [default: bank and climb, with -o]")
@@ -105,7 +105,7 @@ def track(
 
 @grouped.command(short_help="How a part lies along the track's wall, and whether it stays on.")
 @options.part
-@options.option("--aspect", "NAME", "As `feeder aspects` names it.  [default: every one]")
+@options.aspect("As `feeder aspects` names it.  [default: every one]")
 @options.bowl
 @options.drawn_output
 def headings(part: Values, aspect: str | None, bowl: Values, out: Output) -> None:

@@ -3,7 +3,7 @@
 import functools
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import click
@@ -172,6 +172,30 @@ class Option(click.Option):
         return record
 
 
+class AspectOption(Option):
+    """An option of an aspect, which takes the name of an orientation, 'A@354', for both of its options."""
+
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:
+        super().__init__(*arguments, is_eager=True, **keywords)  # before --heading and --outcome
+
+    def handle_parse_result(
+        self, ctx: click.Context, opts: Mapping[str, Any], args: list[str]
+    ) -> tuple[Any, list[str]]:
+        """Give the aspect, and to ``--heading`` and ``--outcome`` what the name says of them."""
+        text = opts.get("aspect")
+        named = ORIENTATION.fullmatch(text.strip()) if isinstance(text, str) else None
+        takes = {param.name for param in ctx.command.params}
+        if named and "heading" in takes and isinstance(opts, dict):
+            if opts.get("heading") is not None:
+                raise WrongValue(f"{text!r} names a heading, as --heading does", "give one of both", ctx=ctx)
+            opts |= {"aspect": named["aspect"], "heading": f"{named['degrees']}deg"}
+            if named["hangs"] and "outcome" in takes:
+                opts.setdefault("outcome", "hanging")
+        return super().handle_parse_result(ctx, opts, args)
+
+
+# as ``orientation_names.NAMED``, which loads numpy
+ORIENTATION = re.compile(r"(?P<aspect>[^@\s]+)@(?P<degrees>\d{1,3}(\.\d+)?)(?P<hangs> +hanging( \d+)?)?")
 FILE = Place(allow_dash=True)
 LENGTH_UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
 LAUNCHES = ("place", "drop", "flip", "roll", "feed", "tumble")  # the last: once that of roll
@@ -184,6 +208,11 @@ METAVARS = {"length": "LENGTH", "number": "SHARE", "rate": "RATE", "time": "TIME
 def option(names: str, /, metavar: str | None, text: str, **keywords: Any) -> Callable:
     """Return an option of a text, or of ``type``; ``former`` are names that it once had."""
     return click.option(*names.split(), cls=Option, metavar=metavar, help=text, **keywords)
+
+
+def aspect(text: str, **keywords: Any) -> Callable:
+    """Return the option ``--aspect``: the name of an aspect, or of one of its orientations, 'A@354'."""
+    return click.option("--aspect", cls=AspectOption, metavar="NAME", help=text, **keywords)
 
 
 def flag(names: str, text: str, **keywords: Any) -> Callable:

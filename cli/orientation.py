@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from feederscrew.studies.rate import Shares
 
 CHAIN_OPTIONS = (
-    options.option("--aspect", "NAME", "Aspect on which the part must leave the bowl.", required=True),
+    options.aspect("Aspect on which the part must leave the bowl.", required=True),
     options.heading(
         "DEG",
         "Heading it is laid down in, which the wall turns to the next stable one.  "
@@ -33,7 +33,7 @@ chain = options.group("chain_options", *CHAIN_OPTIONS)
 
 def any_chain(text: str) -> tuple[Callable, ...]:
     """Return the same options where ``--aspect``, of what the help says, may be left out."""
-    return (options.option("--aspect", "NAME", text), *CHAIN_OPTIONS[1:])
+    return (options.aspect(text), *CHAIN_OPTIONS[1:])
 
 
 LAUNCHED = options.choice(

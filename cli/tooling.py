@@ -15,7 +15,7 @@ from feederscrew_cli.options import Output, Values
     rare=("step", "cutter", "play", "tolerance", "cad", "verdicts", "seconds"),
 )
 @options.part
-@options.option("--aspect", "NAME", "Aspect on which the part must leave.  [default: every orientation]")
+@options.aspect("Aspect on which the part must leave.  [default: every orientation]")
 @options.heading("DEG", "Heading of that aspect.  [default: the most frequent]")
 @options.rule
 @options.quantity(
@@ -48,7 +48,9 @@ from feederscrew_cli.options import Output, Values
     default="any",
     text="How parts must leave: as they lie, hanging between rails, or either.",
 )
-@options.option("--without", "KIND,...", "Kinds of devices that are not used: wiper,cut_out.", default="")
+@options.option(
+    "--without", "KIND,...", "Kinds of devices that are not used: 'wiper,vision reject'.", default=""
+)
 @options.quantity(
     "--step",
     "length",

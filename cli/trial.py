@@ -27,9 +27,7 @@ class FilmFile(Place):
     rare=("landing", "poured", "measured", "amplitudes"),
 )
 @options.part
-@options.option(
-    "--aspect", "NAME", "Send only the orientations of this aspect.  [default: every orientation]"
-)
+@options.aspect("Send only orientations of this aspect, or one, A@354.  [default: every one]")
 @options.rule
 @orientation.share_options
 @options.whole("--parts", 1, 10**6, "Parts that are sent one at a time.  [default: 200; with --queue 60]")

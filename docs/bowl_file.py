@@ -34,10 +34,14 @@ def filled(text):
         if "properties" in value:
             parts.append(f"\n### `{section}`\n\n{value['description']}\n\n{HEAD}")
             parts += [_row(f"{section}.{word}", key) for word, key in value["properties"].items()]
-    devices = "| Device | Example | Meaning |\n|---|---|---|\n"
+    devices = "| Device | Of before | Example | Meaning |\n|---|---|---|---|\n"
+    former = {value["description"]: kind for kind, value in kinds.items() if value.get("deprecated")}
     for kind, value in kinds.items():
+        if value.get("deprecated"):
+            continue
         meaning, example = value["description"].split(". Example: ")
-        devices += f"| `{kind}` | `{example}` | {meaning} |\n"
+        old = former.get(value["description"])
+        devices += f"| `{kind}` | {f'`{old}`' if old else ''} | `{example}` | {meaning} |\n"
     return between(between(text, "bowl keys", "".join(parts)), "devices", devices)
 
 

@@ -65,7 +65,7 @@ def aspects(axes):
     fill(axes, lying - (lying[:, 0].min() + 10.0, lying[:, 1].min()))
     fill(axes, turned(BOLT, 90 * DEG, (28.0, 7.0)))
     fill(axes, turned(BOLT, -90 * DEG, (48.0, 11.0)))
-    for name, x in (("A: on side", -1), ("B: on its head", 28), ("C: on its tip", 48)):
+    for name, x in (("A: on edges", -1), ("B: on end", 28), ("C: on end", 48)):
         note(axes, name, x, -3)
 
 

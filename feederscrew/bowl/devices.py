@@ -195,13 +195,13 @@ def _same_device(a: object, b: object) -> bool:
 
 
 def _device(item: documents.Node) -> Device:
-    from feederscrew.tooling.devices.kinds import KINDS  # 20 ms, where a bowl has devices
+    from feederscrew.tooling.devices.kinds import KINDS, find_kind  # 20 ms, where a bowl has devices
 
     if item.kind != "mapping" or len(item.entries) != 1:
         raise ConfigError(item.where, "is not a device", "write one '- wiper: 6 mm' a line")
     entry = item.entries[0]
-    if entry.key not in KINDS:
+    kind = find_kind(entry.key)
+    if kind is None:
         what = f"unknown device {units.quantity_text(entry.key)}"
         raise ConfigError(entry.where, what, documents.hint(entry.key, list(KINDS)))
-    kind = KINDS[entry.key]
     return kind(entry.where, text=written(entry.value), **kind.read(entry))

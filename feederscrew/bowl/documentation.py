@@ -10,6 +10,7 @@ from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.reading import OF_THE_MACHINE, default
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
 from feederscrew.errors import FeederError
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.value_forms import UNITLESS, quantity
 
@@ -127,8 +128,9 @@ def json_schema() -> dict[str, Any]:
         "items": {
             "type": "object",
             "properties": {
-                kind: {"description": f"{key.meaning}. Example: {key.example}", **key.form}
-                for kind, key in KINDS.items()
+                name: _device_form(kind) | ({"deprecated": True} if name == kind.old_kind else {})
+                for kind in KINDS.values()
+                for name in filter(None, (kind.kind, kind.old_kind))
             },
             "additionalProperties": False,
             "minProperties": 1,
@@ -159,6 +161,11 @@ def write_beside(path: str | PathLike[str]) -> Path:
     ours = place.is_file() and f'"title": "{TITLE}"' in place.read_text(encoding="utf-8", errors="replace")
     write_new(place, schema_text(), replace=ours)
     return place
+
+
+def _device_form(kind: type[Device]) -> dict[str, Any]:
+    """The schema of one kind of device."""
+    return {"description": f"{kind.meaning}. Example: {kind.example}", **kind.form}
 
 
 def _value(key: Key) -> dict[str, Any]:

@@ -158,7 +158,8 @@ def fingerprint(bowl: Bowl) -> str:
         also = [end for other in device.also for end in other]
         numbers = " ".join(f"{end:.5g}" for end in (*device.span, *flat, *device.like[1:], *also[1::2]))
         own = " ".join(_own(getattr(device, e.name)) for e in fields(device) if e.name not in SHARED)
-        listed.append(f"{device.kind} {limit} {(*device.like[:1], *also[::2])} {numbers} {own}")
+        name = device.old_kind or device.kind  # as in the fingerprints of files that were tried before
+        listed.append(f"{name} {limit} {(*device.like[:1], *also[::2])} {numbers} {own}")
     return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]
 
 

@@ -31,6 +31,7 @@ from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
 from feederscrew.studies.tooling import listed as names_of
+from feederscrew.studies.tooling import may_be_left_out
 from feederscrew.tooling.isolating.chain import OutcomeKind
 
 
@@ -159,7 +160,7 @@ def design(
         heading=arguments.angle("heading", heading),
         up=names_of(up),
         outcome=check.choice("outcome", outcome, OutcomeKind),
-        without=names_of(without),
+        without=may_be_left_out(without),
         diameter=None if diameter is None else arguments.pair("diameter", diameter, "length"),
         rule=looked.rule,
         drive=check.choice("drive", drive, DriveKind),

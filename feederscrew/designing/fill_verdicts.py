@@ -174,8 +174,8 @@ def _passed_device(pose: LeavingPose | None, cuts: tuple) -> str:
     if pose is not None and pose.kind is PoseKind.ORIENTATION:
         for cut in reversed(cuts):
             if pose.name in cut.returns:
-                return cut.device.name
-    return cuts[-1].device.name if cuts else BARE_TRACK
+                return cut.device.kind
+    return cuts[-1].device.kind if cuts else BARE_TRACK
 
 
 def _worst_place(queue: FilledQueue, others: Sequence[FilledQueue]) -> tuple[str, int]:

@@ -27,7 +27,6 @@ class End:
     fate: Fate  # TURNED of one that left otherwise, at the last station that turned it
     station: int = 0  # place along the chain of what stands on the track; 0 is the bare track
     kind: str = ""  # of the device there; '' on the bare track
-    device: str = ""  # its name, for a sentence
 
     @property
     def on_bare_track(self) -> bool:
@@ -112,7 +111,6 @@ class Move:
     kind: MoveKind
     value: float = 0.0  # margin, slot or stroke peak to peak [m], sweep [rad] or pulse [s]
     device: str = ""  # kind of the device that is changed or added
-    device_name: str = ""
     device_text: str = ""  # its value as a bowl file writes it
 
 

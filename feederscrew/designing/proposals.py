@@ -340,7 +340,7 @@ def mend_proposal(
 
 def _move_of(kind: MoveKind, device: Device, value: float = 0.0) -> Move:
     """A move by which a device has changed, or is added."""
-    return Move(kind, value, device.kind, device.name, device.text)
+    return Move(kind, value, device.kind, device.text)
 
 
 def _cut_more(

@@ -576,7 +576,7 @@ def _instead(study: DesignStudy, queue: FilledQueue) -> str:
     lines = []
     for pose, count in queue.left_instead[:3]:
         # through which device that should return it
-        device = next((cut.device.name for cut in reversed(study.cuts) if pose.name in cut.returns), "")
+        device = next((cut.device.kind for cut in reversed(study.cuts) if pose.name in cut.returns), "")
         through = f" (through the {device})" if device else ""
         lines.append(f"{pose.text}: {count} of {queue.left}{through}")
     own = study.wanted_aspect

@@ -237,7 +237,7 @@ def try_parts(
     def end_at(fate: Fate, station: int) -> End:
         device = followed.stations[station].device
         bare = device.kind in ("", Device.kind)
-        return End(fate, 0) if bare else End(fate, station, device.kind, device.name)
+        return End(fate, 0) if bare else End(fate, station, device.kind)
 
     def turned_at(part_number: int) -> int:
         # the last station at which it came into the orientation in which it left

@@ -15,7 +15,7 @@ from feederscrew.units import counted
 
 def end_text(end: End) -> str:
     """Return how and where a part ended: 'returned at gap', 'turned on the track'."""
-    place = "on the track" if end.on_bare_track else f"at {end.device}"
+    place = "on the track" if end.on_bare_track else f"at {end.kind}"
     return f"{end.fate.word.replace('_', ' ')} {place}"
 
 
@@ -79,7 +79,7 @@ def move_text(move: Move) -> str:
         case MoveKind.DROP_BEFORE:
             return f"{move.device} of {move.device_text} before it"
         case MoveKind.PRESSURE_BREAK:
-            return f"{move.device_name} of {move.device_text} before it, for what backs up"
+            return f"{move.device} of {move.device_text} before it, for what backs up"
         case MoveKind.CALMER_DRIVE:
             return f"calmer drive, {1e3 * move.value:.3g} mm peak to peak"
         case MoveKind.LIVELIER_DRIVE:

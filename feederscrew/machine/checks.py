@@ -117,7 +117,7 @@ def _limits(sheet: Any) -> Iterator[FeederError]:
         what = f"{there} is more than drives are built for"
         yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
     # devices that a part meets on the track, where it hops higher than their margin
-    over = [device.name for device in bowl.devices if device.placed and not device.overhead]
+    over = [device.kind for device in bowl.devices if device.placed and not device.overhead]
     for remark in hop.remark(bowl) if over else ():
         names = units.listed(list(dict.fromkeys(over)))
         what = f"at the throw number {sheet.answer.throw_number:.3g} {remark}"

@@ -15,7 +15,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output.columns import UJ
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
-from feederscrew.resting.aspects import Aspects, names_text, postures
+from feederscrew.resting.aspects import Aspects, names_text
 from feederscrew.resting.exact_tumbling import Transition
 from feederscrew.resting.inertia_products import find_products
 from feederscrew.resting.rules.recommended import Recommended
@@ -43,7 +43,8 @@ def aspects(study: AspectsStudy) -> Frame:
     """
     resting, hull, count = study.aspects, study.part.hull, len(study.aspects.names)
     circles = np.where(np.isfinite(resting.rolling_circles), resting.rolling_circles, np.nan)
-    names = f"aspect=names kind=kinds faces stable {'/'.join(NORMALS)}=normals height_mm=heights"
+    lies = "" if hull is None else "lies rolls"
+    names = f"aspect=names {lies} faces stable {'/'.join(NORMALS)}=normals height_mm=heights"
     sizes = "contact_area_mm2=contact_areas solid_angle_sr=solid_angles polar_inertia_g_mm2=polar_inertias"
     table = row_of(resting, names, sizes)
     table |= {f"p_{rule}": chance for rule, chance in resting.probabilities.items()}
@@ -53,9 +54,6 @@ def aspects(study: AspectsStudy) -> Frame:
     if resting.barriers is not None:
         names = "barrier_mm=barriers barrier_uJ=barrier_energies tip_angle_deg=tip_angles"
         table |= row_of(resting, names)
-    table["form"] = resting.forms
-    if hull is not None:
-        table["lies"] = postures(resting.normals, resting.contact_areas, resting.kinds, hull)
     table["rolling_circle_mm"] = circles / MM
     for name, answer in (("p_drop", study.tally), ("p_recommended", study.recommended)):
         if answer is not None:
@@ -280,8 +278,8 @@ def aspect_views(
 
 
 def _caption(axes: "style.Axes", aspects: Aspects, row: int, answer: Recommended | None) -> None:
-    """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
-    what = f"{aspects.kinds[row]} ×{aspects.faces[row]}" if aspects.stable[row] else "not stable"
+    """Name, count, lying of a class; the recommended answer with its interval, then every rule, smaller."""
+    what = f"{aspects.lies[row]} ×{aspects.faces[row]}" if aspects.stable[row] else "not stable"
     look: dict[str, Any] = {"color": style.INK, "va": "center"}
     name = axes.text(30, -0.6 * LINE_PX, aspects.names[row], fontsize=11, fontweight="bold", **look)
     after_name: dict[str, Any] = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}

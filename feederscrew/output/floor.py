@@ -117,7 +117,7 @@ def document(study: FloorStudy) -> dict[str, Any]:
         values = {"instant": instant(study.printed, posture, bowl)}
         values["difference"] = difference(values["instant"], now, study.terms)  # type: ignore[attr-defined]
     return {
-        **row_of(study, "part=part.name aspect=posture.name kind=posture.kind form=posture.form"),
+        **row_of(study, "part=part.name aspect=posture.name lies=posture.lies rolls=posture.rolls"),
         "heading_deg": float(np.degrees(study.heading)),
         **row_of(posture, "height_mm drive_offset_mm=offset"),
         "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
@@ -288,7 +288,7 @@ def plan(
 ) -> "style.Figure":
     """Draw the part from above at the upper reversal, a FloorMotion, at a heading [rad], with its forces."""
     spread = np.ptp(turned(posture.outline, heading), axis=0)
-    aspect = f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
+    aspect = f"Aspect {posture.name}" + (" (rolls)" if posture.rolls else "")
     state = MOTION_STATES[int(motion.state)]
     title = f"{aspect}, heading {np.degrees(heading):.4g}° at the upper reversal: {state}"
     height = 1.5 + 5.0 * float(np.clip(1.3 * spread[1] / spread[0], 0.5, 1.0))

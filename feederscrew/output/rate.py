@@ -134,7 +134,7 @@ def remarks(study: RateStudy) -> list[str]:
             f"needs {offered / share / PER_MINUTE:,.0f} parts a minute there{none}"
         )
     # what turns parts, or lets nothing through
-    if turning := [device.name for device in study.devices if device.turns]:
+    if turning := [device.kind for device in study.devices if device.turns]:
         lines.append(f"{', '.join(turning)}: quasi-static, until a trial confirms it")
     if wanted.turns_over or chain.through != 0.0:
         return lines
@@ -142,7 +142,7 @@ def remarks(study: RateStudy) -> list[str]:
         turned = "what lands in the wanted orientation is turned or returned; what leaves in it was turned"
         return [*lines, turned]
     devices = (
-        f"{device.name} ({device.text})" if np.isfinite(device.limit) else device.name
+        f"{device.kind} ({device.text})" if np.isfinite(device.limit) else device.kind
         for device in study.devices
     )
     stations = zip(("the track", *devices), orientations.passes[chain.row])
@@ -153,7 +153,7 @@ def remarks(study: RateStudy) -> list[str]:
 
 def _jam_remarks(study: RateStudy) -> list[str]:
     orientations, lines = study.rate.orientations, []
-    for place, name in enumerate(("the track", *(f"the {device.name}" for device in study.devices))):
+    for place, name in enumerate(("the track", *(f"the {device.kind}" for device in study.devices))):
         shares = orientations.stops[:, place]
         stands = [item.name for item, share in zip(orientations.lying, shares) if share > 0.0]
         if stands and study.rate.jams > 0.0:
@@ -169,7 +169,7 @@ def _spacing_remarks(study: RateStudy) -> list[str]:
     orientations = study.rate.orientations
     if study.rate.gap > orientations.gap or not orientations.gap > 0.0:
         return []
-    kinds = [device.name for device in study.devices if device.gap(orientations.lying[0], 0.0) > 0.0]
+    kinds = [device.kind for device in study.devices if device.gap(orientations.lying[0], 0.0) > 0.0]
     return [
         f"{units.listed(kinds)} looks at one part at a time: the rate is that of parts that come "
         f"{orientations.gap / MM:.3g} mm apart - a spacing section before it makes that less"

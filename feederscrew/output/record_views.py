@@ -93,7 +93,7 @@ def _bowl(bowl: Bowl) -> str:
         last = [counted(overrides, "override")] if overrides else []
         origin = ", ".join([*(files or ["defaults"]), *last])
     drive, friction, track = bowl.drive, bowl.friction, bowl.track
-    devices = ", ".join(device.name for device in bowl.devices) or "none"
+    devices = ", ".join(device.kind for device in bowl.devices) or "none"
     return (
         f"{origin}: amplitude {_number(drive.amplitude, MM)} mm at {_number(drive.frequency)} Hz and "
         f"{_number(drive.vibration_angle, DEGREE)} deg, friction {_number(friction.static)}, "
@@ -186,7 +186,7 @@ def _tooling(study: "ToolingStudy") -> str:
     texts = []
     for design in (design for design in study.designs if design is not None):
         text = f"{_orientation(study.orientations[design.wanted])} {'not ' * (not design.isolated)}isolated"
-        cuts = [cut.device.name for cut in design.cuts]
+        cuts = [cut.device.kind for cut in design.cuts]
         if design.isolated or cuts:
             efficiency, purity = _number(design.efficiency, PERCENT), _number(design.purity, PERCENT)
             by = ", ".join(cuts) or "the devices of the bowl"
@@ -212,7 +212,7 @@ def _design(study: "DesignStudy") -> str:
     value, low, high = (_number(rate * MINUTE) for rate in study.delivered)
     return (
         f"{study.part.name}: {study.status}, {study.wanted} at {value} parts/min ({low} to {high}) through "
-        f"{', '.join(device.name for device in study.devices) or 'no device'}"
+        f"{', '.join(device.kind for device in study.devices) or 'no device'}"
         + (f" - {study.why:.240}" if study.why else "")
     )
 

@@ -175,7 +175,7 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
     for row in rows:
         kind, bars = "not stable", list[ShareBar]()
         if resting.stable[row]:
-            kind, answer = f"{resting.forms[row]} ×{resting.faces[row]}", resting.recommended
+            kind, answer = f"{resting.lies[row]} ×{resting.faces[row]}", resting.recommended
             if answer is not None:  # the table has the rules
                 share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
                 bars.append(ShareBar("recommended", style.ANSWER, share, (low, high)))
@@ -423,7 +423,7 @@ def tooling(case: ReportStudy) -> Chapter | None:
         "it passes or fails. Verdicts are quasi-static: they hold while the part slides without hopping."
     )
     blocks: list[Block] = [Text(lead)]
-    if kinds := dict.fromkeys(device.name for device in study.devices if device.turns):
+    if kinds := dict.fromkeys(device.kind for device in study.devices if device.turns):
         turned = f"Where parts land that {' and '.join(kinds)} turn over"
         blocks.append(Text(f"{turned} is quasi-static, until a trial confirms it."))
     # the part over the track, to be turned: the most frequent that leaves, and the nearest that falls

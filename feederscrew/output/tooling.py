@@ -161,7 +161,7 @@ def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
     rows = _rows(study)
     for row, design in zip(rows, study.designs):
         if people and design is not None:
-            row["devices"] = [cut.device.name for cut in design.cuts]
+            row["devices"] = [cut.device.kind for cut in design.cuts]
         for name, between in (("devices", ", "), ("left_over", " "), ("reasons", "; ")):
             row[name] = between.join(row[name] or ())
     return tables.of_rows(rows)
@@ -260,12 +260,12 @@ def passages(study: PassagesStudy) -> Frame:
     for place, device in enumerate(study.devices):
         verdicts = [ridden[place].verdict if place < len(ridden) else None for ridden in study.passages]
         margins = [verdict.margin / MM if verdict and verdict.sure else None for verdict in verdicts]
-        table[f"{device.name} {place + 1}_mm"] = margins
+        table[f"{device.kind} {place + 1}_mm"] = margins
     outcomes = table["outcome"] = []
     for orientation, ridden in zip(study.orientations, study.passages):
         if ridden and (last := ridden[-1]).verdict.passes <= 0.0:
             doubt = "" if last.verdict.sure else ", not sure"
-            outcomes.append(f"{last.fate} by the {last.device.name}{doubt}")
+            outcomes.append(f"{last.fate} by the {last.device.kind}{doubt}")
         else:
             outcomes.append(track_sections.passage_fate(orientation, ridden))
     return tables.frame(table)

@@ -154,7 +154,7 @@ def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View,
         places = sorted(lengths) or [start]
         along += [place for place in places if place <= view.right]
         name = view.placed([places[0], width]) + [0.5, 13.0 + 4.0 * (number % 2 == 0)]
-        drawing.text(float(name[0]), float(name[1]), f"{number}  {station.device.name}", 2.5)
+        drawing.text(float(name[0]), float(name[1]), f"{number}  {station.device.kind}", 2.5)
         if station.hole is not None:
             _dimension_cut(drawing, station.hole, view, width)
         if station.standing.sensor is not None:
@@ -307,7 +307,7 @@ def _openings(drawing: Drawing, strip: TrackSection) -> float:
         places = [float(y) for y in np.unique(np.round(inner[:, 0], 6)) if y > 1e-6][:8]
         for y, end in zip(places, spread([right + y for y in places], TEXT_GAP)):
             drawing.ordinate((right + y, 0.0), (end, -NUMBERS), (right, 0.0), False)
-        drawing.text(right, -NUMBERS - 6.0, f"opening of the {station.device.name}", 2.5)
+        drawing.text(right, -NUMBERS - 6.0, f"opening of the {station.device.kind}", 2.5)
         right, count = widest + VIEW_GAP_MM + 15.0, count + 1
     return right - VIEW_GAP_MM
 

@@ -62,7 +62,7 @@ def chain(
             value = f" {device.text}" if np.isfinite(device.limit) else ""
             value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
             value += f" {device.like[2] / MM:.3g} mm" if device.like else ""
-            write_text(page, left, PAGE_HEAD_PX - 22, f"{place + 1}  {device.name}{value}", weight="bold")
+            write_text(page, left, PAGE_HEAD_PX - 22, f"{place + 1}  {device.kind}{value}", weight="bold")
         write_text(page, (panel + 1) * wide - OUT + 8, PAGE_HEAD_PX - 22, "as it leaves", weight="bold")
     size = _scale(orientations, rows, column)
     _draw_scale_bar(page, panels * wide - 16, 66, size)  # below the title, which may be as long
@@ -78,9 +78,9 @@ def chain(
         if through:
             word = track_sections.passage_fate(orientation, passages)
             if orientation.returned and (other := _would_return(placed, orientation, orientations)):
-                word = f"{word}; else returned by {other.name}"
+                word = f"{word}; else returned by {other.kind}"
         else:
-            word = f"{passages[-1].fate} by {passages[-1].device.name}"
+            word = f"{passages[-1].fate} by {passages[-1].device.kind}"
         last = passages[-1].after if passages else orientation
         colour = PASSED_COLOUR if through and not last.returned else REJECTED_COLOUR
         write_text(page, left + 16, top + 30, orientation.name, size=12, weight="bold", colour=colour)
@@ -143,7 +143,7 @@ def limits(study: ToolingStudy, words: str) -> Figure:
         if design is None:
             lines = ["not asked for"]
         elif study.isolates(k):
-            named = " and ".join(cut.device.name for cut in design.cuts) or "no device"
+            named = " and ".join(cut.device.kind for cut in design.cuts) or "no device"
             leave = 100.0 * (design.least if tried is None else tried.efficiency)
             margin = f"margin {design.margin / MM:.2f} mm" if np.isfinite(design.margin) else ""
             lines = [*textwrap.wrap(named, LAST_COLUMN_LETTERS), f"{leave:.3g} % of the parts leave", margin]

@@ -118,7 +118,7 @@ def poses(
     """Return the passages worth a view, each with a few words: 'gap, margin +0.64 mm'."""
     listed = []
     for passage, _, _ in _views(devices, orientations, shares, wanted_row):
-        words = f"{passage.device.name}, {margin_words(passage.verdict)}"
+        words = f"{passage.device.kind}, {margin_words(passage.verdict)}"
         listed.append((passage, "in the rails" if passage.orientation.kind == "hanging" else words))
     return listed
 
@@ -132,7 +132,7 @@ def _over_a_cut(passage: Passage) -> bool:
 
 
 def _caption(passage: Passage, word: str) -> tuple[str, str]:
-    kind = passage.device.name
+    kind = passage.device.kind
     where = "half way through" if passage.verdict.passes > 0.0 else "in front of it"
     if _over_a_cut(passage):
         where = "where it is supported least; outline: what supports it, dot: weight"

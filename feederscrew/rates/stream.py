@@ -1,5 +1,6 @@
 """Every orientation of a part in the queue, and what becomes of it at each device."""
 
+import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -19,6 +20,7 @@ from feederscrew.resting.profiles import AspectProfile, CountFile, DeviceCounts
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, widen_for_launch
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.devices.base import UNSURE, Device
+from feederscrew.tooling.devices.kinds import find_kind
 from feederscrew.tooling.devices.orientation_names import place
 from feederscrew.tooling.falling import clearing_time
 from feederscrew.tooling.fates import at_entry, course
@@ -146,8 +148,9 @@ class Orientations:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the names of the stations: 'track', 'wiper_1', 'gap_2'."""
-        return tuple(f"{name}_{place}" if place else name for place, name in enumerate(self.stations))
+        """Return the names of the stations, as heads of columns: 'track', 'wiper_1', 'vision_reject_2'."""
+        heads = (re.sub(r"\W+", "_", name) for name in self.stations)
+        return tuple(f"{name}_{place}" if place else name for place, name in enumerate(heads))
 
     @property
     def aspects(self) -> tuple[str, ...]:
@@ -390,7 +393,8 @@ def counted_stations(queue: Orientations, counts: DeviceCounts) -> Floats:
     ----------
     queue : Orientations
     counts : DeviceCounts
-        Its devices are named as the stations are, 'gap_2', or by a kind that is there once.
+        Its devices are named as the stations are, 'gap_2', or by a kind that is there once,
+        as ``find_kind`` takes it.
 
     Returns
     -------
@@ -406,19 +410,29 @@ def counted_stations(queue: Orientations, counts: DeviceCounts) -> Floats:
     ----------
     docs/counts.md, "A feeding test, device by device".
     """
-    stations = {name: place for place, name in enumerate(queue.names)}
-    once = {kind: queue.stations.index(kind) for kind in queue.stations if queue.stations.count(kind) == 1}
     places: list[int] = []
     for line, name in zip(counts.lines, counts.names):
-        place, where = (once | stations).get(name), f"{counts.source}:{line}"
+        place, where = _station(queue, name), f"{counts.source}:{line}"
         if place is None:
             what = f"the bowl has no device {name[:30]!r}"
-            raise FeederError(where, what, hint(name, list(stations)))
+            raise FeederError(where, what, hint(name, list(queue.names)))
         if place in places:
             what = f"device {name!r} is that of line {counts.lines[places.index(place)]}"
             raise FeederError(where, what, "keep one of them")
         places.append(place)
     return np.array(places)
+
+
+def _station(queue: Orientations, name: str) -> int | None:
+    """Place of the station that a name means: 'track', 'wiper_1', or a kind that is there once; or None."""
+    if name in queue.names:
+        return queue.names.index(name)
+    numbered = re.fullmatch(r"(.*)_(\d+)", name)
+    kind = find_kind(numbered[1] if numbered else name)
+    places = [place for place, own in enumerate(queue.stations) if kind is not None and own == kind.kind]
+    if numbered:
+        return next((place for place in places if str(place) == numbered[2]), None)
+    return places[0] if len(places) == 1 else None
 
 
 def station_shares(queue: Orientations, names: Sequence[str]) -> Floats:

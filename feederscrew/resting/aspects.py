@@ -1,4 +1,4 @@
-"""The resting aspects of a part: equal ones joined into classes, named and ranked; their forms in words.
+"""The resting aspects of a part: equal ones joined into classes, named and ranked.
 
 Equal faces are those that a rotation symmetry of the part carries into each other. Names are letters by
 rank, or those a user has given, matched by direction. Facets on which the part stands, but which are merged
@@ -25,7 +25,7 @@ from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.mass import Moments
 from feederscrew.part.record import PART_MEND, AspectNames, Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting import exact_tumbling, walks
+from feederscrew.resting import exact_tumbling, lying, walks
 from feederscrew.resting.faces import EQUAL_HEIGHT_SHARE, ONE_PLANE, Face, stable_faces, unstable_faces
 from feederscrew.resting.landscape import SMOOTH_ANGLE, Landscape, angle, landscape
 from feederscrew.resting.rules import formulas, recommended, registry
@@ -41,9 +41,6 @@ BALL = "ball"
 OFF_CENTRE = "off-centre ball"
 WITH_A_FLAT = "ball with a flat"
 ASPECTS_MEND = "give Aspects, as find_aspects returns them"
-ROLLING_POSTURE = "on side (rolls)"
-SAME_SIZE = 0.02  # share by which two sizes of a part may differ and count as one, for a posture's words
-OPPOSITE = -0.9999  # cosine between the normals of two faces that lie back to back
 LEVEL_SLOPE = 1e-3  # [1] slope of an axis that counts as level: a file's noise on a short cylinder
 BALL_REMARK = "the part is a ball: it rests on no aspect, its one class rolls in every direction"
 CENTRED_BALL_REMARK = (
@@ -71,7 +68,8 @@ class Aspect(ReadableRecord):
     """One resting aspect of a part, as ``aspects["A"]`` gives it."""
 
     name: str
-    form: str  # 'flat', or what rolls: 'cylinder', 'cone', 'ball'
+    lies: str  # 'on its largest face', one of ``lying.Lies``; '' of a card
+    rolls: bool  # whether it lies on a round side
     faces: int  # equal ones of the part
     stable: bool
     share: float  # [1] by the recommended answer, of a card by CSA; NaN where none is known
@@ -92,7 +90,8 @@ class Aspects(ReadableRecord):
 
     names: tuple[str, ...]
     kinds: tuple[str, ...]  # 'flat' or 'rolling'
-    forms: tuple[str, ...]  # 'flat', or what rolls: 'cylinder', 'cone', 'ball'; ``forms.forms`` lists them
+    forms: tuple[str, ...]  # 'flat', or what rolls: 'cylinder', 'cone', 'ball', as ``_form`` says
+    lies: tuple[str, ...]  # 'on its largest face', each one of ``lying.Lies``; '' of a card
     faces: Ints  # (A,) int, equal aspects in the class
     stable: Bools  # (A,) bool
     normals: Floats  # (A, 3) outward, of one face of the class; points down when the part rests on it
@@ -137,7 +136,8 @@ class Aspects(ReadableRecord):
         answer = self.recommended
         return Aspect(
             name=self.names[row],
-            form=self.forms[row],
+            lies=self.lies[row],
+            rolls=bool(self.rolls[row]),
             faces=int(self.faces[row]),
             stable=bool(self.stable[row]),
             share=math.nan if share is None else float(share[row]),
@@ -160,6 +160,11 @@ class Aspects(ReadableRecord):
         """
         answers = {"closed": self.closed, "recommended": self.recommended}
         return self.probabilities | {name: answer.p for name, answer in answers.items() if answer is not None}
+
+    @property
+    def rolls(self) -> Bools:
+        """Which rows (A,) lie on a round side."""
+        return np.array([kind != FLAT for kind in self.kinds], dtype=bool)
 
     @property
     def rolling_circles(self) -> Floats:
@@ -237,6 +242,8 @@ def find(
     label = join_classes(faces, part, moments)
     groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
     table = _geometry(groups, part, hull)
+    noise = max((face.roughness for face in faces if face.kind == FLAT), default=0.0)
+    table["lies"] = lying.describe_lying(part, hull, basins, [group[0] for group in groups], noise)
     # probabilities by the rules that weigh classes, with the facets that are no aspect and without
     heights = table["heights"]
     quantities = ClassQuantities(
@@ -260,7 +267,7 @@ def find(
         {rule: check.frozen(chance[order]) for rule, chance in of.items()} for of in (chances, complete)
     )
     columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
-    columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")}
+    columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "lies", "polygons")}
     ground = exact_tumbling.ground_faces(hull, stable, np.argsort(order)[label][: len(stable)])
     aspects = Aspects(names=names, probabilities=chances, complete=complete, ground=ground, **columns)
     # all that exact tumbling adds, and the closed form for a launch or for the user's own surface
@@ -328,52 +335,6 @@ def _form(face: Face, hull: Hull, flats: bool) -> str:
     if np.ptp(hull.heights[face.triangles]) < EQUAL_HEIGHT_SHARE * face.height:
         return BALL
     return WITH_A_FLAT if flats else OFF_CENTRE
-
-
-def postures(normals: Floats, contact_areas: Floats, kinds: tuple[str, ...], hull: Hull) -> list[str]:
-    """Return in words how a part lies on each class: its height there beside its least and greatest height.
-
-    The words are 'flat', 'on end' or 'on side'. For a flat class they add that the face that is down is the
-    larger or smaller of two back to back, or the largest of the part; for a rolling class, that it rolls.
-
-    Parameters
-    ----------
-    normals : (A, 3) float [1]
-        Outward normal of the side that is down.
-    contact_areas : (A,) float [m2]
-    kinds : tuple of A str
-        'flat' or 'rolling'.
-    hull : Hull
-
-    Returns
-    -------
-    list of A str
-
-    References
-    ----------
-    Own.
-    """
-    sizes = np.ptp((hull.vertices[:, None, :] * normals[None, :, :]).sum(axis=-1), axis=0)
-    texts = []
-    for row, (kind, size, area) in enumerate(zip(kinds, sizes, contact_areas)):
-        if kind != FLAT:
-            texts.append(ROLLING_POSTURE)
-            continue
-        if np.ptp(sizes) <= SAME_SIZE * sizes.max():
-            words = "flat" if size < hull.radius else "on a face"
-        elif size <= sizes.min() * (1.0 + SAME_SIZE):
-            words = "flat"
-        else:
-            words = "on end" if size >= sizes.max() * (1.0 - SAME_SIZE) else "on side"
-        opposite = np.flatnonzero((normals * normals[row]).sum(axis=-1) < OPPOSITE)
-        unlike = opposite[np.abs(contact_areas[opposite] - area) > SAME_SIZE * area]
-        largest = contact_areas.max()
-        if len(unlike):
-            words += f" ({'larger' if area > contact_areas[unlike[0]] else 'smaller'} face)"
-        elif area >= largest * (1.0 - SAME_SIZE) and np.ptp(contact_areas) > SAME_SIZE * largest:
-            words += " (largest face)"
-        texts.append(words)
-    return texts
 
 
 def form_remarks(forms_of_classes: list[str]) -> tuple[str, ...]:
@@ -468,6 +429,7 @@ def _from_card(part: Part) -> Aspects:
         names=tuple(row.name for row in rows),
         kinds=(FLAT,) * len(rows),
         forms=(FLAT,) * len(rows),
+        lies=("",) * len(rows),
         faces=faces,
         stable=stable,
         normals=nothing,

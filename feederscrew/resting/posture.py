@@ -17,10 +17,10 @@ from feederscrew.part.record import PART_MEND, Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import ASPECTS_MEND, Aspects
 from feederscrew.resting.aspects import find as find_aspects
+from feederscrew.resting.lying import TOUCHING_SHARE
 from feederscrew.signatures import with_shown_signature
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
-TOUCHING_SHARE = 2e-4  # of the part's size: what is lower than that over the floor touches it
 SIDE_TOLERANCE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
 
 
@@ -47,6 +47,12 @@ class Posture(ReadableRecord):
     axes: Floats | None = None  # (3, 3) [1] x, y, z of the posture as rows, in the file's axes
     rolling_circle: float = np.nan  # [m] as ``Aspects.rolling_circles``
     form: str = "flat"  # 'cylinder', 'cone', 'ball' and so on, as ``Aspects.forms``
+    lies: str = ""  # 'on its largest face', one of ``lying.Lies``; '' of a card
+
+    @property
+    def rolls(self) -> bool:
+        """Whether it lies on a round side."""
+        return self.kind == "rolling"
 
     @property
     def surface(self) -> Floats:
@@ -171,6 +177,7 @@ def _of_mesh(part: Part, aspects: Aspects, row: int) -> Posture:
         axes=check.frozen(axes),
         rolling_circle=float(aspects.rolling_circles[row]),
         form=aspects.forms[row],
+        lies=aspects.lies[row],
     )
 
 

@@ -13,6 +13,7 @@ from feederscrew.resting.posture import Posture, posture
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import former_keywords
 from feederscrew.studies.rate import arriving
+from feederscrew.tooling.devices.orientation_names import split_name
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +72,9 @@ def headings(
     track = bowl.track
     resting = arriving(part, bowl) if aspects is None else aspects
     stable = [name for name, stays in zip(resting.names, resting.stable) if stays]
-    postures = tuple(posture(part, resting, name) for name in (stable if aspect is None else [aspect]))
+    postures = tuple(
+        posture(part, resting, name) for name in (stable if aspect is None else [split_name(aspect)[0]])
+    )
     stable_headings = tuple(wall.headings(stance, track) for stance in postures)
     chances = dict(zip(resting.names, resting.chances[resting.ranking].tolist()))
     return HeadingsStudy(part, bowl, postures, stable_headings, chances, resting.source(resting.ranking))

@@ -30,7 +30,7 @@ from feederscrew.studies import arguments, simulation_cache
 from feederscrew.studies.arguments import Path, Quantity, former_keywords
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.orientation_names import rows
+from feederscrew.tooling.devices.orientation_names import rows, split_name
 from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 from feederscrew.tooling.orientations import Orientation, orientations
 from feederscrew.tooling.track_sections import Passage, until_returned
@@ -166,7 +166,8 @@ def check_wanted(part: Part, aspect: str | None, heading: float | None = None) -
     """
     check.of_an_aspect(aspect, heading)
     if aspect is not None and part.vertices is not None:
-        rows(resting(part, drops=0).aspects.names, aspect, f"aspect of {part.source}", ArgumentError)
+        name = split_name(aspect)[0]
+        rows(resting(part, drops=0).aspects.names, name, f"aspect of {part.source}", ArgumentError)
 
 
 def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:

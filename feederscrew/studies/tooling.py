@@ -24,7 +24,7 @@ from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import Shares, arriving, the_shares
-from feederscrew.tooling.devices.kinds import KINDS, leaning, names
+from feederscrew.tooling.devices.kinds import KINDS, find_kind, leaning, names
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import design as designing
@@ -53,14 +53,16 @@ def listed(names: str | Sequence[str]) -> tuple[str, ...]:
 
 def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
     """Return the names of kinds of devices that are not used, checked."""
-    kinds = listed(without)
-    for kind in kinds:
-        if kind not in KINDS:
-            near = nearest(kind, KINDS)
-            value = None if near is None else ",".join(near if each == kind else each for each in kinds)
-            what = f"unknown device {quantity_text(kind)}"
-            raise ArgumentError("without", what, hint(kind, list(KINDS)), value=value)
-    return kinds
+    names, kinds = listed(without), []
+    for name in names:
+        kind = find_kind(name)
+        if kind is None:
+            near = nearest(name, KINDS)
+            value = None if near is None else ",".join(near if each == name else each for each in names)
+            what = f"unknown device {quantity_text(name)}"
+            raise ArgumentError("without", what, hint(name, list(KINDS)), value=value)
+        kinds.append(kind.kind)
+    return tuple(kinds)
 
 
 def may_be_up(part: Part, aspects: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
@@ -272,7 +274,7 @@ def tooling(
     outcome : str
         How parts leave: 'lying', 'hanging' or 'any'.
     without : str or sequence of str
-        Kinds of devices that are not used, 'wiper,cut_out'.
+        Kinds of devices that are not used, 'wiper, cut-out'.
     air : bool
         Whether air that blows all the time may be used, where cuts and blades are not enough.
     margin : str or float [m]

@@ -27,7 +27,7 @@ from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import Shares, check_wanted, the_shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.studies.tooling import listed
-from feederscrew.tooling.devices.orientation_names import rows
+from feederscrew.tooling.devices.orientation_names import place, rows, split_name
 from feederscrew.trial import course, result
 from feederscrew.trial.fills import FedRow, FillLevel
 from feederscrew.trial.long_ride import long_ride
@@ -216,7 +216,11 @@ def trial(
         lying = oriented.lying
         tried = list(range(len(lying)))  # rows of the orientations that are laid down
         if aspect is not None:
-            tried = rows(oriented.aspects, aspect, f"aspect of {part.source}", ArgumentError)
+            name, heading = split_name(aspect)
+            tried = rows(oriented.aspects, name, f"aspect of {part.source}", ArgumentError)
+            if heading is not None:
+                where = f"aspect of {part.source}"
+                tried = [place(oriented.aspects, oriented.headings, name, heading, where, kind=ArgumentError)]
         shares = np.zeros(len(lying))  # evenly where the rule gives none of them a chance
         shares[tried] = np.nan_to_num(oriented.rules[rule])[tried]
         if not shares.sum() > 0.0:

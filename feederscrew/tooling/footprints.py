@@ -18,7 +18,8 @@ from feederscrew.geometry import polygons, shaded
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
-from feederscrew.resting.posture import TOUCHING_SHARE, Posture
+from feederscrew.resting.lying import TOUCHING_SHARE
+from feederscrew.resting.posture import Posture
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, HoleEdges, gap
 
 if TYPE_CHECKING:

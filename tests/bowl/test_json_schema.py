@@ -31,9 +31,10 @@ def test_it_has_every_section_key_and_device_with_its_meaning():
         assert entry["x-highest"] == key.highest and entry["x-dimension"] == key.dimension
         assert accepted(line(key, key.lowest)) and accepted(line(key, key.highest)), key.name
     kinds = properties["devices"]["items"]["properties"]
-    assert {name: kind.meaning for name, kind in documentation.KINDS.items()} == {
-        name: entry["description"].split(". Example: ")[0] for name, entry in kinds.items()
-    }
+    # the name of the trade, and the key of files of before
+    assert {
+        n: kind.meaning for kind in documentation.KINDS.values() for n in (kind.kind, kind.old_kind) if n
+    } == {name: entry["description"].split(". Example: ")[0] for name, entry in kinds.items()}
     assert all("type" in entry or "anyOf" in entry for entry in kinds.values()), "a dimension is unknown here"
     for name, kind in documentation.KINDS.items():
         assert accepted(f"devices:\n  - {name}: {kind.example}\n"), name

@@ -210,14 +210,14 @@ def draw(kind, rng):
         "slot": lambda: {"span": span},
         "rails": lambda: {"span": span,
                           **some(lead=(span[0] - 5e-4, span[1] + length(), length(), length()))},
-        "cut_out": lambda: {"corners": hole},
-        "profile": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),
-        "groove": lambda: {"angle": number(0.2, 1.0)},
-        "bank": lambda: {"angle": number(0.0, 0.7)},
-        "separation": lambda: {"angle": number(-0.7, 0.7)},
-        "yield": lambda: {"shares": tuple((name, float(rng.random())) for name in ANY_NAMES[:3])},
-        "jet": lambda: jet,
-        "sorter": lambda: {
+        "cut-out": lambda: {"corners": hole},
+        "profile gate": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),
+        "V groove": lambda: {"angle": number(0.2, 1.0)},
+        "banked track": lambda: {"angle": number(0.0, 0.7)},
+        "spacing section": lambda: {"angle": number(-0.7, 0.7)},
+        "measured yield": lambda: {"shares": tuple((name, float(rng.random())) for name in ANY_NAMES[:3])},
+        "air jet": lambda: jet,
+        "vision reject": lambda: {
             "like": (*like(), length()), "sees": pick(SENSOR_VIEWS),
             **some(also=(like(), like()), resolution=length(), **jet, time=number(1e-3, 1.0),
                    nozzles=float(rng.integers(1, 21))),
@@ -276,14 +276,14 @@ def test_a_wiper_that_clears_itself_is_written_so(lying):
     # Play, pulse and slot leave all others as they are.
     rng = np.random.default_rng(3)
     for _ in range(30):
-        sorter, rails = draw("sorter", rng), draw("rails", rng)
+        sorter, rails = draw("vision reject", rng), draw("rails", rng)
         for other, changed in (
             (sorter.with_play(2e-3), {"like", "also"}),  # headings to a millionth of a degree
             (sorter.with_pulse(0.02), {"time"}),
             (rails.with_span((rails.span[0] + 1e-4, rails.span[1])), {"span"}),
         ):
             assert devices.differences(other, read_back_device(other)) == []
-            own = sorter if other.kind == "sorter" else rails
+            own = sorter if other.kind == "vision reject" else rails
             assert devices.differences(own, read_back_device(other), {"where", "text", *changed}) == []
     assert proposals.PULSE_STEP_S > 0.0
 

@@ -10,8 +10,8 @@ from command_lines import CARD, NUT, PARTS, ROOT, names, rows
 from feederscrew.resting import exact_tumbling
 
 COLUMNS = [
-    "aspect", "kind", "faces", "stable", "normal_x", "normal_y", "normal_z", "height_mm", "contact_area_mm2",
-    "solid_angle_sr", "polar_inertia_g_mm2", "p_pmi", "p_csa", "p_stability",
+    "aspect", "lies", "rolls", "faces", "stable", "normal_x", "normal_y", "normal_z", "height_mm",
+    "contact_area_mm2", "solid_angle_sr", "polar_inertia_g_mm2", "p_pmi", "p_csa", "p_stability",
 ]  # fmt: skip
 INERTIA = [
     "part", "units", "material", "density_g_cm3", "mass_g", "volume_mm3", "centre_of_mass_mm",

@@ -65,7 +65,7 @@ def rewritten(folder, to, **values):
 def test_a_block_that_may_lie_along_or_across_needs_no_sensor(tmp_path):
     document = design_of(tmp_path, [(14, 10, 2)], "--up", "a", "--draws", "2")
     assert (document["status"], document["up"], document["purity"]) == ("holds", ["a"], 1.0)
-    assert "sorter" not in str(document["chain"])
+    assert "vision reject" not in str(document["chain"])
 
 
 def test_a_cube_needs_no_device_and_its_files_say_what_was_tried(designed):

@@ -37,7 +37,12 @@ def test_a_rate_is_the_product_of_its_factors_and_is_written(run_json, run):
     assert low <= rate <= high
     folder = Path("results", BRACKET.stem)
     assert names(folder) == {"rate.json", "orientations.csv", "run.json"}
-    assert list(rows(folder / "orientations.csv")[0])[-4:] == ["track", "wiper_1", "yield_2", "passes"]
+    assert list(rows(folder / "orientations.csv")[0])[-4:] == [
+        "track",
+        "wiper_1",
+        "measured_yield_2",
+        "passes",
+    ]
     returned = run("rate", BRACKET, "--aspect", "A", "--config", "bowl.yaml")
     assert returned.exit_code == 0 and "correctly oriented parts per minute" in returned.stdout
     hops, rejects = returned.stderr.splitlines()

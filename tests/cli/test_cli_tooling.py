@@ -87,7 +87,7 @@ def test_rate_reads_the_chain(run_json, block, tmp_path):
     assert rate["efficiency"] == pytest.approx(document["efficiency"], rel=1e-9)
     assert rate["parts_per_minute"] == pytest.approx(rate["offered_per_minute"] * rate["efficiency"])
     wanted = next(row for row in rate["orientations"] if row["passes"] > 0.5)
-    margins = [cut["margin_pass_mm"] for cut in document["chain"] if cut["device"] != "separation"]
+    margins = [cut["margin_pass_mm"] for cut in document["chain"] if cut["device"] != "spacing section"]
     assert wanted["margin_mm"] == pytest.approx(min(margins))
     assert all(row["margin_mm"] < 0.0 for row in rate["orientations"] if row["passes"] < 0.5)
     doubtful = run_json("rate", *own, "--play", "1 mm", *feed)

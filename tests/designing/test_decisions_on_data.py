@@ -37,7 +37,7 @@ def scramble_all(monkeypatch):
         if function.__module__ == texts.__name__ and inspect.signature(function).return_annotation is str:
             monkeypatch.setattr(texts, name, lambda *a, _own=function, **k: scrambled(_own(*a, **k)))
     monkeypatch.setattr(Fate, "word", property(lambda self: scrambled(self.name)))
-    for name in ("name", "full_name", "short", "value_words"):
+    for name in ("full_name", "short", "value_words"):
         monkeypatch.setattr(Device, name, property(lambda self, _name=name: scrambled(_name + self.kind)))
 
 
@@ -50,7 +50,7 @@ def draw_end(rng, devices, fates):
     """An end at one of some devices, or on the bare track."""
     fate, placed = Fate(int(rng.choice(fates))), [device for device in devices if device.placed]
     station = int(rng.integers(len(placed) + 1))
-    return End(fate, station, placed[station - 1].kind, placed[station - 1].name) if station else End(fate)
+    return End(fate, station, placed[station - 1].kind) if station else End(fate)
 
 
 @pytest.fixture
@@ -226,7 +226,7 @@ def answer_to(monkeypatch, block):
 
 def test_neither_a_sentence_nor_the_name_of_an_aspect_changes_what_a_fault_leads_to(answer_to, monkeypatch):
     """Every kind of fault, at every place and end of its parts, by five names; then with texts scrambled."""
-    places = [(station, kind, kind) for station, kind in enumerate(("", "wiper", "gap"))]
+    places = [(station, kind) for station, kind in enumerate(("", "wiper", "gap"))]
     ends = [(), *((End(fate, *place),) for fate in Fate for place in places)]
     kinds = FaultKind.LOST, FaultKind.CARRIED, FaultKind.STAYS, FaultKind.NOTHING_LEAVES
 

@@ -43,7 +43,9 @@ def test_a_value_suits_all_where_their_windows_meet(windows, common):
 
 
 def test_what_has_no_number_is_common_only_where_it_is_the_same():
-    first, second = (make_device("separation", "design", text=f"{{climb: {deg} deg}}") for deg in (-6, -9))
+    first, second = (
+        make_device("spacing section", "design", text=f"{{climb: {deg} deg}}") for deg in (-6, -9)
+    )
     one, other = (Cut(device, 0.0, 0.0, device, device, ()) for device in (first, second))
     assert families.common_limits([[one], [one]]) == [None]
     assert families.common_limits([[one], [other]]) is None
@@ -113,7 +115,7 @@ def test_the_widest_is_designed_first_and_its_kinds_are_offered_to_the_others(mo
     assert (first, second) == ("large", "small") and given == {"drive.phase", "track.radius", "track.width"}
     assert common.width > 14e-3 and track == BOWL.track  # that of the first one's design
     assert more == given | {"track.bank", "track.climb"}
-    assert "gap" not in without and {"wiper", "canyon", "sorter"} <= set(without)
+    assert "gap" not in without and {"wiper", "canyon", "vision reject"} <= set(without)
     assert study.shared and [one.part.name for one in study.members] == ["small", "large"]
     assert tried == [("small", pytest.approx([4.5e-3]))]  # the other one holds at that value already
 

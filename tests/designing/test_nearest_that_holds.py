@@ -42,7 +42,7 @@ PLAIN = calm_drive.PlainBowl(BOWL, frozenset())
 PROPOSED = Move(MoveKind.PROPOSED)
 CARRIED = {"robust": RobustRun(14, 12, carried("B@30").counted_in_draws(1, 14)), "queues": ()}
 GAP = make_device("gap", "test", limit=9e-3, text="9 mm")
-SORTER = make_device("sorter", "test", like=("A", 0.0, 1e-3), text="{of: A@0, play: 1 mm}")
+SORTER = make_device("vision reject", "test", like=("A", 0.0, 1e-3), text="{of: A@0, play: 1 mm}")
 
 
 def fills(right=180, left=None, returned=20, instead=(), **counts):
@@ -253,7 +253,10 @@ def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_t
     fast = calm_drive.drive_at(PLAIN, 0.12)
     for bowl, efficiency in ((lively, 0.0), (slowest, 0.0), (fast, 0.4), (slowest, 0.4)):
         one = candidate(
-            ways, bowl, (lost("A@0", end_at(Fate.RETURNED, "sorter")),), throw_number=throw_number(bowl)
+            ways,
+            bowl,
+            (lost("A@0", end_at(Fate.RETURNED, "vision reject")),),
+            throw_number=throw_number(bowl),
         )
         search.state.failures.append(replace(one, attempt=replace(one.attempt, efficiency=efficiency)))
     found = list(nearest.variants(search, []))
@@ -424,8 +427,8 @@ def test_the_same_chain_is_not_tried_twice_nor_one_that_differs_by_a_hair():
     def alike(one, other):
         return exploring._is_alike(key(*one), key(*other), USUAL_POLICY)
 
-    first = make_device("sorter", "test", like=("A", 0.0, 1e-3), also=(("B", 1.0),)).rewritten()
-    other = make_device("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),)).rewritten()
+    first = make_device("vision reject", "test", like=("A", 0.0, 1e-3), also=(("B", 1.0),)).rewritten()
+    other = make_device("vision reject", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),)).rewritten()
     assert first.text != other.text and key(first) == key(other)
     near, far = (make_device("gap", "test", limit=limit).rewritten() for limit in (9.05e-3, 9.5e-3))
     assert alike([GAP], [near]) and not alike([GAP], [far]) and not alike([GAP], [GAP, GAP])
@@ -438,8 +441,8 @@ def test_the_same_chain_is_not_tried_twice_nor_one_that_differs_by_a_hair():
     )
     assert alike([blade], [turned]) and not alike([blade], [other_blade])
     # what a camera lets pass and how closely it looks
-    coarse = make_device("sorter", "test", like=("B", 1.0, 2e-3), also=(("A", 0.0),))
-    side = make_device("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),), sees="side")
+    coarse = make_device("vision reject", "test", like=("B", 1.0, 2e-3), also=(("A", 0.0),))
+    side = make_device("vision reject", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),), sees="side")
     assert not alike([first], [coarse]) and not alike([first], [side])
 
 

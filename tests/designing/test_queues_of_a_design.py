@@ -178,7 +178,7 @@ def test_a_cleaner_fill_improves_no_figure():
 
 def test_a_fill_that_differs_is_named_with_what_leaves_wrong_there_and_at_which_device():
     wrong = ((orientation("E@90"), 4),)
-    cut = SimpleNamespace(returns=("E@90",), device=SimpleNamespace(name="gap"))
+    cut = SimpleNamespace(returns=("E@90",), device=SimpleNamespace(kind="gap"))
     low = queue(188, 189, 30, 0, FillLevel.LOW, wanted_returned_at=(("wiper", 2),))
     high = queue(
         36, 40, 130, 0, FillLevel.HIGH, left_instead=wrong, wanted_returned_at=(("gap", 6), ("wiper", 51))
@@ -413,7 +413,7 @@ def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_
 def test_what_comes_behind_its_ride_enters_two_pitches_before_a_sensor(block):
     """Parts that touch enter the track a whole row before it; without a sensor all do."""
     ways, wanted = block.ways, block.ways.lying[0]
-    sorter = make_device("sorter", "test", like=(wanted.aspect, wanted.heading, 1e-3), text="test")
+    sorter = make_device("vision reject", "test", like=(wanted.aspect, wanted.heading, 1e-3), text="test")
     longest, shares = float(ways.lengths.max()), np.full(len(ways.lying), 1.0)
 
     def before(devices, fill):

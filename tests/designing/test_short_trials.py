@@ -65,8 +65,8 @@ def bowl(block):
     devices = (
         make_device("gap", "test", limit=9.5 * MM, text="test"),
         make_device("slot", "test", span=(2.0 * MM, 5.0 * MM), text="test"),
-        make_device("cut_out", "test", corners=tuple(map(tuple, HOLE)), text="test"),
-        make_device("sorter", "test", like=(one.aspect, one.heading, 1.2 * MM), text="test"),
+        make_device("cut-out", "test", corners=tuple(map(tuple, HOLE)), text="test"),
+        make_device("vision reject", "test", like=(one.aspect, one.heading, 1.2 * MM), text="test"),
     )
     plain = bowls.read(None, ["drive.amplitude=0.2 mm", "restitution=0.3"])
     return replace(plain, devices=devices, friction=Friction(**FRICTION))
@@ -296,19 +296,22 @@ def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows)
     assert both.efficiency == pytest.approx((1.0 + 1.0 + 1.0 / 7.0) / len(ways.lying))
 
 
-@pytest.mark.parametrize("cost_class, dearer", [(1, {"jet", "sorter"}), (3, set())])
+@pytest.mark.parametrize("cost_class, dearer", [(1, {"air jet", "vision reject"}), (3, set())])
 def test_a_cost_class_is_without_dearer_devices_and_the_widest_margin_comes_first(cost_class, dearer):
     ways = proposals.recipes_of(cost_class, DesignRequest(target=1.0))
     assert all(dearer <= set(way.excluded_kinds) for way in ways)
-    assert any("sorter" not in way.excluded_kinds for way in ways) == (cost_class == 3)
+    assert any("vision reject" not in way.excluded_kinds for way in ways) == (cost_class == 3)
     margins = [way.margin for way in ways if not way.turns and not way.holes]
     assert margins == sorted(margins, reverse=True) and len(set(margins)) == 2
     assert [way.outcome for way in ways if way.holes] == ["lying"] * (cost_class == 1)
     hung = proposals.recipes_of(cost_class, DesignRequest(target=1.0, outcome="hanging"))
     assert {way.outcome for way in hung} == {"hanging"} and not any(way.turns for way in hung)
-    assert proposals.recipes_of(3, DesignRequest(target=1.0, without=("sorter",))) == []
+    assert proposals.recipes_of(3, DesignRequest(target=1.0, without=("vision reject",))) == []
     gap = make_device("gap", "test", limit=9e-3, text="9 mm")
-    jet, sorter = make_device("jet", "test", text="test"), make_device("sorter", "test", text="test")
+    jet, sorter = (
+        make_device("air jet", "test", text="test"),
+        make_device("vision reject", "test", text="test"),
+    )
     for chain, cost in (((), 1), ((gap,), 1), ((gap, jet), 2), ((sorter, gap), 3)):
         assert proposals.Proposal(0, (), chain, PROPOSED).cost_class == cost
 
@@ -338,7 +341,7 @@ def test_a_wanted_part_that_comes_back_denies_only_where_most_of_the_others_do_t
     leaving = ways.leaving.copy()
     leaving[across] = leaving[along]  # both leave in the one state, as parts that hang do
     both = replace(ways, leaving=leaving)
-    seen = ended(short_trial(both, {along}, row=along), {across}, end_at(Fate.RETURNED, "narrowed_track"))
+    seen = ended(short_trial(both, {along}, row=along), {across}, end_at(Fate.RETURNED, "narrowed track"))
     assert short_trials.find_returnable_rows(seen) == (across,) and not list(short_trials.find_denials(seen))
     stays = replace(seen, held=2 * (np.arange(len(both.lying)) == across))
     assert short_trials.find_returnable_rows(stays) == () and list(short_trials.find_denials(stays))
@@ -350,7 +353,10 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged_and_sensors_see_something(
     ways, names, judged = block.ways, block.names, []
     one = ways.lying[names["A@0"]]
     like = {"like": (one.aspect, one.heading, 1e-3), "text": "test"}
-    chain = (make_device("gap", "test", limit=7e-3, text="7 mm"), make_device("sorter", "test", **like))
+    chain = (
+        make_device("gap", "test", limit=7e-3, text="7 mm"),
+        make_device("vision reject", "test", **like),
+    )
     own = {"aspects": block.aspects, "chain": chain, "bowl": BOWL}
     whole = stream.along(ways.lying, **own)
     fates = "feederscrew.tooling.fates.verdict"
@@ -378,7 +384,7 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
     proposal, seen = proposals.Proposal(along, (), (), "test"), short_trial(ways, {along}, row=along)
     changed = proposals.add_pressure_break(SimpleNamespace(proposal=proposal, trial=seen, orientations=ways))
     (cut,) = changed.cuts
-    assert cut.device.kind == "pressure_break" and not cut.returns.count("A@0")
+    assert cut.device.kind == "pressure break" and not cut.returns.count("A@0")
     assert 6e-3 + proposals.MARGINS[-1] <= cut.device.limit <= 12e-3 - proposals.MARGINS[-1]
     again = SimpleNamespace(proposal=changed, trial=seen, orientations=ways)
     assert proposals.add_pressure_break(again) is None  # it has one
@@ -402,7 +408,7 @@ def wedge():
     ways = proposals.follow_orientations(part, find(part), banked)
     one = ways.lying[0]
     like = {"like": (one.aspect, one.heading, 1e-3), "text": "{of: A@0, play: 1 mm, sees: outline}"}
-    device = make_device("sorter", "test", **like)
+    device = make_device("vision reject", "test", **like)
     return ways, judge_cut(ways.lying, 0, device, np.arange(len(ways.lying)) > 0, device, device)
 
 

@@ -169,7 +169,7 @@ def test_a_contact_sheet_says_why_a_rate_is_zero_or_a_part_failed():
 def test_a_ride_is_named_by_its_device_and_the_history_of_a_loop_can_be_read():
     values = {"gap": "9 mm", "cut-out": "[[0 mm]]", "vision reject": "{of: A@90, play: 0.2 mm}"}
     devices = [
-        SimpleNamespace(name=name, short=short, is_one_value=name == "gap") for name, short in values.items()
+        SimpleNamespace(kind=name, short=short, is_one_value=name == "gap") for name, short in values.items()
     ]
     section = SimpleNamespace(stations=[SimpleNamespace(device=one) for one in devices])
     titles = [
@@ -305,7 +305,17 @@ def test_the_sheet_has_one_panel_a_class_in_one_scale_and_the_recommended_answer
     scales = [np.ptp(axes.images[0].get_extent()[:2]) / axes.get_window_extent().width for axes in images]
     assert scales == pytest.approx([scales[0]] * 3)
     texts = words(figure)
-    assert {"A", "B", "C", "flat ×2", "PMI", "CSA", "stability", "box", "centre of mass"} <= set(texts)
+    assert {
+        "A",
+        "B",
+        "C",
+        "on its largest face ×2",
+        "PMI",
+        "CSA",
+        "stability",
+        "box",
+        "centre of mass",
+    } <= set(texts)
     assert all(f"{100.0 * chance[0]:.1f} %" in texts for chance in found.probabilities.values())
     share, low, high = (100.0 * ends[0] for ends in (answer.p, answer.low, answer.high))
     assert f"{share:.0f} % ({low:.0f}–{high:.0f})" in texts
@@ -494,8 +504,8 @@ def test_the_captions_of_views_side_by_side_stay_over_their_own(monkeypatch):
 def test_devices_and_shares_of_a_design_are_in_words_on_its_page():
     """The page had a dump of YAML, and a yield of 0.0030 where the text says 0.299 %."""
     narrowed, sorter = (
-        make_device("narrowed_track", "test", limit=13.35e-3).rewritten(),
-        make_device("sorter", "test", like=("A", 0.5 * np.pi, 2e-4)).rewritten(),
+        make_device("narrowed track", "test", limit=13.35e-3).rewritten(),
+        make_device("vision reject", "test", like=("A", 0.5 * np.pi, 2e-4)).rewritten(),
     )
     assert (narrowed.brief, sorter.brief) == ("narrowed track 13.35 mm", "vision reject")
     chain = ("sorter: {of: A@90}",), ("camera from above",)

@@ -113,7 +113,7 @@ def test_html_loads_nothing_from_outside_and_has_the_cells_of_the_csv(light, cas
     heads = [line[3:] for line in text.splitlines() if line.startswith("## ")]
     assert heads == [section.title for section in light.sections]
     assert "![The part as it rests on each aspect](report/aspects.png)" in text
-    assert "| A | flat | 1 | yes | 4.651 | 450.0 | 3.699 | 1218 |" in text
+    assert "| A | on its largest face | no | 1 | yes | 4.651 | 450.0 | 3.699 | 1218 |" in text
     assert "| A | 31.2 | 42.7 | 34.9 |" in text and "<script" not in text
     # Shapes and probabilities are a table each: one of both would be broader than a window.
     section = next(section for section in light.sections if section.anchor == "aspects")

@@ -89,7 +89,7 @@ def test_a_wide_table_is_folded_to_the_window():
     assert any(line.split() == ["b.stl", "none", "2"] for line in lines)  # not in a piece of its own
     # A table a little too wide stays whole.
     values = ["of A@188, A@354, play 8.4 mm, sees outline", "4.4 to 11.45 mm"]
-    columns = {"device": ["sorter", "rails"], "value": values, "margin_pass_mm": [8.3, 0.4073]}
+    columns = {"device": ["vision reject", "rails"], "value": values, "margin_pass_mm": [8.3, 0.4073]}
     columns |= {"returns": ["A@90, all of B, C", "A@90, all of C"]}
     head, _, *lines = folded(70, columns)
     assert head.split() == ["device", "value", "margin", "pass", "returns"] and len(lines) == 3

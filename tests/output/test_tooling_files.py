@@ -68,7 +68,7 @@ def drawn(lying):
 def at_gates(lying):
     """How each orientation stands at the wiper and at the profile."""
     bowl, every = lying
-    gates = [device for device in bowl.devices if device.kind in ("wiper", "profile")]
+    gates = [device for device in bowl.devices if device.kind in ("wiper", "profile gate")]
     return [track_sections.worst_passage(device, one, every) for device in gates for one in every]
 
 
@@ -121,7 +121,7 @@ def test_bent_keeps_the_distance_from_the_wall():
 
 def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
     bowl, every = lying
-    cut = next(device for device in bowl.devices if device.kind == "cut_out")
+    cut = next(device for device in bowl.devices if device.kind == "cut-out")
     for one in every:
         passage = track_sections.worst_passage(cut, one, every)
         hull, weight = shapely.MultiPoint(passage.supported).convex_hull, shapely.Point(passage.weight)
@@ -133,7 +133,7 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
 def isolated():
     """The bracket's aspect A at 270 deg, which a hole isolates, and its settings."""
     settings = bowls.settings(None, ["track.width=45 mm"])
-    own = {"heading": 1.5 * np.pi, "without": ("sorter",), "search": ToolingSearch(vary=False)}
+    own = {"heading": 1.5 * np.pi, "without": ("vision reject",), "search": ToolingSearch(vary=False)}
     return tooling(BRACKET, bowls.record(settings), "A", **own), settings
 
 
@@ -177,7 +177,7 @@ def test_pages_are_read_in_panels_and_no_text_lies_on_another(lying, isolated):
 
 def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying, at_gates):
     stopped = [one for one in at_gates if one.verdict.passes <= 0.0]
-    assert {met.device.kind for met in stopped} == {"wiper", "profile"}
+    assert {met.device.kind for met in stopped} == {"wiper", "profile gate"}
     for met in stopped:
         (station,) = tooling_views.station_of(met, lying[1]).stations
         x, y, _ = tooling_views.part_on_section(met, station).T
@@ -207,7 +207,7 @@ def test_a_scale_bar_is_1_2_or_5_of_a_power_of_ten_and_fits(size, long):
 def test_what_leaves_is_drawn_as_it_leaves(lying):
     """Behind two devices that let it pass, seen along the track: the wall at 0, its foot at height 0."""
     first = lying[1][0]
-    narrow = [make_device("narrowed_track", "here", limit=limit) for limit in (0.03, 0.029)]
+    narrow = [make_device("narrowed track", "here", limit=limit) for limit in (0.03, 0.029)]
     page = tooling_figures.chain(narrow, [first], np.ones(1))
     last = page.axes[-1]
     assert len(page.axes) == 3 and last.get_xlim()[0] < 0.0 < last.get_ylim()[1]
@@ -225,8 +225,8 @@ def test_what_the_track_does_not_carry_is_said_to_be_returned_as_the_table_says(
     """The picture said that it meets no device, and the table that the vision reject returns it."""
     every = [replace(one, falls_off=place == 1) for place, one in enumerate(lying[1])]
     like = every[0].aspect, every[0].heading, 0.5e-3
-    sorter = make_device("sorter", "here", like=like, sees="outline").rewritten()
-    wide = make_device("narrowed_track", "here", limit=0.03)
+    sorter = make_device("vision reject", "here", like=like, sees="outline").rewritten()
+    wide = make_device("narrowed track", "here", limit=0.03)
     for devices, returns in (([wide, sorter], True), ([wide], False)):
         page = tooling_figures.chain(devices, every, even(every))
         shown = " ".join(text.get_text() for text in page.texts)
@@ -248,7 +248,7 @@ def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(ly
     """A mouth a nozzle; air at what is rejected alone."""
     bowl, every = lying
     like = every[0].aspect, every[0].heading, 0.5e-3
-    sorter = make_device("sorter", "here", like=like, sees="outline").rewritten()
+    sorter = make_device("vision reject", "here", like=like, sees="outline").rewritten()
     passes, rejected = tooling_views.figure([sorter], every, np.full(len(every), 0.2), 0).axes
     jets = build_section(bowl.track, [sorter], every).stations[0].standing.jets
     assert len(passes.patches) == len(jets) > 0  # mouths; nothing blows at what is kept
@@ -274,7 +274,7 @@ def test_what_is_written_of_two_columns_of_nozzles_stands_in_lines_of_its_own():
 
 def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
     """Its margin is a mark of 2e-6 mm, not a length."""
-    wiper = SimpleNamespace(name="wiper")
+    wiper = SimpleNamespace(kind="wiper")
     judged = [Verdict(0.0, margin) for margin in (-2e-3, -UNSURE)]
     passages = [[SimpleNamespace(verdict=one, fate="stopped", device=wiper)] for one in judged]
     named = [SimpleNamespace(name=name) for name in ("E@0", "E@90")]

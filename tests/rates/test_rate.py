@@ -183,7 +183,7 @@ def test_a_part_that_travels_back_gives_no_rate_and_no_steady_state_is_a_fault()
 def test_heights_decide_wiper_and_bar(chain):
     devices = chain("devices:\n  - wiper: 20 mm\n  - height_bar: 19.9 mm")
     known = streamed(shapes.box(10, 20, 30), devices)[2]
-    assert known.stations == ("track", "wiper", "height_bar")
+    assert known.stations == ("track", "wiper", "height bar")
     assert known.passes.T.tolist() == [[1.0] * 6, [1, 1, 1, 1, 0, 0], [1, 1, 0, 0, 0, 0]]
     assert known.through.tolist() == [1, 1, 0, 0, 0, 0]
 
@@ -216,6 +216,18 @@ def test_parts_and_devices_are_followed_by_their_names():
     assert np.isnan(stream.passing_shares(flow, np.array([0.0, 1.0, 0.0]))[1])
     rows = stream.counted_stations(KNOWN, counted("gap_3,1,2", "wiper,3,4", "track,1,0"))
     assert rows.tolist() == [3, 1, 0]
+    seen = SimpleNamespace(
+        names=("track", "vision_reject_1", "gap_2"), stations=("track", "vision reject", "gap")
+    )
+    for name in (
+        "vision_reject_1",
+        "vision reject",
+        "sorter",
+        "sorter_1",
+    ):  # as printed, and as files of before
+        assert stream.counted_stations(seen, counted(f"{name},1,2")).tolist() == [1]
+    with pytest.raises(FeederError, match="the bowl has no device"):
+        stream.counted_stations(seen, counted("sorter_2,1,2"))
     for counts, said in (
         (("gap,1,2",), r"c.csv:2: the bowl has no device 'gap' - did you mean gap_"),
         (("wiper_1,1,2", "wiper,1,2"), r"c.csv:3: device 'wiper' is that of line 2 - keep one of them"),

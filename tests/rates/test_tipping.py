@@ -220,15 +220,15 @@ def test_over_a_gap_a_part_rocks_over_where_little_carries_it(upright, carried, 
     limit = upright.gap - carried
     assert is_steady(upright, "gap", limit) == steadily
     corners = ((0.0, 0.0), (limit, 0.0), (limit, 0.1), (0.0, 0.1))
-    (hole,) = steady([make_device("cut_out", "test", corners=corners)], [upright], BOWL_STEADINESS, CLEAR)
+    (hole,) = steady([make_device("cut-out", "test", corners=corners)], [upright], BOWL_STEADINESS, CLEAR)
     assert hole == steadily
 
 
-@pytest.mark.parametrize("kind", ["narrowed_track", "canyon"])
+@pytest.mark.parametrize("kind", ["narrowed track", "canyon"])
 def test_beside_an_edge_along_the_track_the_force_stays_within_what_is_left(upright, kind):
     """Ahead and behind half the width is left, to the side what the edge leaves."""
     ahead = 5e-3 - farthest(upright)
-    limits = {"narrowed_track": (6e-3, 12e-3), "canyon": (4e-3, 0.0)}[kind]
+    limits = {"narrowed track": (6e-3, 12e-3), "canyon": (4e-3, 0.0)}[kind]
     assert is_steady(upright, kind, limits[0], margin=min(ahead, 1e-3) - 1e-6)
     assert not is_steady(upright, kind, limits[0], margin=min(ahead, 1e-3) + 1e-6)
     assert is_steady(upright, kind, limits[1], margin=1.0)  # which takes nothing from it
@@ -256,7 +256,7 @@ def test_what_is_round_is_sure_of_nothing_without_a_bank(bank):
     """A pin along the track rolls off a level one; towards the wall of a banked one it rolls, and stays."""
     pin = shapes.part(shapes.cylinder(6, 20, 48))
     bowl = bowls.read(None, ["track.width=30 mm", f"track.bank={bank} deg"])
-    sorter = make_device("sorter", "test", like=("A", 0.0, 2e-3), sees="height")
+    sorter = make_device("vision reject", "test", like=("A", 0.0, 2e-3), sees="height")
     found = follow_orientations(pin, find(pin), bowl.track, [sorter], bowl=bowl)
     row = next(k for k, one in enumerate(found.lying) if one.kind == "rolling" and one.length > 0.019)
     assert found.sure[row] == (bank > 0.0)
@@ -283,11 +283,11 @@ def one_of(bowl, *sizes, length):
     ("gap", {"limit": 18e-3}, "flight"),
     ("wiper", {"limit": 6e-3}, "hop"),
     ("wiper", {"limit": 4e-3}, "hop"),
-    ("height_bar", {"limit": 6e-3}, "hop"),
-    ("narrowed_track", {"limit": 10e-3}, "hop"),
-    ("narrowed_track", {"limit": 4e-3}, "hop"),
-    ("sorter", {"sees": "side"}, "hop"),
-    ("sorter", {}, ""),
+    ("height bar", {"limit": 6e-3}, "hop"),
+    ("narrowed track", {"limit": 10e-3}, "hop"),
+    ("narrowed track", {"limit": 4e-3}, "hop"),
+    ("vision reject", {"sees": "side"}, "hop"),
+    ("vision reject", {}, ""),
     ("rails", {"span": (4e-3, 8e-3)}, ""),
 ])  # fmt: skip
 def test_a_margin_is_less_the_hop_or_the_flight_to_either_side(kind, values, less):
@@ -296,7 +296,7 @@ def test_a_margin_is_less_the_hop_or_the_flight_to_either_side(kind, values, les
     known = hop(bowl)
     one = one_of(bowl, 20, 12, 5, length=20)
     assert (one.hop, one.flight) == (known.height, known.flight) and 0.0 < one.hop < one.flight
-    values = values | ({"like": (one.aspect, one.heading, 2e-3)} if kind == "sorter" else {})
+    values = values | ({"like": (one.aspect, one.heading, 2e-3)} if kind == "vision reject" else {})
     device, still = make_device(kind, "", **values), replace(one, hop=0.0, flight=0.0)
     by = getattr(one, less) if less else 0.0
     found, before = verdict(device, one, (one,)), verdict(device, still, (still,))
@@ -376,13 +376,13 @@ def test_nothing_that_may_turn_or_stands_on_little_of_a_foot_is_sure():
     flat = known.lying[0].aspect
     yaws = np.array([one.may_yaw and not one.may_tip for one in known.lying])
     assert yaws[[one.aspect == flat for one in known.lying]].any()
-    high = lying(bowl, 20, 10, 4, chain=(make_device("narrowed_track", "", limit=1e-3),))
+    high = lying(bowl, 20, 10, 4, chain=(make_device("narrowed track", "", limit=1e-3),))
     rows = np.array([one.aspect == flat for one in high.lying])
     assert high.sure[rows].all() and (high.through[rows] == 0.0).all()
     # Half a width of 6 mm over a ledge: 1.3 mm remain of the 10 mm high block; 5.9 mm hold it
     bowl = thrown(2.4)
     one = one_of(bowl, 30, 12, 10, length=30)
     for limit, holds in ((7.3e-3, False), (11.9e-3, True)):
-        device = make_device("narrowed_track", "", limit=limit)
+        device = make_device("narrowed track", "", limit=limit)
         assert verdict(device, one).passes == 1.0
         assert steady((device,), [one], bowl, 2.5e-4).tolist() == [holds]

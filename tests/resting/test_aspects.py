@@ -16,7 +16,7 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import centroid, inset, outline
 from feederscrew.part import load
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.aspects import find, postures
+from feederscrew.resting.aspects import find
 from feederscrew.resting.faces import contact_outlines
 from feederscrew.resting.posture import posture
 
@@ -290,23 +290,3 @@ def test_polygons_of_outlines():
     assert centroid(np.array([[0.0, 0.0], [2.0, 0.0]])) == pytest.approx([1.0, 0.0])
     assert inset(square, np.array([[0.5, 1.0], [2.25, 1.0]])) == pytest.approx([0.5, -0.25])
     assert np.isnan(inset(np.empty((0, 2)), np.zeros(2)))
-
-
-def words(part):
-    aspects = find(part)
-    hull = part.hull or convex_hull(part.vertices, part.centre_of_mass)
-    return dict(zip(aspects.names, postures(aspects.normals, aspects.contact_areas, aspects.kinds, hull)))
-
-
-def test_words_for_how_a_part_lies(rng):
-    box = {"A": "flat (largest face)", "B": "on side", "C": "on end"}
-    assert words(shapes.part(shapes.box(30, 20, 5))) == box
-    assert set(words(shapes.part(shapes.box(10, 10, 10))).values()) == {"on a face"}
-    bolt = {"A": "flat", "B": "on end (larger face)", "C": "on end (smaller face)"}
-    assert words(load(PARTS / "hexbolt_m8x25.stl")) == bolt
-    for length in (20.0, 3.0):
-        cylinder = words(shapes.part(shapes.cylinder(5.0, length, 48))).values()
-        assert "on side (rolls)" in cylinder
-        assert ("on end" in cylinder) == (length > 10.0)
-    mesh = shapes.prism(shapes.l_profile(), 15.0)
-    assert words(shapes.part(mesh)) == words(shapes.part(shapes.turned(mesh, rng)))

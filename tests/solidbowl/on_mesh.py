@@ -79,11 +79,11 @@ def _slope(plan, body, device, slope):
 def _leaning(plan, device):
     """Lengths (M,) [m] along the wall where the track leans as a device says, or its groove is open."""
     way, stretch = plan.path, plan.stretch
-    if device.kind == "separation":
+    if device.kind == "spacing section":
         starts = [at for at, climb in way.bends if climb == device.angle]
     else:
         starts = [end for _, end, bank in way.leans if bank == device.angle] or [0.6 * plan.first]
-    opened = [plan.first + a + opens for a, _, _, opens in stretch.grooves if device.kind == "groove"]
+    opened = [plan.first + a + opens for a, _, _, opens in stretch.grooves if device.kind == "V groove"]
     start = max(min(starts), *opened) if opened else min(starts)
     later = [*(a for a, _, _ in way.leans), *(at for at, _ in way.bends)]
     end = min([way.end, *(at for at in later if at > start + 1e-4)])

@@ -36,13 +36,13 @@ def slanted(kind, degrees, text="{} deg"):
 RAILS, GAP = device("rails", span=(3e-3, 7e-3)), device("gap", limit=9e-3)
 CHAINS = {
     "none": (),
-    "narrowed and rails": (device("narrowed_track", limit=9e-3, text="9 mm"), RAILS),
+    "narrowed and rails": (device("narrowed track", limit=9e-3, text="9 mm"), RAILS),
     "gap": (GAP,),
     "canyon, slot": (device("canyon", limit=6e-3), device("slot", span=(8e-3, 12e-3))),
-    "cut out": (device("cut_out", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
-    "blades": (device("wiper", limit=6e-3), device("hold_down", limit=8e-3)),
-    "gate": (device("profile", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
-    "jets": (*(device("jet", nozzle=2e-3, pressure=2e4, height=z) for z in (1e-3, 8e-3)), GAP),
+    "cut out": (device("cut-out", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
+    "blades": (device("wiper", limit=6e-3), device("hold-down", limit=8e-3)),
+    "gate": (device("profile gate", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
+    "jets": (*(device("air jet", nozzle=2e-3, pressure=2e4, height=z) for z in (1e-3, 8e-3)), GAP),
     "step": (device("step", limit=4e-3), device("gap", limit=5e-3)),
 }
 

@@ -31,16 +31,16 @@ from feederscrew.solidbowl.measuring import measures, track_heights, track_width
 
 LEFT = replace(STEPPED, left=True)
 STEEPER = replace(TRACK, climb=np.radians(6.5))
-TIP = device("tip", limit=6e-3, text="6 mm")
+TIP = device("tipping ledge", limit=6e-3, text="6 mm")
 SHAPES = {"cylinder": (TRACK, PLAIN), "stepped": (STEEPER, LEFT)}
 
 
 def bank(degrees):
-    return slanted("bank", degrees)
+    return slanted("banked track", degrees)
 
 
 def groove(degrees):
-    return slanted("groove", degrees, "{{angle: {} deg}}")
+    return slanted("V groove", degrees, "{{angle: {} deg}}")
 
 
 @pytest.mark.parametrize("shape", SHAPES)

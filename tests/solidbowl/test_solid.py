@@ -65,7 +65,7 @@ def test_height_and_width_of_the_track_are_those_of_the_formula(bank, rng):
 
 
 def test_a_separation_leads_the_track_down_from_its_place_on():
-    chain = (slanted("separation", -5.0, "{{climb: {} deg}}"), *CHAINS["gap"])
+    chain = (slanted("spacing section", -5.0, "{{climb: {} deg}}"), *CHAINS["gap"])
     solid = body(planned(chain))
     is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
@@ -356,5 +356,5 @@ def test_rails_behind_a_narrowed_track_of_the_same_edge(seed):
     radius, width = float(rng.uniform(0.13, 0.17)), round(float(rng.uniform(24e-3, 28e-3)), 4)
     limit, left = round(0.4 * width, 4), bool(rng.integers(2))
     rails = device("rails", span=(round(0.1 * width, 4), limit))
-    chain, track = (device("narrowed_track", limit=limit, text="x"), rails), replace(TRACK, radius=radius)
+    chain, track = (device("narrowed track", limit=limit, text="x"), rails), replace(TRACK, radius=radius)
     assert closed(body(planned(chain, replace(track, width=width), SolidOptions(left=left)))) > 0.0

@@ -95,7 +95,7 @@ def test_nothing_of_the_track_stands_out_of_a_leaning_wall(name):
 
 
 def down(angle):
-    return (slanted("separation", angle, "{{climb: {} deg}}"), *CHAINS["gap"])
+    return (slanted("spacing section", angle, "{{climb: {} deg}}"), *CHAINS["gap"])
 
 
 def test_the_wall_goes_down_with_the_track_behind_a_separation():

@@ -98,7 +98,7 @@ def test_rate_says_of_each_setting_what_tune_says_and_each_drive_is_asked_once()
 def test_devices_that_turn_parts_are_used_where_they_may_be_and_bring_more():
     searches = [ToolingSearch(rule="csa", vary=False, turn=turn) for turn in (False, True)]
     plain, turned = (
-        tooling(BAR, STRAIGHT, "B", without="cut_out", search=search).design for search in searches
+        tooling(BAR, STRAIGHT, "B", without="cut-out", search=search).design for search in searches
     )
     assert not any(KINDS[cut.device.kind].turns for cut in plain.cuts)
     assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)

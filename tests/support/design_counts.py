@@ -16,7 +16,7 @@ TURNED_ON_TRACK = End(Fate.TURNED)
 
 def end_at(fate, kind, station=1):
     """An end at a device of a kind, the first of its chain."""
-    return End(fate, station, kind, kind.replace("_", " "))
+    return End(fate, station, kind)
 
 
 def stopped_at(kind, station=1):

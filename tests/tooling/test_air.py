@@ -28,7 +28,7 @@ from feederscrew.units import GRAVITY
 
 BOWL, EVERY = WIDE, coming(block())
 FLAT, TALL = pick(EVERY, 20, 5), pick(EVERY, 12, 20)
-JET = device("jet", nozzle=2e-3, pressure=5e4, height=8e-3)
+JET = device("air jet", nozzle=2e-3, pressure=5e4, height=8e-3)
 
 
 @pytest.mark.parametrize(("push", "drift"), [(0.5, 1.60), (1.0, 3.88), (2.0, 10.1)])
@@ -46,31 +46,31 @@ def test_a_jet_over_what_lies_flat_blows_off_what_stands():
     force = verdicts.force_to_clear(replace(TALL, swing=0.0), 1.0, 0.015)  # weight times foot over height
     assert force == pytest.approx(TALL.posture.mass * BOWL.gravity * 2.5e-3 / 0.015, rel=1e-6)
     # The jets that a design tries surely blow off others and surely leave what is wanted.
-    jets = KINDS["jet"].proposals([flat], [tall], EVERY, "here")
+    jets = KINDS["air jet"].proposals([flat], [tall], EVERY, "here")
     assert jets and all(jet.height > 0.5 * FLAT.height for jet in jets)  # else it blows at what lies flat
     for jet in jets:
         assert verdict(jet, FLAT, EVERY).sure and verdict(jet, FLAT, EVERY).passes == 1.0
         assert verdict(jet, TALL, EVERY).sure and verdict(jet, TALL, EVERY).passes == 0.0
         gentler = replace(jet, pressure=jet.pressure - 5e3)  # the least a regulator is set to
         assert jet.factor(tall) > 2.0 and gentler.factor(tall) < 2.2
-    assert not KINDS["jet"].proposals([tall], [flat], EVERY, "here")  # what lies flat is not met alone
+    assert not KINDS["air jet"].proposals([tall], [flat], EVERY, "here")  # what lies flat is not met alone
     # A design takes one where air may be used and nothing else.
-    others = [name for name, kind in KINDS.items() if kind.proposed and kind.kind != "jet"]
+    others = [name for name, kind in KINDS.items() if kind.proposed and kind.kind != "air jet"]
     own = {"margin": 2.5e-4, "without": others, "play": 0.0, "tolerance": 0.0, "up": FLAT.aspect}
     own["heading"] = FLAT.heading
     with_air, without = (
         tooling_study.tooling(block(), BOWL, FLAT.aspect, **own, air=air).design for air in (True, False)
     )
-    assert [cut.device.kind for cut in with_air.cuts] == ["jet"] and not without.cuts
+    assert [cut.device.kind for cut in with_air.cuts] == ["air jet"] and not without.cuts
     assert TALL.name in with_air.cuts[0].returns and FLAT.name not in with_air.cuts[0].returns
 
 
 def test_a_sorter_needs_room_that_a_steeper_way_makes():
-    sorter = device("sorter", like=(FLAT.aspect, FLAT.heading, 5e-4))
+    sorter = device("vision reject", like=(FLAT.aspect, FLAT.heading, 5e-4))
     alone = stream.needed_spacing([sorter], EVERY, BOWL)
     widest, shortest = max(one.width for one in EVERY), min(one.length for one in EVERY)
     assert alone == pytest.approx(2e-3 + 2 * math.tan(math.radians(11)) * widest + travel_speed(BOWL) * 0.05)
-    steep = slanted("separation", -6.0)
+    steep = slanted("spacing section", -6.0)
     faster = travel_speed(replace(BOWL, track=replace(BOWL.track, climb=math.radians(-6.0))))
     behind = stream.needed_spacing([steep, sorter], EVERY, BOWL)
     needs = max(sorter.gap(one, faster) for one in EVERY)
@@ -79,12 +79,12 @@ def test_a_sorter_needs_room_that_a_steeper_way_makes():
     assert stream.needed_spacing([sorter, steep], EVERY, BOWL) == alone  # behind it, it is too late
     # A bank that comes first begins at the entry and holds what rolls.
     ball = replace(FLAT, may_roll_back=True)
-    (held,) = at_entry([ball], [slanted("bank", 8.0)])
+    (held,) = at_entry([ball], [slanted("banked track", 8.0)])
     assert not held.may_roll_back
     assert held.shift == pytest.approx(ball.posture.height * math.tan(math.radians(8)))
-    (low,) = at_entry([ball], [slanted("bank", 0.5)])
+    (low,) = at_entry([ball], [slanted("banked track", 0.5)])
     assert low.may_roll_back
-    assert at_entry([ball], [JET, slanted("bank", 8.0)]) == (ball,)
+    assert at_entry([ball], [JET, slanted("banked track", 8.0)]) == (ball,)
 
 
 def test_a_sorter_of_two_orientations_passes_both(tmp_path):
@@ -108,7 +108,7 @@ def test_a_sorter_of_two_orientations_passes_both(tmp_path):
 def test_a_sorter_read_back_is_the_one_that_was_written(tmp_path, turn):
     """To the last digits of its headings: what was verified of it stays so."""
     like, also = ("A", np.radians(turn), 1e-3), (("B", np.radians(0.37 * turn)),)
-    one = KINDS["sorter"]("b.yaml", like=like, also=also).with_play(2e-3)
+    one = KINDS["vision reject"]("b.yaml", like=like, also=also).with_play(2e-3)
     (copy,) = read(tmp_path, f"sorter: {one.text}").devices
     assert (copy.like[0], copy.also[0][0]) == ("A", "B")
     assert copy.like[1:] == pytest.approx(one.like[1:], rel=1e-14, abs=0.0)
@@ -120,11 +120,11 @@ def test_a_screw_that_hangs_is_seen_head_first_and_thread_first():
     """Both ways along the track end in the same slot: the sensor before it lets both pass."""
     screw = parts.load(PARTS.parent / "docs/tutorial/countersunk_m4x12.stl")
     steep = bowls.read(None, ["track.bank=8 deg", "track.width=15 mm"])
-    without = [name for name, kind in KINDS.items() if kind.proposed and name != "sorter"]
+    without = [name for name, kind in KINDS.items() if kind.proposed and name != "vision reject"]
     own = {"heading": np.radians(350.93), "outcome": "hanging", "without": without}
     study = tooling_study.tooling(screw, steep, "A", **own)
     devices = [cut.device for cut in study.design.cuts]
-    assert [one.kind for one in devices] == ["separation", "sorter", "separation", "rails"]
+    assert [one.kind for one in devices] == ["spacing section", "vision reject", "spacing section", "rails"]
     assert devices[2].angle == pytest.approx(steep.track.climb, abs=1e-6)  # time to turn down
     assert len(devices[1].also) == 1 and study.design.isolated
 
@@ -136,7 +136,7 @@ def test_a_laser_over_the_middle_tells_an_open_end_from_a_closed_one():
     met = DeviceEncounter(first, every)
     assert met.differs(other, "outline") < 1e-6 and met.differs(other, "side") < 1e-6
     assert met.differs(other, "relief") > 4e-3 and met.differs(first, "relief") == 0.0
-    sorter = device("sorter", like=(first.aspect, first.heading, 5e-4), sees="relief")
+    sorter = device("vision reject", like=(first.aspect, first.heading, 5e-4), sees="relief")
     assert [verdict(sorter, one, every).passes for one in (first, other)] == [1.0, 0.0]
     # The relief of a wedge, 10 mm long, 2 mm high at its rear and 6 mm at its front; beside it nothing.
     corners = [[x, y, z] for x, high in ((0, 2), (10, 6)) for y in (0, 8) for z in (0, high)]
@@ -173,7 +173,7 @@ def test_an_outline_is_turned_until_it_fits_and_no_further():
     longer = FLAT.length * (np.cos(turn) - 1.0) + FLAT.width * np.sin(turn)
     assert DeviceEncounter(FLAT).askew("side") == pytest.approx(longer, abs=4e-5)
     assert DeviceEncounter(FLAT).askew("outline") == DeviceEncounter(FLAT).askew("height") == 0.0
-    sorter = device("sorter", like=(FLAT.aspect, FLAT.heading, 2e-3), sees="side")
+    sorter = device("vision reject", like=(FLAT.aspect, FLAT.heading, 2e-3), sees="side")
     assert verdict(sorter, FLAT, EVERY).margin == pytest.approx(2e-3 - longer - 1e-4, abs=5e-5)
     assert verdict(sorter, replace(FLAT, carry=1e-3), EVERY).margin == verdict(sorter, FLAT, EVERY).margin
     (_, side, _, _) = type(sorter).around(DeviceEncounter(FLAT, EVERY), 2.5e-4, "here")

@@ -28,7 +28,7 @@ BOWL = bowls.read(None, ("track.climb=0 deg", "track.bank=0 deg"))
 BROAD = replace(BOWL.track, width=0.04)
 SWEEP = math.radians(30.0)
 BANKED = bowls.read(None, ["track.width=30 mm", "track.bank=6 deg"])
-OWN = {"search": ToolingSearch(rule="csa"), "without": "cut_out"}
+OWN = {"search": ToolingSearch(rule="csa"), "without": "cut-out"}
 
 
 def rectangle(length, width, first=0.0):
@@ -116,16 +116,16 @@ def test_a_sorter_blows_off_what_looks_other_than_its_own_by_more_than_its_play(
     every = lying(block(), BROAD)
     along, across = pick(every, 20), pick(every, 12)
     own = {"like": (along.aspect, along.heading, 5e-4)}
-    sorter = device("sorter", **own)
+    sorter = device("vision reject", **own)
     assert verdict(sorter, along, every).margin == pytest.approx(4e-4)  # its play without the blur
     assert verdict(sorter, across, every).margin == pytest.approx(5e-4 - 8e-3 + 1e-4, abs=2e-4)
-    weak = verdict(device("sorter", **own, time=1e-4), across, every)
+    weak = verdict(device("vision reject", **own, time=1e-4), across, every)
     assert weak.passes == 1.0 and not weak.sure
-    blind = device("sorter", **own, sees="height")
+    blind = device("vision reject", **own, sees="height")
     assert verdict(blind, across, every).passes == verdict(blind, along, every).passes == 1.0
     # A cutter leaves round corners and a smaller hole.
     along, across = (every.index(pick(every, length, 5)) for length in (20, 12))
-    square = device("cut_out", corners=tuple(map(tuple, rectangle(13, 11.5))))
+    square = device("cut-out", corners=tuple(map(tuple, rectangle(13, 11.5))))
     task = design_task(every, np.ones(len(every)) / len(every), along, 2.5e-4, 1.0, ())
     cut = chain.judge_cut(every, along, square, np.arange(len(every)) == across, square, square)
     assert min(cut.margin_pass, cut.margin_reject) > 2.5e-4
@@ -214,7 +214,7 @@ def flat():
 @pytest.mark.parametrize(
     ("kind", "values", "goes"),
     [
-        ("narrowed_track", {"limit": 5e-3}, True), ("canyon", {"limit": 12.5e-3}, True),
+        ("narrowed track", {"limit": 5e-3}, True), ("canyon", {"limit": 12.5e-3}, True),
         ("gap", {"limit": 12e-3}, False),  # shorter than the part: it may hold it
         ("gap", {"limit": 21e-3}, True), ("wiper", {"limit": 4e-3}, True),
         # a sweep may lay over what turns along it: at mu = 0.6 over the side 6 mm off its weight, from 10 mm
@@ -235,8 +235,8 @@ def test_a_part_fits_through_a_hole_as_it_lies_with_room_all_round_but_tips_ahea
         assert fits_as_it_lies(flat, rectangle(length, width)) == fits
     short, wide = (rectangle(share * 20.55, 13.0) for share in (1.0, 1.1))
     assert fits_as_it_lies(flat, short)
-    assert not lets_go(device("cut_out", corners=tuple(map(tuple, short))), replace(flat, grip=1.5))
-    assert lets_go(device("cut_out", corners=tuple(map(tuple, wide))), flat)
+    assert not lets_go(device("cut-out", corners=tuple(map(tuple, short))), replace(flat, grip=1.5))
+    assert lets_go(device("cut-out", corners=tuple(map(tuple, wide))), flat)
 
 
 def test_a_design_does_not_count_on_what_may_catch_the_edge_of_a_canyon():

@@ -22,10 +22,10 @@ from feederscrew.tooling.orientations import name_mirror_images
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 MARGIN = 2.5e-4
-BY_ONE_NUMBER = {"wiper", "narrowed_track", "canyon", "gap", "cut_out"}
-SENSOR = ("sorter",)
-FREE, PLAIN = DesignConstraints(), DesignConstraints(without=("cut_out",))
-UNSEEN = DesignConstraints(without=("cut_out", *SENSOR))
+BY_ONE_NUMBER = {"wiper", "narrowed track", "canyon", "gap", "cut-out"}
+SENSOR = ("vision reject",)
+FREE, PLAIN = DesignConstraints(), DesignConstraints(without=("cut-out",))
+UNSEEN = DesignConstraints(without=("cut-out", *SENSOR))
 BOWL = bowls.read(None, [])
 ROOMY = bowls.read(None, ("track.radius=150 mm", "track.width=200 mm"))
 
@@ -52,7 +52,7 @@ def mirrored(every):
 
 def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
     monkeypatch.setattr(hole_search, "STARTS", 20)
-    study = tooling(block(), ROOMY, search=ToolingSearch(verdicts=2000, vary=False), without="sorter")
+    study = tooling(block(), ROOMY, search=ToolingSearch(verdicts=2000, vary=False), without="vision reject")
     reasons = [one.reasons[0] for one in study.designs if not one.isolated]
     assert len(reasons) == 4  # what stands tall on a small foot goes wherever the block lying flat goes
     assert sum("which stands on a larger foot and is no higher" in one for one in reasons) >= 2
@@ -80,7 +80,7 @@ def test_a_cut_is_not_eased_without_end_for_what_falls_off_at_any_width():
     study = tooling(
         load("hexbolt_m8x25"), BOWL, "B", search=ToolingSearch(verdicts=1, vary=False), without=SENSOR
     )
-    every, narrow = study.orientations, next(k for k in chain.numeric_kinds() if k.kind == "narrowed_track")
+    every, narrow = study.orientations, next(k for k in chain.numeric_kinds() if k.kind == "narrowed track")
     needed = chain.limits(narrow, every)
     cut = narrow("own").valued(float(needed[study.wanted]) + 5e-4)
     (placed,) = chain.place_devices(every, study.wanted, [cut], [np.isinf(needed)], least=2.5e-4)
@@ -173,7 +173,7 @@ def test_a_design_goes_on_behind_the_devices_of_the_bowl(bracket, tmp_path):
         bowls.read(path),
         one.aspect,
         heading=one.heading,
-        without="cut_out",
+        without="cut-out",
         search=ToolingSearch(vary=False),
     )
     text = tables.bowl_file(study, bowls.settings(path))
@@ -226,11 +226,12 @@ def dowel():
 @pytest.mark.parametrize(
     ("name", "friction", "without", "stretches"),
     [
-        ("A@0", 0.5, (), [("bank", 7)]),  # atan(tan 3 deg / 0.5) = 5.98 deg, and a degree to spare
-        ("A@0", 0.9, (), [("bank", 6)]),
-        ("A@90", 0.3, (), [("bank", 11)]),  # 9.9 deg
-        ("A@0", 0.1, (), [("groove", 30), ("bank", 6)]), ("A@0", 0.0, (), [("groove", 30), ("bank", 6)]),
-        ("A@90", 0.1, (), []), ("A@0", 0.1, ("groove",), []), ("A@0", 0.5, ("bank",), []),
+        ("A@0", 0.5, (), [("banked track", 7)]),  # atan(tan 3 deg / 0.5) = 5.98 deg, and a degree to spare
+        ("A@0", 0.9, (), [("banked track", 6)]),
+        ("A@90", 0.3, (), [("banked track", 11)]),  # 9.9 deg
+        ("A@0", 0.1, (), [("V groove", 30), ("banked track", 6)]),
+        ("A@0", 0.0, (), [("V groove", 30), ("banked track", 6)]),
+        ("A@90", 0.1, (), []), ("A@0", 0.1, ("V groove",), []), ("A@0", 0.5, ("banked track",), []),
         ("B@86", 0.5, (), []),  # nothing rolls
     ],
 )  # fmt: skip
@@ -239,19 +240,19 @@ def test_what_rolls_is_held_by_a_bank_or_lies_in_a_groove(dowel, name, friction,
     assert [(one.kind, pytest.approx(math.degrees(one.angle))) for one in held] == stretches
     leaning = replace(named(dowel, name), track=replace(ROLLING.track, bank=0.01))
     assert not design.holding_stretches(leaning, friction, (), FREE)
-    assert not design.holding_stretches(named(dowel, name), friction, (slanted("bank", 6),), FREE)
+    assert not design.holding_stretches(named(dowel, name), friction, (slanted("banked track", 6),), FREE)
 
 
 def test_the_design_of_a_dowel_begins_with_its_bank(dowel):
     own, part = {"search": ToolingSearch(rule="csa", vary=False)}, load("dowel_6x20")
     made = tooling(part, ROLLING, "A", heading=0.0, **own).design
     first, *others = made.cuts
-    assert made.isolated and (first.device.kind, first.device.text) == ("bank", "7 deg")
+    assert made.isolated and (first.device.kind, first.device.text) == ("banked track", "7 deg")
     assert np.isnan(first.margin_pass) and first.returns == ()
     assert made.devices == (first.device, *(cut.device for cut in others))
-    own, headings = {"search": ToolingSearch(rule="csa"), "without": "bank"}, (0.0, math.pi / 2)
+    own, headings = {"search": ToolingSearch(rule="csa"), "without": "banked track"}, (0.0, math.pi / 2)
     level, across = (tooling(part, ROLLING, "A", heading=one, **own).design for one in headings)
-    assert all(cut.device.kind != "bank" for cut in level.cuts)
+    assert all(cut.device.kind != "banked track" for cut in level.cuts)
     assert not across.isolated and "can roll back" in across.reasons[0]
     bank = design.holding_stretches(named(dowel, "A@90"), 0.3, (), FREE)[0]
     one = replace(named(dowel, "A@90"), wall_grip=0.3)
@@ -264,8 +265,8 @@ def test_the_design_of_a_dowel_begins_with_its_bank(dowel):
     assert level.efficiency == pytest.approx(0.8559, abs=2e-4)
     every = coming(part, BOWL)
     shares = np.array([one.chances["csa"] for one in every])
-    bank = slanted("bank", 6.0, "6 deg")
-    grooves = {angle: slanted("groove", angle, f"{{angle: {angle} deg}}") for angle in (15.0, 45.0, 55.0)}
+    bank = slanted("banked track", 6.0, "6 deg")
+    grooves = {angle: slanted("V groove", angle, f"{{angle: {angle} deg}}") for angle in (15.0, 45.0, 55.0)}
     lying_along = {
         angle: design.coming_shares(every, shares, (one, bank))[0] for angle, one in grooves.items()
     }
@@ -296,7 +297,7 @@ def test_other_tracks_and_sweeps_are_tried_where_a_face_clears_itself(flat):
     tracks = design.other_stretches(every[0], loose, FREE)
     assert [one[0].text for one in tracks] == ["6 deg", "10 deg", "15 deg"]
     assert design.other_stretches(every[0], firm, FREE) == []
-    assert design.other_stretches(every[0], loose, DesignConstraints(without=("bank",))) == []
+    assert design.other_stretches(every[0], loose, DesignConstraints(without=("banked track",))) == []
     steep = replace(every[0], track=replace(every[0].track, bank=0.01))
     assert design.other_stretches(steep, loose, FREE) == []
     rough = [replace(one, grip=0.9) for one in every]
@@ -307,7 +308,7 @@ def test_other_tracks_and_sweeps_are_tried_where_a_face_clears_itself(flat):
     assert design.widths(every, shares, 0, MARGIN) == []  # 9.4 g fly off 25 mm
     heavy = tuple(replace(one, posture=replace(one.posture, mass=0.1)) for one in every)
     (width,) = design.widths(heavy, shares, 0, MARGIN)
-    sorter = device("sorter", like=(heavy[0].aspect, heavy[0].heading, MARGIN))
+    sorter = device("vision reject", like=(heavy[0].aspect, heavy[0].heading, MARGIN))
 
     def blown(some):
         return [DeviceEncounter(k, some).blown(*sorter.jet.push(k, some), sorter.time) for k in some[1:]]
@@ -349,16 +350,19 @@ def test_a_device_that_changes_no_number_is_left_out_and_what_drops_parts_stays(
     every, shares = flat
     wanted = every.index(named(every, "A@0"))  # 20 mm along the track
     task = design_task(every, shares, wanted, MARGIN, 1.0, ())
-    first, gone = cut(every, wanted, "narrowed_track", limit=every[wanted].balcony + 1e-3)
-    repeat, also = cut(every, wanted, "narrowed_track", limit=every[wanted].balcony + 2e-3)
-    other, more = cut(every, wanted, "sorter", like=("A", 0.0, 2e-3), sees="height")
+    first, gone = cut(every, wanted, "narrowed track", limit=every[wanted].balcony + 1e-3)
+    repeat, also = cut(every, wanted, "narrowed track", limit=every[wanted].balcony + 2e-3)
+    other, more = cut(every, wanted, "vision reject", like=("A", 0.0, 2e-3), sees="height")
     assert gone.any() and not (also & ~gone).any() and (more & ~gone).any()
     both = chain.propose_needed(task, (first, repeat), gone | also | ~task.stays)
     assert [one.device.limit for one in both.cuts] == [first.device.limit]
     alone = propose(task, (first,), gone | ~task.stays)
     assert (both.isolated, both.efficiency, both.purity) == (alone.isolated, alone.efficiency, alone.purity)
     two = chain.propose_needed(task, (first, other), gone | more | ~task.stays)
-    assert [one.device.kind for one in two.cuts if not one.device.leans] == ["narrowed_track", "sorter"]
+    assert [one.device.kind for one in two.cuts if not one.device.leans] == [
+        "narrowed track",
+        "vision reject",
+    ]
     # One that alone returns a share by the margin stays, but of a share that is rare.
     rejected = np.array([one.name in first.returns for one in every])
     coming, rest = (np.where(rejected, 1e-6, some) for some in (task.coming, shares))

@@ -24,7 +24,7 @@ DEG = math.radians(1.0)
 
 
 def groove(angle):
-    return slanted("groove", angle, f"{{angle: {angle:g} deg}}")
+    return slanted("V groove", angle, f"{{angle: {angle:g} deg}}")
 
 
 @pytest.fixture(scope="module")
@@ -63,13 +63,13 @@ def test_what_lies_flat_stays_what_is_round_lies_along_and_a_queue_travels_as_in
     assert passage.after.name == "A@0" and passage.after.groove == 30.0 * DEG
     assert tooling_figures.turned_words(passage) == "turns into A@0, not sure"
     # A queue travels as in the groove that is listed first.
-    in_groove = at_entry(dowel, [groove(40.0), slanted("separation", -6.0)])
+    in_groove = at_entry(dowel, [groove(40.0), slanted("spacing section", -6.0)])
     assert stream.queueing(WIDE, in_groove).track.climb == WIDE.track.climb
     there = replace(WIDE, friction=stream.on_stretch(WIDE, in_groove[0]).friction)
     assert velocity(stream.queueing(WIDE, in_groove)).value == pytest.approx(velocity(there).value)
     assert stream.needed_spacing([groove(40.0)], in_groove, WIDE) == 0.0
     # A groove begins at the entry, and a bank ends it.
-    bank, steep = slanted("bank", 6.0), slanted("separation", -4.0)
+    bank, steep = slanted("banked track", 6.0), slanted("spacing section", -4.0)
     assert leading_devices([groove(30.0), steep, bank]) == (groove(30.0), steep)
     assert leading_devices([bank, groove(30.0), bank]) == (bank, groove(30.0))
     assert leading_devices([device("gap", limit=1e-3), bank]) == ()
@@ -79,7 +79,7 @@ def test_a_round_part_is_sure_in_a_groove_and_no_bank_brings_it_to_the_wall():
     """A set screw across a bank of 6 deg came 0.8 mm off the wall in 6 of 6 trials, and fell."""
     part = load("dowel_6x20")
     own = {"rule": "csa", "aspect_shares": shares(part, WIDE, rule="csa")}
-    chains = (), (groove(30.0),), (slanted("bank", 6.0, "6 deg"),)
+    chains = (), (groove(30.0),), (slanted("banked track", 6.0, "6 deg"),)
     level, lying, banked = (rate(part, WIDE, "A", devices=devices, **own) for devices in chains)
     names = [one.name for one in level.rate.orientations.lying]
     assert not level.rate.orientations.sure[names.index("A@0")]
@@ -99,7 +99,7 @@ def test_friction_acts_as_over_the_cosine(angle):
     own = [there.friction.static, there.friction.kinetic, *there.friction.backward]
     assert own == pytest.approx([more * value for value in (mu.static, mu.kinetic, *mu.backward)])
     assert there.track.bank == 0.0 and there.track.climb == WIDE.track.climb
-    banked = stream.on_stretch(WIDE, slanted("bank", 5.0).onward(one))
+    banked = stream.on_stretch(WIDE, slanted("banked track", 5.0).onward(one))
     assert banked.friction is WIDE.friction and banked.track.bank == 5.0 * DEG
 
 
@@ -120,7 +120,7 @@ def test_faults_of_a_groove(tmp_path, lines, fault):
 
 
 def test_its_section_is_closed_and_has_the_other_face(dowel):
-    chain = (groove(30.0), slanted("bank", 6.0), device("gap", limit=5e-3, text="5 mm"))
+    chain = (groove(30.0), slanted("banked track", 6.0), device("gap", limit=5e-3, text="5 mm"))
     section = build_section(WIDE.track, chain, dowel)
     (begin, first, lean), (_, end, upright) = section.walls
     assert (begin, end, upright) == (0.0, section.length, 0.0) and lean == pytest.approx(30.0 * DEG)

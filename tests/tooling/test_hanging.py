@@ -60,8 +60,8 @@ def test_what_hangs_by_one_head_is_one_orientation(pin):
     assert [course(chain, pin).leaving[across].sum() for chain in ([gap], [wide], [wide, gap])] == [1, 1, 0]
     # Air does not blow off what rails hold.
     one = along_track(pin)
-    jet = device("jet", nozzle=2e-3, pressure=1e5, height=2e-3)
-    sorter = device("sorter", like=(one.aspect, one.heading, 1e-3), sees="height")
+    jet = device("air jet", nozzle=2e-3, pressure=1e5, height=2e-3)
+    sorter = device("vision reject", like=(one.aspect, one.heading, 1e-3), sees="height")
     moving = [replace(one, grip=0.6, speed=0.02, swing=0.06) for one in pin]
     for air in (jet, sorter):
         flow = course([rails(pin), air], moving)
@@ -70,7 +70,7 @@ def test_what_hangs_by_one_head_is_one_orientation(pin):
 
 @pytest.mark.parametrize(
     ("kind", "limit", "margin"),
-    [("hold_down", 4.5e-3, 5e-4), ("wiper", 3.8e-3, -2e-4), ("gap", 3.5e-3, 5e-4), ("gap", 4.3e-3, -3e-4)],
+    [("hold-down", 4.5e-3, 5e-4), ("wiper", 3.8e-3, -2e-4), ("gap", 3.5e-3, 5e-4), ("gap", 4.3e-3, -3e-4)],
 )
 def test_devices_behind_rails_judge_what_hangs(pin, kind, limit, margin):
     chain, hung = [rails(pin), device(kind, limit=limit)], len(pin)
@@ -89,7 +89,7 @@ def test_rails_may_narrow_and_widen(pin, by, margin):
     assert 1e3 * flow.verdicts[1][len(pin)].margin == pytest.approx(margin, abs=0.03)
 
 
-@pytest.mark.parametrize("line", ["pressure_break: 5 mm", "step: 5 mm", "tip: 5 mm"])
+@pytest.mark.parametrize("line", ["pressure break: 5 mm", "step: 5 mm", "tipping ledge: 5 mm"])
 def test_a_device_without_meaning_for_hanging_parts_is_refused(tmp_path, line):
     with pytest.raises(FeederError) as raised:
         read(tmp_path, "rails: {from: 4.5 mm, to: 8.5 mm}", line)

@@ -55,7 +55,9 @@ def test_a_blade_lays_a_pin_over_from_a_height_on_and_a_swept_one_aside(pin):
 )  # fmt: skip
 def test_an_opening_lays_over_what_it_does_not_hold_at_its_foot(pin, wide, high, margin):
     corners = ((0.0, 0.0), (1e-3 * wide, 0.0), (1e-3 * wide, 1e-3 * high), (0.0, 1e-3 * high))
-    assert verdict(device("profile", corners=corners), pin).margin == pytest.approx(margin, rel=2e-2, abs=0.0)
+    assert verdict(device("profile gate", corners=corners), pin).margin == pytest.approx(
+        margin, rel=2e-2, abs=0.0
+    )
 
 
 @pytest.mark.parametrize(("grip", "wedges"), [(0.57, False), (0.585, True)])
@@ -163,7 +165,7 @@ def test_beyond_a_ledge_a_margin_is_the_least_of_what_it_lacks_and_what_turns_it
         for share in (0.05, 0.3, 0.6, 0.9):
             limit = share * one.balcony
             lacks, (_, certain) = one.balcony - limit, verdicts.beyond_ledge(one, every, limit)
-            margin = verdict(device("tip", limit=limit), one, every).margin
+            margin = verdict(device("tipping ledge", limit=limit), one, every).margin
             assert margin <= min(lacks, certain) + 1e-12
             assert min(abs(margin - lacks), abs(margin - certain)) < 1e-12
             bounds.add(bool(lacks < certain))
@@ -253,7 +255,7 @@ def lifted(corners, side):
 
 
 A, B, C = 20e-3, 12e-3, 5e-3  # the sides of the block
-PLAIN = DesignConstraints(without=("cut_out",))
+PLAIN = DesignConstraints(without=("cut-out",))
 
 
 @pytest.fixture(scope="module")
@@ -333,14 +335,14 @@ def test_a_step_is_a_matrix_of_shares_that_grows_with_its_height(block):
     assert margin == pytest.approx(-0.5 * (turn.sure - turn.lift))
     assert not flow.decided[tall] and course([device("step", limit=8e-3)], block).decided[tall]
     # A ledge turns what its weight lies beyond.
-    flow = course([device("tip", limit=4e-3)], block)
+    flow = course([device("tipping ledge", limit=4e-3)], block)
     for k, one in enumerate(block):
         if one.distance <= 4e-3:
             assert flow.matrices[0][k, k] == 1.0
             assert flow.verdicts[0][k].margin == pytest.approx(abs(one.balcony - 4e-3))
     k = at(block, A, B)  # its middle is 2.5 mm from the wall
-    assert course([device("tip", limit=2e-3)], block).matrices[0][k, k] == 0.0
-    soft = course([device("tip", limit=2.6e-3)], block, sigma=1e-4).matrices[0]
+    assert course([device("tipping ledge", limit=2e-3)], block).matrices[0][k, k] == 0.0
+    soft = course([device("tipping ledge", limit=2.6e-3)], block, sigma=1e-4).matrices[0]
     assert soft[k, k] == pytest.approx(0.5 * math.erfc(-1.0 / math.sqrt(2.0)), abs=2e-3)
 
 

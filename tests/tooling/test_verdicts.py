@@ -17,7 +17,7 @@ from feederscrew.tooling import footprints
 from feederscrew.tooling.devices import openings
 from feederscrew.tooling.devices.base import UNSURE, share
 from feederscrew.tooling.devices.blades import SQUARE_FACE_RAD
-from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.devices.kinds import KINDS, find_kind
 from feederscrew.tooling.orientations import place
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
@@ -86,7 +86,7 @@ LEAD_IN = "lead_in: {from: 3 mm, to: 9 mm, length: 9 mm, taper: 9 mm}"
         ("cut_out: [[0 mm, 0 mm], [1 mm, 1 mm]]", "cut_out has 2 corners"),
         ("cut_out: [[0 mm, 0 mm], [9 mm, 9 mm], [9 mm, 0 mm], [0 mm, 9 mm]]", "cut_out crosses itself"),
         ("cut_out: [[0 mm, 0 mm], [1 mm, 0 mm], [2 mm, 0 mm]]", "cut_out has no area"),
-        ("cut_out: [[0 mm, 30 mm], [9 mm, 30 mm], [9 mm, 40 mm]]", "cut_out lies beside the track"),
+        ("cut_out: [[0 mm, 30 mm], [9 mm, 30 mm], [9 mm, 40 mm]]", "cut-out lies beside the track"),
         ("cut_out: {dxf: none.dxf, layer: CUT}", "none.dxf: no such file - check the path"),
         ("jet: {nozzle: 2 mm}", "jet has no pressure - write {nozzle: 2 mm, pressure: 3 bar}"),
         ("jet: {nozzle: 2 mm, pressure: 30 bar, height: 1 mm}", "pressure is 30 bar - give 0.01 to 10 bar"),
@@ -162,7 +162,7 @@ def test_beside_a_round_edge_a_skew_foot_is_carried_by_what_a_circle_leaves_of_i
     # A block 12 x 5 mm and 20 high at a bank of 30 deg: 10 tan 30 = 5.8 mm is beyond its foot's 2.5 mm.
     tall = pick(lying(block(), BOWL.track), 12, 20)
     banked = replace(tall, track=replace(BOWL.track, bank=np.radians(30.0)))
-    judged = verdict(device("narrowed_track", limit=11e-3), banked)
+    judged = verdict(device("narrowed track", limit=11e-3), banked)
     reach = np.hypot(6.0, 2.5 + 10.0 * np.tan(np.radians(30.0)))
     assert judged.passes == 0.0 and judged.margin == pytest.approx(-1e-3 * reach, rel=1e-3)
 
@@ -203,7 +203,7 @@ def test_over_a_shorter_hole_a_rod_only_dips(rod, wide, rides):
     0.05 mm) / 6 = 0.1 mm - 0.05 mm, so s = 0.35 mm and w = 2 sqrt(9 - 2.65^2) = 2.81 mm. Placed it falls 2 mm
     over the edge, of which it travels 1 mm."""
     low, high = rod.distance - 0.5e-3 * wide, rod.distance + 0.5e-3 * wide
-    hole = device("cut_out", corners=((0.0, low), (12e-3, low), (12e-3, high), (0.0, high)))
+    hole = device("cut-out", corners=((0.0, low), (12e-3, low), (12e-3, high), (0.0, high)))
     judged = verdict(hole, replace(rod, climbs=0.1e-3, carry=1e-3))
     assert judged.passes == 0.0 and judged.margin == pytest.approx(-UNSURE if rides else -1e-3, rel=1e-2)
     assert hole.goes_on(40e-3) == 12e-3
@@ -241,7 +241,7 @@ def test_a_jet_is_felt_as_long_as_it_meets_the_tall_end_of_a_part(pressure, leas
     at any place moves nothing, and twice in the mean all of it the 36 mm to the free edge."""
     tall_end = still(shapes.prism([*STEPPED, (4, 20), (0, 20)], 8.0), 20)
     ends = [one for one in tall_end if one.length > 15.9e-3 and one.width < 9e-3]
-    jet = device("jet", nozzle=0.8e-3, pressure=pressure, height=12e-3)
+    jet = device("air jet", nozzle=0.8e-3, pressure=pressure, height=12e-3)
     share = jet.jet.thrust / (1024e-9 * STEEL * GRAVITY * 4.0 / 12.0)
     assert len(ends) == 2 and least < share < most  # the tall end ahead, or behind
     margin = {0.2: 36e-3 * (1.0 - share), 0.5: 0.0, 4.5: -UNSURE, 9.0: -36e-3}[least]
@@ -254,7 +254,7 @@ def test_a_jet_is_felt_as_long_as_it_meets_the_tall_end_of_a_part(pressure, leas
 def test_a_jet_meets_the_end_of_a_part_that_is_higher_than_its_middle():
     every = coming(shapes.prism([*STEPPED, (4, 9), (0, 9)], 8.0), bowls.read(None, []))
     one = max((k for k in every if k.height < 9.5e-3 and k.length > 15e-3), key=lambda k: k.height)
-    jet, met = device("jet", nozzle=2e-3, pressure=5e4, height=7e-3), DeviceEncounter(one, every)
+    jet, met = device("air jet", nozzle=2e-3, pressure=5e4, height=7e-3), DeviceEncounter(one, every)
     assert jet.jet.push(one, every)[0] == 0.0 and jet.most(met) > 2.0 * jet.factor(met) > 0.0
     jets = [replace(jet, pressure=float(pressure)) for pressure in np.geomspace(1e2, 1e5, 60)]
     some, weak = (next(k for k in jets if low < k.most(met) < high) for low, high in ((0.6, 1.8), (0.2, 0.5)))
@@ -268,7 +268,7 @@ def test_a_jet_meets_the_end_of_a_part_that_is_higher_than_its_middle():
     along = [one for one in still(shapes.prism(outline, 60.0), 2.0 + rise) if one.length > 59e-3]
     (one,) = [one for one in along if one.distance == pytest.approx(1e-3 * middle, rel=1e-3)]
     side = (16.0 - middle) / 10.0  # of its weight, at 10 mm: less than what friction holds
-    jet = device("jet", nozzle=0.5e-3, pressure=2e4, height=10e-3)
+    jet = device("air jet", nozzle=0.5e-3, pressure=2e4, height=10e-3)
     taken = np.sin(slope) ** 2 - 0.6 * np.sin(slope) * np.cos(slope)
     force = area * 60e-9 * STEEL * GRAVITY * min(0.6, side)
     assert jet.factor(DeviceEncounter(one)) == pytest.approx(taken * jet.jet.thrust / force, rel=0.03)
@@ -302,13 +302,22 @@ SENSORS = {
 )  # fmt: skip
 def test_a_device_has_a_name_of_the_trade_and_a_value_in_words(kind, values, name, words):
     one = device(kind, **values).rewritten()
-    assert (one.name, one.full_name, one.value_words) == (name, name, words)
+    assert (one.kind, one.full_name, one.value_words) == (name, name, words)
+    written_so = {
+        name,
+        name.title(),
+        name.replace(" ", "_"),
+        name.replace("-", " "),
+        f" {name} (of steel)",
+        kind,
+    }
+    assert {find_kind(word) for word in written_so} == {type(one)}
 
 
 @pytest.mark.parametrize("sees", SENSORS)
 def test_a_vision_reject_says_what_sees_what_it_keeps_and_what_it_rejects(sees):
     like, also = ("A", np.radians(187.672), 8.35e-3), (("A", np.radians(353.592)), ("B", np.radians(359.8)))
-    one, (name, what) = device("sorter", like=like, also=also, sees=sees).rewritten(), SENSORS[sees]
+    one, (name, what) = device("vision reject", like=like, also=also, sees=sees).rewritten(), SENSORS[sees]
     words = f"keeps A at heading 188 and 354 deg and B at heading 0 deg, rejects {what} that differ by more "
     words += "than "
     assert (one.full_name, one.value_words) == (name, f"{words}8.35 mm")

@@ -100,7 +100,7 @@ def test_what_went_down_beside_a_ledge_comes_to_the_wall_and_what_stayed_up_does
 
 def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
     """All of it meets the side of the block, which it quickens by the thrust over the mass."""
-    jet, bowl = make_device("jet", "j", nozzle=2e-3, pressure=2e4, height=2.5e-3), still(climb=0.0)
+    jet, bowl = make_device("air jet", "j", nozzle=2e-3, pressure=2e4, height=2.5e-3), still(climb=0.0)
     line = queue.lay_out_track(bowl, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
     known = replace(runs.setting(SOLID, LENGTH, bowl), friction=np.zeros(5))
     x, y, z = (line.stage.air.jets[f"mouth_{e}"][0] for e in "xyz")
@@ -131,7 +131,7 @@ def through(part, bowl, devices, which, parts):
 
 @pytest.mark.parametrize(("clearance", "passes"), [(5e-3, True), (2e-3, False)])
 def test_a_hold_down_over_the_heads_does_as_its_rule_says(clearance, passes):
-    hold_down = make_device("hold_down", "h", limit=clearance)
+    hold_down = make_device("hold-down", "h", limit=clearance)
     known, rows, seen = screws(hold_down)
     hangs = [isinstance(one, Hanging) for one in known.states]
     assert known.leaving[rows].sum() == pytest.approx(len(rows) if passes else 0.0)
@@ -174,7 +174,7 @@ def test_a_t_nut_hangs_by_its_shoulders_in_rails_and_stops_in_a_slot():
 def in_groove(angle, radius=50.0, bowl=GROOVE_BOWL):
     """A bowl, the dowel's orientations in a groove, its state against the leaning wall, and how it rides."""
     bowl = replace(bowl, track=replace(bowl.track, radius=radius))
-    chain = (make_device("groove", "g", angle=angle * DEG),)
+    chain = (make_device("V groove", "g", angle=angle * DEG),)
     every = at_entry(add_travel(orientations(DOWEL, find(DOWEL), bowl.track), bowl), chain)
     one = next(one for one in every if one.name == "A@0")
     solid, length, principal = shape.solid_of(DOWEL)
@@ -215,14 +215,20 @@ def test_a_dowel_in_a_groove_comes_back_to_its_bottom_and_passes_it():
     climbing = replace(GROOVE_BOWL, track=replace(GROOVE_BOWL.track, climb=3.0 * DEG))
     bowl, every, *_ = in_groove(30.0, 0.15, climbing)
     row = [k for k, one in enumerate(every) if one.name == "A@0"]
-    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("bank", "b", angle=8.0 * DEG))
+    chain = (
+        make_device("V groove", "g", angle=30.0 * DEG),
+        make_device("banked track", "b", angle=8.0 * DEG),
+    )
     found = sent(DOWEL, bowl, row, 2, chain, every=every)
     assert list(found.fates) == [course.PASSED] * 2 and found.depths.max() < 5e-5
 
 
 def test_a_queue_lies_in_the_groove_from_its_entry_and_its_wall_leans_from_stretch_to_stretch():
     bowl, every, *_ = in_groove(30.0, 0.15)
-    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("separation", "s", angle=-5.0 * DEG))
+    chain = (
+        make_device("V groove", "g", angle=30.0 * DEG),
+        make_device("spacing section", "s", angle=-5.0 * DEG),
+    )
     slopes = queue.lay_out_track(bowl, every, chain, 0.1).stage.air.slopes
     first = slopes[:2]
     assert [(climb, bank) for _, climb, bank, _ in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]

@@ -262,8 +262,8 @@ def test_poured_parts_come_to_lie_and_travel():
 @pytest.mark.parametrize("ledge, stop, leaves", [(6.5, True, True), (14.0, True, False), (6.5, False, False)])
 def test_parts_that_back_up_and_reach_over_the_ledge_of_a_pressure_break_leave_there(ledge, stop, leaves):
     """Eight blocks that touch, 12 mm wide: they reach over a ledge of 6.5 mm, not over one of 14 mm."""
-    chain = (make_device("pressure_break", "", limit=1e-3 * ledge),)
-    chain += (make_device("height_bar", "", limit=4e-3),) * stop  # everything stands before it
+    chain = (make_device("pressure break", "", limit=1e-3 * ledge),)
+    chain += (make_device("height bar", "", limit=4e-3),) * stop  # everything stands before it
     known = stream.follow_orientations(PART, ASPECTS, BANKED.track, chain, bowl=BANKED)
     plan, bowl = queue.QueuePlan(8, 5.0, 0.0), replace(BANKED, devices=chain)
     found = queue.queue_of(PART, bowl, ASPECTS, known.lying, known.states, SHARES, plan, RunSettings(2))
@@ -276,7 +276,7 @@ def test_the_break_that_is_proposed_carries_what_is_wanted_and_no_more_than_it_h
     one = every[ALONG]
     (kind,) = [kind for kind in KINDS.values() if kind.relieves]
     device = kind.relieving([one], 2.5e-4, "design")
-    assert device.kind == "pressure_break"
+    assert device.kind == "pressure break"
     assert device.text == "6.15 mm"  # half the width less 2.5 tan(3 deg), plus 0.25 mm, in steps of 0.05 mm
     assert verdict(device, one, every).margin == pytest.approx(device.limit - one.balcony)
     assert 2.5e-4 <= device.limit - one.balcony < 3e-4 and device.limit < one.width

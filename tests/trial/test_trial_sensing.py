@@ -20,7 +20,7 @@ from feederscrew.trial.queue import QueuePlan, queue_of
 BOWL = bowls.read(None, ["track.width=40 mm"])
 EVERY = add_travel(orientations(PART, ASPECTS, BOWL.track), BOWL)
 ALONG = next(one for one in EVERY if one.length > 0.0199 and one.height < 0.0051)
-SORTER = make_device("sorter", "here", like=(ALONG.aspect, ALONG.heading, 5e-4))
+SORTER = make_device("vision reject", "here", like=(ALONG.aspect, ALONG.heading, 5e-4))
 SORTING = replace(BOWL, devices=(SORTER,))
 
 
@@ -34,8 +34,8 @@ def test_the_trial_blows_off_what_a_sorter_sees_differ():
 
 
 def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
-    chain = [make_device("separation", "here", angle=np.radians(-6.0))]
-    chain += [make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)]
+    chain = [make_device("spacing section", "here", angle=np.radians(-6.0))]
+    chain += [make_device("air jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)]
     tall = next(k for k, one in enumerate(EVERY) if one.length > 0.0119 and one.height > 0.0199)
     seen = course.course(PART, BOWL, EVERY, course.SentParts([EVERY.index(ALONG), tall], 2), chain)
     assert seen.fates.tolist() == [course.PASSED, course.RETURNED] and seen.end_stations[1] == 2
@@ -44,7 +44,7 @@ def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
 
 
 def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
-    jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
+    jet = make_device("air jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
     station = staging.stage_device(jet, BOWL.track, EVERY)
     state = laid(PART, ALONG, BOWL, place=station.begin, aside=3e-3)
     state[body.Z] += 20e-3 / LENGTH

@@ -101,7 +101,7 @@ def paths(run: TrialRun) -> Figure:
             if len(along):
                 axes.plot(along[-1] / MM, off[-1] / MM, mark, color=colour, markersize=4)
             drawn_fates.add(fate)
-        title = f"{station.device.name}: {station.device.value_words}".removesuffix(": ")
+        title = f"{station.device.kind}: {station.device.value_words}".removesuffix(": ")
         title = "\n".join(textwrap.wrap(title, 88))
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
         axes.axhline(0.0, color=style.INK, linewidth=3.0)  # the wall

@@ -52,7 +52,7 @@ class DeviceRide:
         """Return the same without the orientation: 'at gap 9 mm: returned'."""
         device = sent.stations[self.place].device
         value = device.short if device.is_one_value else ""
-        where = f"{device.name} {value}".strip()
+        where = f"{device.kind} {value}".strip()
         return f"at {where}: {self.fate.word.replace('_', ' ')}"
 
 

@@ -139,7 +139,7 @@ def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]
                 "passed_low": ends[k, 0],
                 "passed_high": ends[k, 1],
                 "leaves_as": leaves,  # 'A@0 9, other 1'
-                "ended_at": _end_places(run, k, people=people),
+                "ended_at": _end_places(run, k),
                 "predicted": "passes" if run.passes_by_rule[k] else "returned",
                 "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
                 "disagrees": bool(run.differs[k]),
@@ -287,13 +287,13 @@ def _name(run: TrialRun, k: int | None) -> str | None:
     return run.orientations.states[k].name
 
 
-def _end_places(run: TrialRun, k: int, *, people: bool = True) -> str:
-    """Where those ended that did not pass, with how many: 'gap 9'; for people as the trade names a device."""
+def _end_places(run: TrialRun, k: int) -> str:
+    """Where those ended that did not pass, with how many: 'gap 9'."""
     sent = run.course
     own = (sent.entry_rows == k) & ~np.isin(sent.fates, (course.PASSED, course.TURNED))
     places, counts = np.unique(sent.end_stations[own], return_counts=True)
     devices = [sent.stations[p].device for p in places]
-    return ", ".join(f"{device.name if people else device.kind} {n}" for device, n in zip(devices, counts))
+    return ", ".join(f"{device.kind} {n}" for device, n in zip(devices, counts))
 
 
 def _most(values: Floats) -> float:

@@ -164,8 +164,8 @@ class Device:
     text: str = ""  # its value as written
     assumption: str = ""  # what was taken for granted as it was read, a sentence; '' of nothing
 
-    kind: ClassVar[str] = "track"  # what it is called in a bowl file
-    trade: ClassVar[str] = ""  # what the trade calls it; '': its kind, with blanks
+    kind: ClassVar[str] = "track"  # what the trade calls it, in files and in sentences: 'vision reject'
+    old_kind: ClassVar[str] = ""  # what files of before call it, as these are read too; '': the same
     form: ClassVar[dict[str, Any]] = forms.LENGTH_FORM  # of its value in a bowl file
     example: ClassVar[str] = ""  # as written after 'kind:'
     meaning: ClassVar[str] = ""
@@ -243,7 +243,7 @@ class Device:
     @property
     def brief(self) -> str:
         """'narrowed track 13.35 mm'; of a device of several values its name alone: the drawings have them."""
-        return f"{self.name} {self.text}".rstrip() if self.is_one_value else self.name
+        return f"{self.kind} {self.text}".rstrip() if self.is_one_value else self.kind
 
     @property
     def label(self) -> str:
@@ -251,14 +251,9 @@ class Device:
         return f"{self.kind} {self.text}" if math.isfinite(self.limit) or self.labelled else self.kind
 
     @property
-    def name(self) -> str:
-        """What the trade calls it, in a sentence: 'vision reject', 'height bar'."""
-        return self.trade or self.kind.replace("_", " ")
-
-    @property
     def full_name(self) -> str:
         """The same with what it works by, where that differs: 'vision reject (camera from above)'."""
-        return self.name
+        return self.kind
 
     @property
     def short(self) -> str:
@@ -542,8 +537,8 @@ def carried(margin: float, travel: float, carry: float) -> float:
 class Yield(Device):
     """A share that passes, by aspect."""
 
-    kind = "yield"
-    trade = "measured yield"
+    kind = "measured yield"
+    old_kind = "yield"
     form = forms.by_name(forms.quantity("number", "0", "1"))
     example = "{A: 0.9}"
     meaning = "share that passes, by aspect, as measured; aspects not named pass"

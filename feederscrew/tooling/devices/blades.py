@@ -178,7 +178,8 @@ class Wiper(_Overhead):
 class HeightBar(_Overhead):
     """A bar across the track."""
 
-    kind = "height_bar"
+    kind = "height bar"
+    old_kind = "height_bar"
     example = "6 mm"
     meaning = "bar across the track at a clearance: orientations that stand higher stop before it"
 
@@ -187,8 +188,8 @@ class HeightBar(_Overhead):
 class HoldDown(_Overhead):
     """A bar above the queue."""
 
-    kind = "hold_down"
-    trade = "hold-down"
+    kind = "hold-down"
+    old_kind = "hold_down"
     example = "6 mm"
     meaning = "bar above the queue that keeps parts down; orientations that do not fit below stop before it"
 
@@ -196,8 +197,8 @@ class HoldDown(_Overhead):
 class Profile(Device):
     """A gate across the track with an opening."""
 
-    kind = "profile"
-    trade = "profile gate"
+    kind = "profile gate"
+    old_kind = "profile"
     form = forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH_FORM))
     example = "{of: A@90, play: 0.2 mm}"
     meaning = (

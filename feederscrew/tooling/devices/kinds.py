@@ -2,6 +2,7 @@
 
 import importlib
 import pkgutil
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,6 +12,8 @@ from feederscrew.tooling.devices.leans import Lean
 
 # class by kind, in the order of the modules; rails, which end a chain, and what has no place last
 KINDS: dict[str, type[Device]] = {}
+_BY_SPELLING: dict[str, type[Device]] = {}  # the same by every name, as ``_spelling`` writes it
+_ADDED = re.compile(r"\s*\([^()]*\)\s*$")  # what a full name says more: '(camera from above)'
 
 
 def register_kinds() -> dict[str, type[Device]]:
@@ -24,12 +27,29 @@ def register_kinds() -> dict[str, type[Device]]:
                 classes.append(value)
     for value in sorted(classes, key=lambda value: (not value.placed, value.hangs)):
         KINDS.setdefault(value.kind, value)
+        for name in filter(None, (value.kind, value.old_kind)):
+            _BY_SPELLING.setdefault(_spelling(name), value)
     return KINDS
 
 
+def find_kind(name: str) -> type[Device] | None:
+    """Return the kind of device that a name means, or None: the one place where names are looked up.
+
+    It takes each name that something prints: 'vision reject', 'Vision reject (camera from above)', with
+    blanks, hyphens or underscores, and the keys of bowl files of before, 'sorter'.
+    """
+    return _BY_SPELLING.get(_spelling(name))
+
+
 def make_device(kind: str, where: str, **values: Any) -> Device:
-    """Return a device of a kind by its name."""
-    return KINDS[kind](where, **values)
+    """Return a device of a kind by its name, as ``find_kind`` takes it.
+
+    Raises
+    ------
+    KeyError
+        There is no such kind.
+    """
+    return _BY_SPELLING[_spelling(kind)](where, **values)
 
 
 def names(**traits: object) -> tuple[str, ...]:
@@ -54,6 +74,11 @@ def dearer(cost: int) -> tuple[str, ...]:
 def leaning() -> tuple[type[Lean], ...]:
     """Return the kinds (type, ...) that lean the track."""
     return tuple(kind for kind in KINDS.values() if issubclass(kind, Lean))
+
+
+def _spelling(name: str) -> str:
+    """A name in small letters, its words apart by blanks, without what a full name adds."""
+    return " ".join(re.split(r"[\s_-]+", _ADDED.sub("", name).strip().casefold()))
 
 
 register_kinds()

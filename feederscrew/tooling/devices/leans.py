@@ -95,8 +95,8 @@ class Lean(Device):
 class Groove(Lean):
     """A V from here on, until a bank: the track leans towards its wall, and the wall back by as much."""
 
-    kind = "groove"
-    trade = "V groove"
+    kind = "V groove"
+    old_kind = "groove"
     serves = "lets lie along it what is round"
     form = forms.mapping(angle=forms.ANGLE_FORM)
     example = "{angle: 30 deg}"
@@ -138,8 +138,8 @@ class Groove(Lean):
 class Bank(Lean):
     """Another bank from here on."""
 
-    kind = "bank"
-    trade = "banked track"
+    kind = "banked track"
+    old_kind = "bank"
     serves = "holds what rolls at the wall"
     form = forms.ANGLE_FORM
     example = "6 deg"
@@ -177,8 +177,8 @@ class Bank(Lean):
 class Separation(Lean):
     """A steeper way down from here on, on which parts travel faster and so come apart."""
 
-    kind = "separation"
-    trade = "spacing section"
+    kind = "spacing section"
+    old_kind = "separation"
     form = forms.mapping(climb=forms.ANGLE_FORM)
     example = "{climb: -4 deg}"
     meaning = (

@@ -96,8 +96,8 @@ class _Ledge(Device):
 class Tip(_Ledge, _Turner):
     """A ledge above a second track."""
 
-    kind = "tip"
-    trade = "tipping ledge"
+    kind = "tipping ledge"
+    old_kind = "tip"
     example = "6 mm"
     meaning = (
         "ledge of that width above a second track, half the part's greatest length lower: orientations whose "
@@ -152,7 +152,8 @@ class _Balcony(_Ledge):
 class NarrowedTrack(_Balcony):
     """A track of a lesser width."""
 
-    kind = "narrowed_track"
+    kind = "narrowed track"
+    old_kind = "narrowed_track"
     example = "9 mm"
     meaning = (
         "track of a lesser width, a balcony; returns orientations whose foot of the centre of mass is not "
@@ -168,7 +169,8 @@ class NarrowedTrack(_Balcony):
 class PressureBreak(_Balcony):
     """A ledge before the tooling, from which parts that back up leave the track."""
 
-    kind = "pressure_break"
+    kind = "pressure break"
+    old_kind = "pressure_break"
     serves = "takes off parts that back up"
     example = "10 mm"
     meaning = (

@@ -155,8 +155,8 @@ class Gap(Device):
 class CutOut(Device):
     """A hole of several corners."""
 
-    kind = "cut_out"
-    trade = "cut-out"
+    kind = "cut-out"
+    old_kind = "cut_out"
     form = forms.either(forms.POLYGON, DRAWN)
     example = "[[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
     meaning = (

@@ -14,7 +14,18 @@ if TYPE_CHECKING:
     from feederscrew.tooling.orientations import Orientation
 
 HEADING_TOLERANCE_RAD = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
+NAMED = re.compile(r"(?P<aspect>[^@\s]+)@(?P<degrees>\d{1,3}(\.\d+)?)(?P<hangs> +hanging( \d+)?)?")
 HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] with decimals
+
+
+def split_name(name: str) -> tuple[str, float | None]:
+    """Return the aspect and the heading [rad] that a name such as 'A@354' or 'C@174 hanging' names.
+
+    The heading of the name of an aspect alone is None. Names are as tables and drawings print them.
+    """
+    if named := NAMED.fullmatch(name.strip()):
+        return named["aspect"], float(np.radians(float(named["degrees"])))
+    return name, None
 
 
 def place(

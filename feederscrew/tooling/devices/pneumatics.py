@@ -243,9 +243,9 @@ class Sorter(Device):
     time: float = PULSE  # [s] of a pulse
     nozzles: float = NOZZLE_COUNT  # one above the other
 
-    kind = "sorter"
+    kind = "vision reject"
+    old_kind = "sorter"
     cost_class = 3
-    trade = "vision reject"
     form = forms.mapping(
         ("sees", "resolution", "jet"),
         of=forms.either(forms.NAMED, {"type": "array", "minItems": 1, "items": forms.NAMED}),
@@ -342,7 +342,7 @@ class Sorter(Device):
 
     @property
     def full_name(self) -> str:
-        return f"{self.name} ({SEEN_BY[self.sees][0]})"
+        return f"{self.kind} ({SEEN_BY[self.sees][0]})"
 
     @property
     def value_words(self) -> str:
@@ -418,8 +418,8 @@ class SteadyJet(Device):
     pressure: float = JET_PRESSURE_PA  # [Pa] above the ambient
     height: float = 0.0  # [m] of the nozzle over the track
 
-    kind = "jet"
-    trade = "air jet"
+    kind = "air jet"
+    old_kind = "jet"
     form = forms.mapping(
         nozzle=forms.LENGTH_FORM, pressure=forms.quantity("pressure"), height=forms.LENGTH_FORM
     )

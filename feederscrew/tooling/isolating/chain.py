@@ -461,7 +461,7 @@ class Design:
     def reasons(self) -> tuple[str, ...]:
         """Why, a sentence each: worked out when it is asked for, which of most proposals it never is."""
         stops = (
-            f"{' '.join(cut.stops)} come to stand at the {cut.device.name}" for cut in self.cuts if cut.stops
+            f"{' '.join(cut.stops)} come to stand at the {cut.device.kind}" for cut in self.cuts if cut.stops
         )
         return (*stops, *(inseparable_reason(*pair) for pair in self.inseparable), *self.remarks)
 
