@@ -286,7 +286,8 @@ def add_travel(orientations: Sequence[Orientation], bowl: Bowl) -> tuple[Orienta
             gravity=gravity,
             wall_grip=float(bowl.friction.wall),
             climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
-            may_roll_back=not held and o.rolls_across,
+            # a cone, a disc on a stem: along a banked track it rolls in a circle into the wall
+            may_roll_back=not held and o.rolls_across and not (track.bank > 0.0 and o.rolls_along),
         )
         for o in orientations
     )
