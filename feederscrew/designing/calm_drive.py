@@ -39,6 +39,7 @@ CALMER = 0.45  # of the velocity, of a calm drive that turns or loses what is wa
 CALMER_HOP = 0.5  # of the hop, of a drive that throws the part: half the energy of a landing
 LIVELIER_HOP = 2.5  # times the hop, of a drive that shakes off a blade what stays there at a calmer one
 LEAST_LIVELY_M = 1e-4  # hop of such a drive at least
+NEXT_LIVELIER_HOP = 1.6  # times the hop, one throw number of the list farther: before another blade is tried
 CALMER_STEP = 0.01  # [1] of the throw number: so much above ``CALM_THROW_NUMBER`` counts as that
 CALMER_SHARE = 0.9  # of the velocity: what is faster is no calmer drive
 HALVINGS = 12  # of the amplitude
@@ -183,13 +184,27 @@ def find_calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
     return other if gentler and 0.0 < throw_number(other) <= most else None
 
 
-def find_livelier(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
-    """Return a bowl with the calmest drive that throws parts ``LIVELIER_HOP`` times as high as another one's.
+def find_livelier(
+    plain_bowl: PlainBowl, bowl: Bowl, factor: float = LIVELIER_HOP, least: float = LEAST_LIVELY_M
+) -> Bowl | None:
+    """Return a bowl with the calmest drive that throws parts so many times as high as another one's.
 
-    Without devices; the other one has the drive at which parts stay at a blade. None where the user gave the
-    stroke, or no drive is that lively.
+    Parameters
+    ----------
+    plain_bowl : PlainBowl
+    bowl : Bowl
+        With the drive at which parts stay at a blade.
+    factor : float [1]
+        Hop over that of the other drive, at least.
+    least : float [m]
+        Hop at least.
+
+    Returns
+    -------
+    Bowl or None
+        Without devices; None where the user gave the stroke, or no drive is that lively.
     """
-    height = max(LIVELIER_HOP * hop(bowl).height, LEAST_LIVELY_M)
+    height = max(factor * hop(bowl).height, least)
     if plain_bowl.has_stroke:
         return None
     order = sorted(itertools.chain(*_levels(plain_bowl, True)), key=_calmness)

@@ -12,7 +12,7 @@ import numpy as np
 from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.designing import calm_drive, proposals, short_trials, texts
+from feederscrew.designing import calm_drive, hanging, proposals, short_trials, texts
 from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.policy import SearchPolicy
 from feederscrew.designing.proposals import Proposal
@@ -29,7 +29,8 @@ from feederscrew.studies.rate import Shares, shares
 from feederscrew.tooling.devices.base import ComparedValue
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating.chain import OutcomeKind
-from feederscrew.tooling.orientations import Hanging, Orientation, neck
+from feederscrew.tooling.isolating.rails import find_head
+from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.trial.wanted import equivalent_rows, wanted_rows
 
 LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
@@ -44,6 +45,7 @@ class _Idea:
     recipe: proposals.Recipe
     proposal: Proposal | None = None  # once it was looked for
     left_out: int = 0  # times that a device was left out at which it was lost
+    by_trials: bool = False  # rails, whatever the static rule says of what hangs
 
     @property
     def place(self) -> Place:
@@ -87,6 +89,7 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
         for recipe in proposals.recipes_of(cost_class, search.request)
         if not recipe.turns or _share(search, track, row) < proposals.RARE_ORIENTATION
     ]
+    ideas += [idea for track in tracks for idea in _rails_ideas(search, track, cost_class)]
     order = itertools.count()  # of equal ones the first
     heap = [(-_bound(search, idea), next(order), idea) for idea in ideas]
     heapq.heapify(heap)
@@ -96,6 +99,15 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
         best, target = state.best_rate, search.request.target
         least = target if 0.0 < best < target else policy.rate_share * best
         if _promise(search, idea.track, idea.row, idea.recipe) < least:
+            continue
+        if idea.by_trials:
+            track = idea.track
+            start = replace(calm_drive.drive_at(track.plain_bowl, 0.0), devices=search.plain.devices)
+            rails = hanging.RailsSearch(
+                search.through(start).lying, track.weights, idea.row, search.plain.devices, search.request,
+                cost_class,
+            )  # fmt: skip
+            yield from _try_rails(search, track.plain_bowl, rails, track.weights)
             continue
         proposal = idea.proposal or _proposal(search, idea)
         if proposal is None or _was_tried(search, idea.track, proposal):
@@ -117,6 +129,16 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
             recipe = replace(idea.recipe, excluded_kinds=(*excluded, *more))
             other = _Idea(idea.track, idea.row, recipe, left_out=idea.left_out + 1)
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
+
+
+def _rails_ideas(search: Search, track: BankedTrack, cost_class: int) -> list[_Idea]:
+    """Ideas of rails that trials decide on, one for each head: of steel, after what the static rule says."""
+    request = search.request
+    if cost_class != proposals.COST_CLASSES[0] or request.outcome == OutcomeKind.LYING:
+        return []
+    recipe = proposals.Recipe(cost_class, min(proposals.MARGINS), OutcomeKind.HANGING, ())
+    rows = hanging.head_rows(track.orientations.lying, track.weights, track.rows)
+    return [_Idea(track, row, recipe, by_trials=True) for row in rows]
 
 
 def _proposal(search: Search, idea: _Idea) -> Proposal | None:
@@ -224,7 +246,7 @@ def _is_alike_value(first: ComparedValue, second: ComparedValue, policy: SearchP
 
 def _promise(search: Search, track: BankedTrack, row: int, recipe: proposals.Recipe) -> float:
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
-    if recipe.outcome != OutcomeKind.LYING and neck(track.orientations.lying[row]) is not None:
+    if recipe.outcome != OutcomeKind.LYING and find_head(track.orientations.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = short_trials.GAP * float((track.weights * track.orientations.lengths).sum())
     share = 1.0 if recipe.turns else _share(search, track, row)
@@ -336,6 +358,56 @@ def _try_and_mend(
             state.lost_behind.append((place, proposal.chain[:count]))
 
 
+def _try_rails(
+    search: Search, plain_bowl: calm_drive.PlainBowl, rails: hanging.RailsSearch, weights: Floats
+) -> Iterator[Candidate]:
+    """Try rails for a head and what changes them, from the best so far; each Candidate that is clean.
+
+    The short trial decides on each; the static rule says only in which order. A chain that is clean and too
+    slow is tried once more at the drive that its share of hanging parts asks for.
+    """
+    state, policy = search.state, search.policy
+    best: Candidate | None = None
+    drive: Bowl | None = None  # that of the best so far, where it is livelier than the target asks for
+    pending, count = rails.start(), 0
+    while count < policy.rails_trials and not search.is_spent:
+        tried = next(pending, None)
+        if tried is None:
+            break
+        proposal, own_drive = tried.proposal, drive
+        if best is not None:
+            proposal = replace(proposal, shown_gain=best.attempt.efficiency or None)
+            if tried.is_livelier:
+                own_drive = calm_drive.find_livelier(plain_bowl, best.bowl, calm_drive.NEXT_LIVELIER_HOP, 0.0)
+                if own_drive is None:
+                    continue
+                proposal = replace(
+                    proposal, move=Move(MoveKind.LIVELIER_DRIVE, 2.0 * own_drive.drive.amplitude)
+                )
+        candidate, count = try_proposal(search, plain_bowl, proposal, weights, own_drive), count + 1
+        if candidate.attempt.clean and candidate.attempt.rate < search.request.target:
+            proposal = replace(proposal, shown_gain=candidate.attempt.efficiency)
+            candidate, count = try_proposal(search, plain_bowl, proposal, weights), count + 1
+        candidate = _screen(search, candidate)
+        if candidate.attempt.clean:
+            state.clean.append(candidate)
+            if candidate.attempt.rate >= search.request.target:
+                yield candidate
+                return
+        else:
+            state.failures.append(candidate)
+        if best is None or hanging.score(candidate.trial) > hanging.score(best.trial):
+            state.reach += best is not None  # what gets better leaves no other chain out
+            best, drive = candidate, own_drive
+            pending = itertools.chain(
+                rails.moves(replace(tried, proposal=proposal), candidate.trial), pending
+            )
+        elif count >= policy.rails_given_up and not best.attempt.efficiency > 0.0:
+            return
+    if best is not None and (chosen := _find_livelier(search, best)) is not None:
+        yield chosen
+
+
 def devices_to(end: End, proposal: Proposal) -> int:
     """Return how many devices of a chain stand along the track up to an end; 0 on the bare track."""
     placed = [k for k, device in enumerate(proposal.devices) if device.placed]
@@ -415,7 +487,8 @@ def _screen(search: Search, candidate: Candidate) -> Candidate:
         search.part, candidate.bowl, candidate.orientations, candidate.weights, candidate.proposal.rows,
         draws=min(search.policy.screening_draws, request.draws), tolerance=request.tolerance, run=request.run,
         any_heading=candidate.proposal.any_heading, enough=search.share_needed(candidate.attempt),
-        returnable=short_trials.find_returnable_rows(candidate.trial), max_failures=1,
+        returnable=short_trials.find_returnable_rows(candidate.trial), shown=candidate.shown,
+        max_failures=1,
     )  # fmt: skip
     if robust.partial:
         raise KeyboardInterrupt
@@ -497,6 +570,8 @@ def drive_for_target(
     """
     orientations = search.through(replace(plain_bowl.bowl, devices=proposal.devices))
     gain, spacing = short_trials.gain(orientations, weights, proposal.states(orientations)), 0.0
+    if proposal.hangs:  # the trial decides on what hangs: what it showed, or what may
+        gain = proposal.shown_gain or max(gain, hanging.expected_gain(orientations, weights, proposal.row))
     for _ in range(2):
         required = required_velocity(search, orientations, weights, gain, spacing)
         velocity = max(required, search.state.min_speed)
@@ -517,6 +592,9 @@ def _short(
         run=search.request.run, aspects=search.arrivals.aspects, any_heading=proposal.any_heading,
     )  # fmt: skip
     rows = short_trials.frequent_rows(weights, (proposal.row,))
+    if proposal.hangs:  # which rows hang is what the trial shows
+        count = min(policy.rails_parts // len(rows), policy.rails_parts_each)
+        return single(rows=rows, count=max(policy.trial_parts, count))
     right = set(wanted_rows(orientations, proposal.states(orientations)))
     first = [k for k in rows if k in right] or [proposal.row]
     others = [k for k in rows if k not in first]

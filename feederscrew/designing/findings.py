@@ -97,6 +97,11 @@ class MoveKind(enum.Enum):
     VALUE = enum.auto()  # the value of a device is moved
     SWEEP = enum.auto()  # a blade is set at another angle
     WIDER_SLOT = enum.auto()
+    SLOT_PLACE = enum.auto()  # the slot of the rails lies elsewhere, by a value [m]
+    LEAD_IN = enum.auto()  # its lead-in is so many times as long
+    BLADE_BEHIND = enum.auto()  # a blade behind the rails sweeps off what does not hang
+    CUTS_BEFORE = enum.auto()  # cuts before the rails, by what a trial has shown to hang
+    RAILS = enum.auto()  # rails for a head, before any trial
     LONGER_PULSE = enum.auto()
     DROP_BEFORE = enum.auto()  # one device more: what others fall through
     PRESSURE_BREAK = enum.auto()  # one device more: where parts back up they leave the track

@@ -46,10 +46,9 @@ from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating import chain as static
 from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.trial.fills import FedRow, FilledQueue
+from feederscrew.trial.fills import FedRow, FilledQueue, PoseKind
 from feederscrew.trial.long_ride import long_ride
 from feederscrew.trial.result import TrialRun
-from feederscrew.trial.wanted import wanted_rows
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -247,8 +246,19 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
             return exploring.try_livelier(search, candidate)
         changed = proposals.mend_proposal(proposal, candidate.trial, lying, worst)
     else:
+        # what may hang leaves lying over the slot: a livelier drive shakes it down
+        lively = exploring.try_livelier(search, candidate) if _leaves_over_slot(study, candidate) else None
+        if lively is not None and lively.attempt.clean:
+            return lively
         changed = proposals.purify(candidate, study.left_instead)
     return None if changed is None else exploring.try_again(search, candidate, changed, candidate.bowl)
+
+
+def _leaves_over_slot(study: DesignStudy, candidate: Candidate) -> bool:
+    """Whether what leaves lying, most of it, is an orientation of which parts hang in the trial."""
+    rows = {candidate.orientations.lying[k].name for k in candidate.shown or ()}
+    named = [pose for pose, _ in study.left_instead if pose.kind is PoseKind.ORIENTATION]
+    return bool(named) and named[0].name in rows
 
 
 def _faster(search: Search, candidate: Candidate) -> Candidate | None:
@@ -288,7 +298,7 @@ def prove_design(
     # a ride along the track to the tooling, where another mix arrives
     search.tell(f"{name}: a few parts of each orientation on the bare track, up to the tooling")
     oriented, proposal = candidate.orientations, candidate.proposal
-    wanted = wanted_rows(oriented, candidate.trial.states)
+    wanted = candidate.trial.wanted
     ride = long_ride(search.part, candidate.bowl, oriented.lying, candidate.weights, wanted, request.run)
     candidate = replace(candidate, weights=ride.arriving)
     study = replace(_study_of(search, candidate, shares), long_ride=ride)
@@ -299,7 +309,7 @@ def prove_design(
             search.part, candidate.bowl, oriented, 0.5 * (ride.entering + ride.arriving), proposal.rows,
             draws=request.draws, tolerance=request.tolerance, run=search.run(SearchStage.DRAWS),
             any_heading=proposal.any_heading, returnable=short_trials.find_returnable_rows(candidate.trial),
-            enough=search.share_needed(candidate.attempt),
+            enough=search.share_needed(candidate.attempt), shown=candidate.shown,
             max_failures=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
         )  # fmt: skip
     study = replace(study, robust=robust, partial=robust.partial)

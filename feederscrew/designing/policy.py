@@ -29,6 +29,11 @@ MENDED_BY_PROOF = Basis(
     "with these narrowed track, wiper and rails held at 130/min; before them a camera held at 64/min",
 )
 FASTER_DRIVE = Basis(("shcs_m3x8_simple",), "18 of 20 draws sorted, and 19 at 1.3 times the speed")
+RAILS_TRIED = Basis(
+    (),
+    "eyelet, cup_flange, tnut_m5 and pushbutton, which are none of docs/designs.csv: each comes to hang "
+    "by another move of the slot, its lead-in or the blade",
+)
 LOWER_RATE = Basis(
     ("cap_14x10",),
     "at 400/min both clean chains run at throw number 3, and draws carry other orientations through",
@@ -51,6 +56,10 @@ class SearchPolicy:
     livelier_trials: int = _chosen(2)  # livelier drives of a chain where parts stay at a blade
     calmer_trials: int = _chosen(2)  # calmer drives of a chain where the drive loses what is wanted
     rare_trials: int = _chosen(5)  # where no orientation comes often enough for the target at any calm drive
+    rails_parts: int = _chosen(30, RAILS_TRIED)  # parts in a trial of rails, where orientations are few
+    rails_parts_each: int = _chosen(4, RAILS_TRIED)  # of each orientation in it at most
+    rails_trials: int = _chosen(10, RAILS_TRIED)  # of the rails of one head on one track
+    rails_given_up: int = _chosen(4, RAILS_TRIED)  # of them in which nothing hangs: then they are given up
     screening_draws: int = _chosen(6)  # draws before a clean chain is proved
     rate_reserve: float = _chosen(1.6)  # [1] of the target, for which a bowl is driven: queues bring less
 

@@ -24,7 +24,7 @@ from feederscrew.tooling.devices.orientation_names import nearest
 from feederscrew.tooling.devices.orientation_names import rows as rows_of
 from feederscrew.tooling.devices.pneumatics import PULSE
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
-from feederscrew.tooling.isolating.design import RAIL
+from feederscrew.tooling.isolating.rails import RAIL
 from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.tooling.verdicts import DeviceEncounter
 from feederscrew.trial.fills import LeavingCounts, PoseKind
@@ -106,6 +106,7 @@ class Proposal:
     purity: float = 1.0  # [1] by the static rule, midway between what is sure and what may be
     margin: float = np.inf  # [m] the least, of passing and of returning
     sweeps: tuple[int, ...] = ()  # [deg] of a blade, those that were tried
+    shown_gain: float | None = None  # [1] share that left as wanted in a trial of rails like these
 
     @property
     def cost_class(self) -> int:

@@ -22,6 +22,7 @@ from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.tooling.devices.base import ComparedValue
+from feederscrew.trial.wanted import leaves_hanging
 
 Place = tuple[float, int]  # bank [rad] of a track, and row of an orientation on it
 ChainKey = tuple[Track, str, tuple[tuple[str, tuple[ComparedValue, ...]], ...]]
@@ -234,6 +235,12 @@ class Candidate:
         """Return its bowl without devices, with the keys that the user gave."""
         bare = replace(self.bowl, devices=())
         return calm_drive.PlainBowl(bare, search.kept_keys, search.request.drive)
+
+    @property
+    def shown(self) -> tuple[int, ...] | None:
+        """The rows that its trial has shown to leave, where parts leave hanging; else None."""
+        hanging = leaves_hanging(self.orientations, self.trial.states)
+        return tuple(self.trial.wanted) if hanging else None
 
     @property
     def worst(self) -> Fault | None:

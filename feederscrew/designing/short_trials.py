@@ -37,7 +37,7 @@ from feederscrew.trial import course, runs
 from feederscrew.trial.course import Fate
 from feederscrew.trial.fills import FillLevel
 from feederscrew.trial.looks import AspectsBelow
-from feederscrew.trial.wanted import find_poses, wanted_rows, wanted_states
+from feederscrew.trial.wanted import find_poses, leaves_hanging, wanted_rows, wanted_states
 
 SELDOM_SHARE = 5e-3  # [1] orientations that come less often are left out
 STUCK_FATES = (Fate.HANGING, Fate.STOPPED)  # what is stuck on the bare track is pushed on by a queue
@@ -63,10 +63,19 @@ class ShortTrial:
     spacing: float = 0.0  # [m] free way between parts that the devices need
     courses: tuple = ()  # of Course: what was followed
     turns: tuple[dict[End, int], ...] = ()  # (R,) where parts turned that left so, and how many
+    shown: tuple[int, ...] | None = None  # rows that shall leave, where another trial has shown which do
 
     @property
     def wanted(self) -> list[int]:
-        """Orientations that leave as wanted by the static rule, tried or not."""
+        """Orientations that shall leave as wanted, tried or not.
+
+        Those that another trial has shown to leave, where one has. Of parts that hang, those of which this
+        one shows that most do; else those that do by the static rule.
+        """
+        if self.shown is not None:
+            return list(self.shown)
+        if leaves_hanging(self.orientations, self.states):
+            return [int(k) for n, k in enumerate(self.rows) if 2 * self.right[n] > self.parts[n]]
         return wanted_rows(self.orientations, self.states)
 
     @property
@@ -205,12 +214,14 @@ def try_parts(
     run: RunSettings,
     aspects: Aspects | None = None,
     any_heading: Sequence[str] = (),
+    shown: tuple[int, ...] | None = None,
 ) -> ShortTrial:
     """Try parts one at a time: of each orientation in ``rows`` (R,) ``count`` parts, one number or (R,).
 
     The bowl has its devices, and the orientations, M of them, come along its track through these in
     ``shares`` (M,) [1]. ``targets`` are the wanted orientation and others that count as it; so does a part on
-    an aspect of ``any_heading``, whatever its heading: then ``aspects`` are needed. Raises KeyboardInterrupt
+    an aspect of ``any_heading``, whatever its heading: then ``aspects`` are needed. ``shown`` are the rows
+    that another trial has shown to leave as wanted. Raises KeyboardInterrupt
     if the user stops it before all parts are through.
     """
     rows, states = np.asarray(rows, int), wanted_states(orientations, np.atleast_1d(targets))
@@ -262,7 +273,7 @@ def try_parts(
         orientations, shares, rows, parts, right, wrong, held, ends=tuple(ends), turns=tuple(turns),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         states=states, courses=(followed,),
-        spacing=stream.needed_spacing(bowl.devices, orientations.lying, bowl),
+        spacing=stream.needed_spacing(bowl.devices, orientations.lying, bowl), shown=shown,
     )  # fmt: skip
 
 
@@ -409,6 +420,7 @@ def robust_run(
     run: RunSettings,
     any_heading: Sequence[str] = (),
     returnable: Sequence[int] = (),
+    shown: tuple[int, ...] | None = None,
     enough: float = LEAST_SHARE_LEAVING,
     max_failures: int | None = None,
 ) -> RobustRun:
@@ -422,7 +434,8 @@ def robust_run(
 
     The bowl has its devices, the M orientations are those of the nominal part in it; ``targets`` are the
     wanted one and others that count as it, as aspects of ``any_heading`` do; ``returnable`` ones count as it
-    and may be returned. Once more than ``max_failures`` draws fail the run ends, for the rest decides
+    and may be returned; ``shown`` are the rows that a trial has shown to leave as wanted, by the static rule
+    without them. Once more than ``max_failures`` draws fail the run ends, for the rest decides
     nothing; all draws are made without it. The progress of ``run`` is told how many are done, of how many.
     """
     most = draws if max_failures is None else max_failures
@@ -430,7 +443,7 @@ def robust_run(
     def draw_one(draw: int) -> tuple[list[Fault], float]:
         return _draw(
             part, bowl, orientations, shares, np.atleast_1d(targets), tolerance, (run.seed, draw),
-            any_heading, returnable, enough,
+            any_heading, returnable, enough, shown,
         )  # fmt: skip
 
     def work(begin: Callable[..., Future]) -> None:
@@ -460,7 +473,7 @@ def robust_run(
 def _draw(
     part: Part, bowl: Bowl, orientations: stream.Orientations, shares: Floats, targets: Ints,
     tolerance: float, seed: tuple[int, int], any_heading: Sequence[str], returnable: Sequence[int],
-    enough: float,
+    enough: float, shown: tuple[int, ...] | None,
 ) -> tuple[list[Fault], float]:  # fmt: skip
     """What goes wrong in one draw, and the velocity there.
 
@@ -469,7 +482,8 @@ def _draw(
     rng = np.random.default_rng(seed)
     other = draw_part(part, tolerance, rng)
     driven = draw_bowl(bowl, orientations.lying, rng)
-    chosen = draw_rows(orientations, shares, targets, rng, returnable)
+    own = list(shown or ()) or _leaving_as_wanted(orientations, targets)
+    chosen = draw_rows(orientations, shares, targets, rng, returnable, own)
     try:
         aspects = find(other)
         on_track = on_the_track(other, aspects, bowl.track)
@@ -503,12 +517,12 @@ def _draw(
             [rows[0], *equivalent],
             aspects=aspects,
             any_heading=free,
+            shown=tuple(there(shown)) if shown else None,
         )
         trial = try_drawn(rows=list(dict.fromkeys(rows)), count=1, run=RunSettings(sum(seed)))
-        counting = wanted_rows(oriented, trial.states[:1])
+        counting = trial.wanted if shown else wanted_rows(oriented, trial.states[:1])
         if any(came_back(trial, row) for row in trial.rows if row in counting):
             # a wanted part comes along once more: do enough of more of them leave, and the others come back?
-            own = _leaving_as_wanted(orientations, targets)
             own = [k for k in own if k not in returnable and shares[k] >= SELDOM_SHARE] or [targets[0]]
             retried = list(dict.fromkeys(there(own)))
             more = try_drawn(rows=retried, count=RETRIED_PARTS, run=RunSettings(sum(seed) + 1))
@@ -534,13 +548,15 @@ def draw_rows(
     rows: Sequence[int] | Ints,
     rng: np.random.Generator,
     returnable: Sequence[int] = (),
+    wanted: Sequence[int] = (),
 ) -> list[int]:
     """Return the orientations that one draw tries: a wanted one, then OTHERS_DRAWN parts as they come.
 
     ``shares`` (M,) [1] are those of the orientations, ``rows`` the wanted one and others that count as it. Of
-    those that are ``returnable``, and may be returned, none is drawn first while another is left.
+    those that are ``returnable``, and may be returned, none is drawn first while another is left. ``wanted``
+    are the rows that leave as wanted: those of the static rule without them.
     """
-    wanted = _leaving_as_wanted(orientations, rows)
+    wanted = list(wanted) or _leaving_as_wanted(orientations, rows)
     wanted = [k for k in wanted if k not in returnable] or wanted
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
@@ -581,7 +597,10 @@ def find_faults(trial: ShortTrial, returnable: Iterable[int] = ()) -> list[Fault
     list of Fault
         In the order in which the orientations were tried.
     """
-    found, right = [], set(wanted_rows(trial.orientations, trial.states[:1])) - set(returnable)
+    wanted = trial.wanted
+    if not leaves_hanging(trial.orientations, trial.states):
+        wanted = wanted_rows(trial.orientations, trial.states[:1])
+    found, right = [], set(wanted) - set(returnable)
     for place, row in enumerate(trial.rows.tolist()):
         name, ends = trial.orientations.lying[row].name, tuple(trial.ends[place])
         if row in right:

@@ -74,6 +74,17 @@ def move_text(move: Move) -> str:
             return f"{move.device} swept {round(np.degrees(move.value))} deg"
         case MoveKind.WIDER_SLOT:
             return f"slot widened to {in_mm(move.value)}"
+        case MoveKind.RAILS:
+            return "rails for its head"
+        case MoveKind.SLOT_PLACE:
+            side = "farther off" if move.value > 0.0 else "nearer to"
+            return f"slot {in_mm(abs(move.value))} {side} the wall"
+        case MoveKind.LEAD_IN:
+            return f"lead-in {move.value:.3g} times as long"
+        case MoveKind.BLADE_BEHIND:
+            return f"{move.device} of {move.device_text} behind the rails"
+        case MoveKind.CUTS_BEFORE:
+            return "cuts before the rails by what hangs in the trial"
         case MoveKind.LONGER_PULSE:
             return f"pulse of {1e3 * move.value:.0f} ms"
         case MoveKind.DROP_BEFORE:

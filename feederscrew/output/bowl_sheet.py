@@ -27,7 +27,7 @@ from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.measuring import Measures, measures
 from feederscrew.solidbowl.plan import DOME, BowlPlan, Stretch, TrackPath
 from feederscrew.studies.bowl import MachineSheet, Order
-from feederscrew.tooling.track_sections import Station
+from feederscrew.tooling.track_sections import Station, extend_slot
 from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
@@ -391,18 +391,19 @@ def _draw_devices(
     drawing.outline(view.placed([(0, 0), (length, 0), (length, plan.width), (0, plan.width)]), "TRACK")
     drawing.outline(view.placed([(0, -2e-3), (length, -2e-3), (length, -1e-9), (0, -1e-9)]), "WALL")
     holes, stations = iter(stretch.cuts), []
+    last = max((cut.span[1] for cut in stretch.cuts if cut.hangs), default=np.inf)  # open at the outlet
     for station in stretch.stations:
         if station.edge is not None:
             drawing.outline(view.placed(station.edge), station.device.layer)
         elif station.hole is not None:
             ring = np.array(next(holes).ring)
-            ring = _extend_slot(ring, length) if station.device.hangs else ring
+            ring = extend_slot(ring, length) if ring[:, 0].max() >= last - 1e-9 else ring
             ring[:, 1] = np.clip(ring[:, 1], 0.0, plan.width)
             drawing.outline(view.placed(ring), "CUT")
         if station.blade is not None:
             drawing.outline(view.placed(station.blade), "GATE")
-        if station.device.hangs and station.hole is not None:
-            station = replace(station, hole=_extend_slot(station.hole, length))
+        if station.hole is not None and station.hole[:, 0].max() >= last - 1e-9:
+            station = replace(station, hole=extend_slot(station.hole, length))
         stations.append(station)
     tooling_drawing.dimension_devices(drawing, stations, view, plan.width)
     drawing.length(view.placed([length, 0]), view.placed([length, plan.width]), (27.0, 0.0), scale)
@@ -442,13 +443,6 @@ def _draw_devices(
         )
     for k, note in enumerate(notes):
         drawing.text(25.0, low - 5.0 - 4.0 * k, note, 2.2)
-
-
-def _extend_slot(ring: Floats, length: float) -> Floats:
-    """A slot (K, 2) [m] that parts hang in, carried on to a length: to the end of the outlet."""
-    ring = ring.copy()
-    ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = length
-    return ring
 
 
 def _develop_track(path: TrackPath, width: float, start: float, end: float) -> tuple[Floats, Floats]:

@@ -259,18 +259,19 @@ def holes(plan: BowlPlan, kit: ModuleType, *, hang: bool) -> list[Body]:
     kit : module
         ``facets`` or ``exact_body``, which the bodies are made with.
     hang : bool
-        Take the cuts in which parts hang, which go on from their device to the end of the outlet and are open
-        there; else the others.
+        Take the cuts in which parts hang, the last of which goes on from its device to the end of the outlet
+        and is open there; else the others.
 
     Returns
     -------
     list of Body [mm]
     """
-    solid, plate = [], plan.material.plate
-    for cut in _cuts(plan, hang):
+    solid, plate, cuts = [], plan.material.plate, _cuts(plan, hang)
+    last = max((cut.span[1] for cut in cuts), default=np.inf) - 1e-9
+    for cut in cuts:
         ring = cut.ring + [plan.first, 0.0]
         if hang:
-            ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.path.end + plan.outlet + 5e-3
+            ring[cut.ring[:, 0] >= last, 0] = plan.path.end + plan.outlet + 5e-3
         heights = plan.path.height(ring[:, 0], ring[:, 1])
         low, high = heights.min() - (plate + fillet(plan) + TRACK_PIECE_OVERLAP_M), heights.max()
         low = heights.min() - plate - plan.hanging if hang else low

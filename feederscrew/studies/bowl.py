@@ -269,8 +269,9 @@ def size_machine(
             note = f"{note} finds none for {rate}"
             try:
                 flowing = flow(driven)
-            except FeederError:  # nothing gets through the devices by the rule: the track without them
-                flowing = sizing.flow(bare(driven), **counted)
+            except FeederError as fault:  # by the rule nothing leaves: what the track without devices carries
+                note = f"{note}: {fault}"
+                flowing = sizing.flow(bare(driven).carried, **counted)
         else:
             is_same = np.isclose(stroke, tried, rtol=SAME_STROKE, atol=0.0)
             note = "" if is_same else f"{note} takes {stroke:.3g} mm for {rate}"

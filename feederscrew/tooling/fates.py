@@ -1,7 +1,7 @@
 """What becomes of every orientation along a chain of devices: one matrix a device."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,7 @@ from feederscrew.bowl.devices import unfit
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
 from feederscrew.tooling.falling import surely_gone
-from feederscrew.tooling.orientations import Hanging, Orientation, hang
+from feederscrew.tooling.orientations import Hanging, Orientation, hang, may_hang
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 
@@ -26,6 +26,8 @@ class DeviceFlow:
     starts: Floats  # (M,) [1] share that the bare track carries
     devices: tuple[Device, ...]  # (D,) in the order parts meet them
     came: tuple[tuple[Orientation, ...], ...]  # (D,) the states as they are at each device
+    # the state in which each row hangs at the last rails, if it comes to hang; of those that may
+    hangs_as: dict[int, int] = field(default_factory=dict)
 
     @cached_property
     def leaving(self) -> Floats:
@@ -106,6 +108,8 @@ class DeviceFlow:
     def leaves_as(self, row: int) -> int:
         """Return the state in which an orientation is fed: its own, or how it hangs if none leaves lying."""
         becomes = int(self.leaving[row].argmax())
+        if row in self.hangs_as and not self.leaving[row].any():
+            return self.hangs_as[row]
         return row if self.leaving[:, row].any() or becomes < len(self.starts) else becomes
 
     @cached_property
@@ -138,7 +142,7 @@ def course(
     starts = [float(not o.returned and (rows is None or k in rows)) for k, o in enumerate(orientations)]
     followed = range(len(states)) if rows is None else set(rows)  # the states in which some come
     transitions: list[list] = []  # a list a device, of each orientation (place, share) of what goes on
-    verdicts, came = [], []
+    verdicts, came, hangs_as = [], [], dict[int, int]()
     for device in devices:
         came.append(tuple(here))
         outcomes: list[Verdict | None] = [
@@ -147,12 +151,14 @@ def course(
         onward = []
         for k, outcome in enumerate(outcomes):
             place = k
-            if outcome and outcome.hangs and not outcome.onto:  # a state of its own
+            # a state of its own, also of what a trial alone can tell whether it comes to hang
+            if outcome and device.hangs and not outcome.onto and may_hang(here[k], device.span):
                 hanging = [other for other in states if isinstance(other, Hanging)]
                 down = hang(here[k], device.span, hanging)
                 if down not in states:
                     states.append(down)
-                place = states.index(down)
+                place = states.index(down) if outcome.hangs else k
+                hangs_as[k] = states.index(down)
             if outcome and outcome.onto:
                 onward.append([row for row in outcome.onto if not states[row[0]].returned])
             else:
@@ -178,6 +184,7 @@ def course(
         devices=tuple(devices),
         came=tuple(came),
         starts=check.frozen(np.array(starts)),
+        hangs_as=hangs_as,
     )
 
 

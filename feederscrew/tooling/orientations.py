@@ -36,6 +36,7 @@ CUT_BORDER_RADIUS_M = 5e-5  # [m] by which the borders of a cut are rounded: les
 FALLEN = 2.0  # time constants after which a part that tips is lost
 SLICES = 80  # along the part
 MAX_SHANK_ANGLE_RAD = np.radians(45.0)  # what stands or lies across the track does not go down by its shank
+HEAD_STEP_M = 1e-3  # [m] by which a head across the part's shorter axis is wider than its shank at least
 SAME_HEAD_COSINE = np.cos(np.radians(5.0))  # parts that hang by the same head hang alike
 HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
 BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
@@ -285,7 +286,8 @@ def add_travel(orientations: Sequence[Orientation], bowl: Bowl) -> tuple[Orienta
             gravity=gravity,
             wall_grip=float(bowl.friction.wall),
             climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
-            may_roll_back=not held and o.rolls_across,
+            # a cone, a disc on a stem: along a banked track it rolls in a circle into the wall
+            may_roll_back=not held and o.rolls_across and not (track.bank > 0.0 and o.rolls_along),
         )
         for o in orientations
     )
@@ -417,7 +419,7 @@ class _Pose:
 def neck(orientation: Orientation) -> "Neck | None":
     """Return the Neck of a part as it lies: its shank and head.
 
-    None where no end is wider than the rest of the part, or its long axis does not lie along the track.
+    None where no end is wider than the rest of the part, or its shank does not lie along the track.
     """
     return _neck(_Pose(orientation))
 
@@ -425,14 +427,27 @@ def neck(orientation: Orientation) -> "Neck | None":
 @lru_cache(maxsize=512)
 def _neck(pose: _Pose) -> Neck | None:
     orientation = pose.orientation
-    # the part's own long axis: the principal one nearest to that of its outline
+    # the part's own long axis first: the principal one nearest to that of its outline. A short part with a
+    # wide head, an eyelet, is longest across its head: then another principal axis, if that has a head
     units, extents = _extents(orientation.outline)
     narrow = units[int(np.argmin(extents))]
     turn = float(np.arctan2(narrow[1], narrow[0]))
     near = np.array([np.cos(turn), np.sin(turn), 0.0])
     _, principal = vectors.eigen(orientation.solid.inertia)
     principal = vectors.product(principal.T, orientation.axes.T)
-    axis = principal[np.argmax(np.round(np.abs(vectors.product(principal, near)), 9))]
+    longest = int(np.argmax(np.round(np.abs(vectors.product(principal, near)), 9)))
+    others = sorted((k for k in range(3) if k != longest), key=lambda k: -abs(round(principal[k, 0], 9)))
+    found = _neck_along(orientation, principal[longest])
+    for k in others:
+        found = found or _neck_along(orientation, principal[k], HEAD_STEP_M)
+    return found
+
+
+def _neck_along(orientation: Orientation, axis: Vector, least_step: float = 0.0) -> Neck | None:
+    """Return the neck of a part whose shank lies along an axis (3,) [1] of the track.
+
+    None without a head that is wider than the shank, by ``least_step`` [m] at least.
+    """
     axis = axis if axis[0] > 0.0 else -axis
     steep, level = np.sin(MAX_SHANK_ANGLE_RAD), np.hypot(axis[0], axis[1])
     if abs(axis[2]) > steep or abs(axis[1]) > steep * level:
@@ -466,7 +481,7 @@ def _neck(pose: _Pose) -> Neck | None:
         ring = outline(flat)
         least, widest = min(map(float, _extents(ring)[1])), 2.0 * float(np.hypot(*ring.T).max())
     head = min(head, least)
-    if not step > 0.0 or head <= shank:
+    if not step > 0.0 or not head - shank > least_step:
         return None
     down, tip = np.einsum("ij,i->j", orientation.axes, towards), sign * axis[1] * max(sign * places)
     between = (sign * places <= end) & (widths > BARE * shank) & (widths < FULL * head)
@@ -550,6 +565,41 @@ def _underside(points: Points, ends: Ints, middle: float, half: float) -> float:
     return float(np.concatenate(heights).min())
 
 
+def _neck_of(orientation: Orientation, stemmed: Shoulders) -> Neck:
+    """Stem and shoulders of a part as it lies, as shank and head: its shoulders hold it as it lies."""
+    corners = _about_centre(orientation, orientation.axes)
+    rail = stemmed.drop - orientation.posture.height
+    top = corners[corners[:, 2] > rail - footprints.TOUCHING_SHARE * np.ptp(corners, axis=0).max()]
+    wide, lever = float(np.ptp(top[:, 1])), float(corners[:, 2].max())
+    down = check.frozen(np.einsum("ij,i->j", orientation.axes, [0.0, 0.0, -1.0]))
+    return Neck(stemmed.stem, wide, wide, stemmed.middle, 0.0, lever, down)
+
+
+def shouldered_neck(orientation: Orientation, play: float) -> Neck | None:
+    """Return the neck of a part that stands on its stem, with shoulders over a slot so much wider [m].
+
+    None where nothing of it goes down into such a slot, or its shoulders do not hold it.
+    """
+    if isinstance(orientation, Hanging) or not len(orientation.foot.corners):
+        return None
+    stemmed = shoulders(orientation, float(np.ptp(orientation.foot.corners[:, 1])) + play)
+    return None if stemmed is None else _neck_of(orientation, stemmed)
+
+
+def may_hang(orientation: Orientation, span: tuple[float, ...]) -> bool:
+    """Return whether a slot [m] between rails is as wide as a part's neck and narrower than its head.
+
+    Whether the part comes to hang in it, as it lies, is another question.
+    """
+    width = span[1] - span[0]
+    if isinstance(orientation, Hanging):
+        return False  # it hangs already
+    if shoulders(orientation, width) is not None:
+        return True
+    own_neck = neck(orientation)
+    return own_neck is not None and own_neck.shank <= width < own_neck.head
+
+
 def hang(orientation: Orientation, span: tuple[float, ...], hanging: Sequence[Hanging] = ()) -> Hanging:
     """Return a part hanging between rails that it came to lying.
 
@@ -561,12 +611,8 @@ def hang(orientation: Orientation, span: tuple[float, ...], hanging: Sequence[Ha
     corners = _about_centre(orientation, orientation.axes)
     if stemmed is None:
         own_neck = cast(Neck, neck(orientation))
-    else:  # its shoulders hold it as it lies: its stem is the shank
-        rail = stemmed.drop - orientation.posture.height
-        top = corners[corners[:, 2] > rail - footprints.TOUCHING_SHARE * np.ptp(corners, axis=0).max()]
-        wide, lever = float(np.ptp(top[:, 1])), float(corners[:, 2].max())
-        down = check.frozen(np.einsum("ij,i->j", orientation.axes, [0.0, 0.0, -1.0]))
-        own_neck = Neck(stemmed.stem, wide, wide, stemmed.middle, 0.0, lever, down)
+    else:
+        own_neck, rail = _neck_of(orientation, stemmed), stemmed.drop - orientation.posture.height
     for other in hanging:
         if vectors.dot(own_neck.down, other.neck.down) > SAME_HEAD_COSINE:
             return other

@@ -105,7 +105,9 @@ def section_pieces(section: TrackSection, seam: float) -> SectionPieces:
     holes, gates = [], []
     for station in section.stations:
         if station.hole is not None:
-            clear = np.column_stack([station.hole[:, 0], np.maximum(station.hole[:, 1], seam)])
+            # cut on through the end of the section, where it is open there
+            places = station.hole[:, 0] + overlap * (station.hole[:, 0] >= section.length - 1e-9)
+            clear = np.column_stack([places, np.maximum(station.hole[:, 1], seam)])
             holes.append(np.array(beyond_borders(clear.tolist(), width, overlap)))
         if station.blade is not None:  # from the wall and up, without its opening
             free = shapely.union_all([shapely.Polygon(opening) for opening in station.openings])

@@ -20,6 +20,7 @@ from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 DRAWN_TRACK_MARGIN_M = 5e-3  # [m] of track beyond what parts and cuts need, where not all of it is drawn
 DRAWN_CHORD_M, PASSAGE_CHORD_M = 1e-5, 1e-7  # [m] by which an arc may be seen too flat
 EDGE_OFFSET_RAD = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
+SLOT_OVERLAP_M = 2e-6  # [m] by which a slot reaches into that of the next rails: no web is left between them
 SHOWN_HOLE_LENGTHS = 3.0  # lengths of the part: how far a device that goes on along the track is shown
 
 
@@ -30,7 +31,9 @@ class Station:
     device: Device
     start: float  # [m] along the wall
     length: float  # [m]
-    hole: Points | None  # (K, 2) [m] what is cut away, unrolled: length along the wall, distance from it
+    # (K, 2) [m] the cut, unrolled: length along the wall, distance from it. A slot in which parts hang goes
+    # on to the next rails or, open at the outlet, to the end of the section.
+    hole: Points | None
     blade: Points | None  # (4, 2) [m] where a gate stands, unrolled
     openings: tuple[Points, ...]  # (K, 2) [m] of a gate: distance from the wall, height
     top: float  # [m] height of a gate
@@ -119,7 +122,29 @@ def build_section(
         )
         stations.append(station)
         start += length + 0.5 * room
-    return TrackSection(track, start, width, tallest, tuple(stations))
+    return TrackSection(track, start, width, tallest, tuple(_continue_slots(stations, start)))
+
+
+def extend_slot(ring: Points, end: float) -> Points:
+    """Return a slot (K, 2) [m] whose far end lies at another length [m] along the wall."""
+    ring = ring.copy()
+    ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = end
+    return ring
+
+
+def _continue_slots(stations: Sequence[Station], length: float) -> list[Station]:
+    """Stations with slots that parts hang in up to the next rails, and of the last ones to the outlet.
+
+    A part hangs from its rails to the end of the track: a web across the slot would stop it.
+    """
+    continued, end = [], length
+    for station in reversed(stations):
+        if station.device.hangs and station.hole is not None:
+            continued.append(replace(station, hole=extend_slot(station.hole, end)))
+            end = float(station.hole[:, 0].min()) + SLOT_OVERLAP_M
+        else:
+            continued.append(station)
+    return continued[::-1]
 
 
 def bend_ring(ring: Points, radius: float, shift: float = 0.0, chord: float = DRAWN_CHORD_M) -> Points:

@@ -23,7 +23,7 @@ from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.trial import part_poses, runs, staging
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.part_poses import State, States
@@ -131,6 +131,9 @@ def course(
         states, times = part_poses.lay_down(bowl, orientations, entries, solid, principal, length, run.seed)
     looks = Looks(orientations if poses is None else poses, solid, length, principal, bowl.track.radius)
     may_leave = np.eye(len(orientations), len(looks.reaches), dtype=bool) if may_leave is None else may_leave
+    # whatever hangs between rails has come there as it should, also where the static rule did not say so
+    hanging = [isinstance(pose, Hanging) for pose in (orientations if poses is None else poses)]
+    may_leave = may_leave | np.resize(np.array(hanging, bool), may_leave.shape)
     limits = [limits_at(bowl, station, orientations) for station in chain]
     follows = [runs.make_follower(part_in_bowl, *pair) for pair in zip(chain, limits)]
     follows[0](states[:0], times[:0])  # compiled here, if need be

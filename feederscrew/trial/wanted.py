@@ -19,6 +19,22 @@ def wanted_states(orientations: stream.Orientations, rows: Sequence[int] | Ints)
     return tuple(dict.fromkeys(int(orientations.leaves_as[k]) for k in (rows[0], *further)))
 
 
+def leaves_hanging(orientations: stream.Orientations, states: Sequence[int]) -> bool:
+    """Return whether the wanted parts leave hanging between rails: then trials say which rows do.
+
+    Parameters
+    ----------
+    orientations : Orientations
+    states : sequence of int
+        The wanted state first.
+
+    Returns
+    -------
+    bool
+    """
+    return isinstance(orientations.states[states[0]], Hanging)
+
+
 def wanted_rows(orientations: stream.Orientations, states: Sequence[int]) -> list[int]:
     """Return the rows that leave in one of some states as the static rule says."""
     return [k for k in range(len(orientations.lying)) if orientations.leaving[k, list(states)].sum() > 0.5]

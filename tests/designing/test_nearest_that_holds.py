@@ -387,6 +387,7 @@ def classes(monkeypatch):
         track = banked, SimpleNamespace(lying=lying), shares, [0, 1], USUAL_POLICY.bank_rank**place
         search.state.tracks.append(BankedTrack(*track))
     monkeypatch.setattr(exploring.proposals, "propose_no_device", lambda *_: None)
+    monkeypatch.setattr(exploring.hanging, "head_rows", lambda *_: [])  # neither part has a head
     monkeypatch.setattr(exploring, "_promise", lambda search, track, row, way: shares[row])
 
     def proposed(search, track, row, way):

@@ -244,6 +244,34 @@ def test_rails_are_cut_across_under_what_hangs():
     assert part.y0 < -9.0 < 0.0 < part.y1 < 3.0  # its shank below the rails, its head over them
 
 
+@pytest.mark.parametrize("behind", [(), ("wiper",), ("rails",)])
+def test_the_slot_that_parts_hang_in_is_open_at_the_outlet(behind):
+    screw = parts.load(ROOT / "docs/tutorial/countersunk_m4x12.stl")
+    track = bowls.read(None, ["track.width=15 mm"]).track
+    every = orientations(screw, find(screw), track)
+    more = {"wiper": {"limit": 14e-3}, "rails": {"span": (2.4e-3, 6.3e-3)}}
+    spans = [(2.1e-3, 6.6e-3), *((2.4e-3, 6.3e-3) for kind in behind if kind == "rails")]
+    devices = [make_device("rails", "here", span=spans[0])]
+    strip = build_section(
+        track, devices + [make_device(kind, "here", **more[kind]) for kind in behind], every
+    )
+    file = ezdxf.read(io.StringIO(tooling_drawing.dxf(strip).decode()))
+    cuts = [one for one in file.modelspace().query("LWPOLYLINE") if one.dxf.layer.startswith("CUT")]
+    assert max(p[0] for cut in cuts for p in cut.get_points()) == pytest.approx(1e3 * strip.length, abs=1e-6)
+    # Rays from above find no web: between the rails from where they begin, and past the end of the track.
+    vertices, faces = solid.solid(strip)
+    mesh = trimesh.Trimesh(vertices, faces)
+    begin = strip.stations[0].start
+    for s in np.arange(begin + 1e-3, strip.length, 0.5e-3):
+        angle, off = s / track.radius, track.radius - 4.35e-3
+        above = [off * np.sin(angle), track.radius - off * np.cos(angle), -1e-4]
+        assert not mesh.ray.intersects_any([above], [[0.0, 0.0, -1.0]])[0], s
+    # The rails are as wide as they are set, each up to the next.
+    for station, (low, high) in zip((one for one in strip.stations if one.device.hangs), spans, strict=True):
+        assert station.hole[:, 1].min() == low and station.hole[:, 1].max() == high
+    assert mesh.is_watertight and mesh.body_count == 1
+
+
 def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(lying):
     """A mouth a nozzle; air at what is rejected alone."""
     bowl, every = lying

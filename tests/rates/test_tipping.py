@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import shapely
 import shapes
+import trimesh
 from scipy.optimize import brentq
 
 from feederscrew import bowl as bowls
@@ -386,3 +387,17 @@ def test_nothing_that_may_turn_or_stands_on_little_of_a_foot_is_sure():
         device = make_device("narrowed track", "", limit=limit)
         assert verdict(device, one).passes == 1.0
         assert steady((device,), [one], bowl, 2.5e-4).tolist() == [holds]
+
+
+@pytest.mark.parametrize("bank", [0.0, 2.0])
+def test_a_disc_on_a_stem_along_a_banked_track_is_carried(bank):
+    """It rolls in a circle into the wall: docs/conveying.md has 222 of 224 such rows of trials."""
+    outline = [(0, 0), (7.5, 0), (7.5, 2), (3, 2), (3, 15), (0, 15)]
+    part = shapes.part(trimesh.creation.revolve(np.array(outline, float), sections=40))
+    slope = {"climb": float(np.radians(3.0)), "bank": float(np.radians(bank))}  # too little to hold a ball
+    bowl = replace(BOWL, track=replace(BOWL.track, **slope))
+    lying = follow_orientations(part, find(part), bowl.track, bowl=bowl).lying
+    rolling = [one for one in lying if one.kind == "rolling"]
+    assert {one.rolls_along for one in rolling} == {True, False}
+    for one in rolling:
+        assert one.may_roll_back == (not one.rolls_along or bank == 0.0)

@@ -12,6 +12,8 @@ from on_track import block, coming, device, load, lying, named, pick
 from feederscrew import bowl as bowls
 from feederscrew.errors import ArgumentError
 from feederscrew.rates.tipping import is_surely_gone
+from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling import falling, footprints
 from feederscrew.tooling.devices import openings
@@ -22,7 +24,10 @@ from feederscrew.tooling.footprints import Footprint
 from feederscrew.tooling.isolating import chain, hole_search
 from feederscrew.tooling.isolating.chain import design_task, propose
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
+from feederscrew.tooling.orientations import add_travel, orientations
 from feederscrew.tooling.verdicts import verdict
+from feederscrew.trial.course import SentParts
+from feederscrew.trial.course import course as run_course
 
 BOWL = bowls.read(None, ("track.climb=0 deg", "track.bank=0 deg"))
 BROAD = replace(BOWL.track, width=0.04)
@@ -55,6 +60,27 @@ def test_a_face_clears_itself_below_a_right_angle_minus_its_friction_angle():
     ahead, against = (replace(BOWL, drive=drive) for drive in drives)
     assert falling.along_blade(ahead, SWEEP, 0.3) > 1.1 * speed
     assert falling.along_blade(against, SWEEP, 0.3) == 0.0
+
+
+@pytest.mark.parametrize(("throw", "least", "most"), [(0.95, 0.6, 1.7), (1.8, 0.6, 1.7)])
+def test_what_hops_clears_a_blade_as_fast_as_in_the_trial(throw, least, most):
+    # the speed of a block along a swept wiper, from where it begins to slide to the free edge
+    stroke = 1e3 * throw * 9.80665 / ((100.0 * math.pi) ** 2 * math.sin(math.radians(20.0)))
+    track = ("track.bank=3 deg", "track.climb=3 deg", "track.radius=150 mm", "track.width=14 mm")
+    drive = (f"drive.amplitude={stroke:.5f} mm", "drive.frequency=50 Hz", "drive.vibration_angle=20 deg")
+    bowl = bowls.read(None, (*track, *drive, "drive.phase=0 deg"))
+    part = shapes.part(shapes.box(16, 12, 8), "block")
+    here = add_travel(orientations(part, find(part), bowl.track), bowl)
+    row = next(k for k, one in enumerate(here) if abs(one.height - 8e-3) < 1e-6 and one.length > 0.015)
+    blade = device("wiper", limit=5e-3, sweep=SWEEP, friction=0.3)
+    followed = run_course(part, bowl, here, SentParts([row], 4), (blade,), run=RunSettings(1))
+    ride, speeds = followed.rides[1], []
+    for path, seconds in zip(ride.paths, ride.seconds):
+        path = path[np.isfinite(path[:, 0])]
+        off = 0.15 - np.hypot(path[:, 1], 0.15 - path[:, 2])
+        begins = np.flatnonzero(off > off[0] + 7e-4)[0]
+        speeds.append((0.014 - off[begins]) / (path[0, 0] + seconds - path[begins, 0]))
+    assert least < np.median(speeds) / falling.along_blade(bowl, SWEEP, 0.3) < most
 
 
 class Slab:

@@ -12,12 +12,13 @@ from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.blades import PROPOSED_SWEEP_RAD, Wiper
 from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.devices.leans import Lean
 from feederscrew.tooling.devices.ledges import Rails
 from feederscrew.tooling.devices.orientation_names import place_of, rows
 from feederscrew.tooling.fates import at_entry, course
-from feederscrew.tooling.isolating import chain, hole_search
+from feederscrew.tooling.isolating import chain, hole_search, rails
 from feederscrew.tooling.isolating.chain import (
     DESIGN_KEY,
     Cut,
@@ -27,7 +28,7 @@ from feederscrew.tooling.isolating.chain import (
     OutcomeKind,
 )
 from feederscrew.tooling.isolating.hole_search import HoleSearch
-from feederscrew.tooling.orientations import Neck, Orientation, neck
+from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.orientations import place as placed
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
@@ -41,15 +42,6 @@ VARIED_SWEEPS_DEG = (20.0, 45.0, 55.0)  # [deg] beside the 30 deg of the first d
 # drops first, then what clears itself, then what sees
 Stage = dict[str, bool]
 STAGES: tuple[Stage, ...] = ({"clearing": False}, {}, {"air": True}, {"sensed": True})
-PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
-HEAD_WALL_CLEARANCE_M = 4e-4  # [m] between a hanging head and the wall, wherever the shank stands in its slot
-RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
-# a part that lies along the wall is askew: its shank's tip lies nearer to the wall than its weight, and has
-# to be over the slot. The lead-in reaches so far under it, in radii of the shank, and so much at least
-SINKS, WIDER = 0.5, 3e-4  # [1], [m]
-LEAD_IN_MARGIN_M = 4e-4  # [m] by which the lead-in is narrower than the head at least
-CONE = 0.5  # a head whose underside rises by more is one
-STRAIGHT, TAPER = 1.5, 1.0  # lengths of the part in which it goes down, and in which the slot narrows
 TURNER_STEP_M = 1e-4  # [m] to which a height or width is rounded
 TURNER_GAIN = 1.05  # a chain is tried if it brings so many times what the best shorter one does
 TRIED = 4  # chains of each length
@@ -271,68 +263,127 @@ def place(orientations: Sequence[Orientation], aspect: str, heading: float | Non
 
 
 def design_rails(task: DesignTask) -> Design | None:
-    """Return the chain that ends in rails in which the wanted orientation of a DesignTask hangs.
+    """Return the chain with rails in which the wanted orientation of a task hangs, as the static rule says.
 
-    None where the part has no head, lies elsewhere than over the slot, or others are left over.
+    Parameters
+    ----------
+    task : DesignTask
+        Of M orientations; the wanted one has to hang by its margin [m].
+
+    Returns
+    -------
+    Design or None
+        None where the part has no head, lies elsewhere than over the slot, or others are left over.
+
+    Notes
+    -----
+    Source: own; docs/tooling.md, "Rails".
     """
     orientations, wanted, margin, step = task.orientations, task.wanted, task.margin, task.constraints.step
-    own, own_neck = orientations[wanted], neck(orientations[wanted])
-    if own_neck is None or own_neck.head - own_neck.shank < 2.0 * margin:
+    own, head = orientations[wanted], rails.find_head(orientations[wanted])
+    if head is None or head.head - head.shank < 2.0 * margin or own.returned:
         return None
-    play = min(max(PLAY, margin), 0.5 * (own_neck.head - own_neck.shank), MOST)
-    device = _rails(own, own_neck, own_neck.shank + play, step)
-    if device is None or own.returned:
-        return None
-    outcomes = [verdict(device, orientation, orientations) for orientation in orientations]
-    same = np.array([outcome.hangs and outcome.margin >= margin for outcome in outcomes])
-    if not same[wanted]:
+    # the first setting at which it hangs by the margin, as the static rule says
+    for setting in rails.SETTINGS:
+        device = rails.place_rails(own, head, rails.slot_width(head, margin), step, setting)
+        if device is None:
+            continue
+        outcomes = [verdict(device, orientation, orientations) for orientation in orientations]
+        same = np.array([outcome.hangs and outcome.margin >= margin for outcome in outcomes])
+        if same[wanted]:
+            break
+    else:
         return None
     at_rails = chain.margins_at(device, orientations)  # NaN of what stands there
     gone = (at_rails <= -margin) | ~task.stays | (task.coming <= 0.0)
+    stands = np.isnan(at_rails)
+    designs = [
+        design_around_rails(task, device, same, gone, stands, sweep=sweep)
+        for sweep in (None, *((PROPOSED_SWEEP_RAD,) if task.constraints.allows(Wiper.kind) else ()))
+    ]
+
+    def better(design: Design) -> tuple[bool, float, int]:
+        return design.isolated, round(design.efficiency, 6), -len(design.cuts)
+
+    return max((design for design in designs if design is not None), key=better, default=None)
+
+
+def design_around_rails(
+    task: DesignTask,
+    device: Rails,
+    same: Bools,
+    gone: Bools,
+    stands: Bools,
+    *,
+    sweep: float | None = None,
+    unswept: Bools | None = None,
+    partly: bool = False,
+) -> Design | None:
+    """Return the fewest cuts before rails, and a blade behind them, that return what does not hang.
+
+    Parameters
+    ----------
+    task : DesignTask
+        Of M orientations.
+    device : Rails
+    same : (M,) bool
+        Which of them come to hang.
+    gone : (M,) bool
+        Which the track or the rails return.
+    stands : (M,) bool
+        Which come to stand at the rails, unless they are returned before.
+    sweep : float [rad], optional
+        Of a wiper behind the rails, which sweeps off what lies over the slot; none without it.
+    unswept : (M,) bool, optional
+        Which of the others stand at that wiper, as a trial has shown: they are returned before, if they can.
+    partly : bool
+        Whether a chain that leaves some over is returned too: a trial decides on it.
+
+    Returns
+    -------
+    Design or None
+        None where others are left over, or no blade has anything to sweep.
+
+    Notes
+    -----
+    Source: own; docs/tooling.md, "Rails".
+    """
+    orientations, wanted, step = task.orientations, task.wanted, task.constraints.step
+    behind: tuple[Cut, ...] = ()
     passed = gone | same
+    if sweep is not None:
+        others = ~passed & ~stands
+        blade = rails.blade_behind(
+            device, orientations, same, others, task.margin, sweep, step, sure=not partly
+        )
+        if blade is None:
+            return None
+        behind, swept = (blade,), [orientation.name in blade.returns for orientation in orientations]
+        passed = passed | (np.array(swept) if unswept is None else np.array(swept) & ~unswept)
+    cuts: tuple[Cut, ...] = ()
+    is_returned = passed
     for stage in STAGES:  # before the rails, of what they neither let hang nor return
         if all(getattr(task.constraints, name) for name in ("air", "sensed") if stage.get(name)):
             weight = np.where(passed, 0.0, chain.weights(task))
             cuts, is_returned = _choose_cuts(task, stage, same & task.often, weight, passed, 0.0, np.inf)
         left = ~is_returned & task.often
-        jams = (left & np.isnan(at_rails)).any()  # however seldom it comes, it blocks the rails
+        jams = (left & stands).any()  # however seldom it comes, it blocks the rails
         if not jams and task.coming[left].sum() <= task.allowed_beside(same):
             break
     else:
-        return None
-    must = np.array([outcome.margin for outcome in outcomes]) <= -margin
-    ends = (_rails(own, own_neck, width, step) or device for width in (own_neck.shank, own_neck.head))
+        if not partly:
+            return None
+    outcomes = [verdict(device, orientation, orientations) for orientation in orientations]
+    must = np.array([outcome.margin for outcome in outcomes]) <= -task.margin
+    own, head = orientations[wanted], rails.find_head(orientations[wanted])
+    ends: list[Device] = [device, device]
+    if head is not None:
+        ends = [rails.place_rails(own, head, width, step) or device for width in (head.shank, head.head)]
     last = chain.judge_cut(orientations, wanted, device, must, *ends)
-    return chain.propose_needed(task, (*cuts, last), (is_returned & ~same) | gone, same)
-
-
-def _rails(orientation: Orientation, own_neck: Neck, width: float, step: float) -> Device | None:
-    """Rails about the foot of the centre of mass, as practice has them.
-
-    None where the head, clear of the wall, leaves the weight beside the slot, or no rail at the free edge.
-    """
-    width, weight = chain.snap_to_shop_step(width, step, up=True), orientation.distance - orientation.shift
-    middle = max(weight, 0.5 * own_neck.widest + HEAD_WALL_CLEARANCE_M, 0.5 * width + RAIL)
-    first = chain.snap_to_shop_step(middle - 0.5 * width, step, up=True)
-    span = chain.round_finely(first), chain.round_finely(first + width)
-    # the lead-in, from under the tip of a shank that lies askew to as far beyond its middle. It is so narrow
-    # that a head with a flat underside rests on both rails wherever the shank stands in it: with its shank at
-    # one rail and none under its head at the other it hangs askew and stays; a cone does not
-    tip = weight + own_neck.tip - SINKS * 0.5 * own_neck.shank
-    near = max(min(tip, span[0] - WIDER), RAIL)
-    near = min(chain.snap_to_shop_step(near, step, up=True), span[0])
-    # its middle as clear of the wall
-    far = max(span[1] + WIDER, own_neck.widest + 2.0 * HEAD_WALL_CLEARANCE_M - near)
-    held = 0.2 if own_neck.rise > CONE else 0.5
-    far = min(far, near + own_neck.head - max(LEAD_IN_MARGIN_M, held * (own_neck.head - own_neck.shank)))
-    far = max(chain.snap_to_shop_step(far, step, up=False), span[1])
-    sizes = (
-        chain.snap_to_shop_step(share * orientation.length, step, up=True) for share in (STRAIGHT, TAPER)
-    )
-    lead = tuple(chain.round_finely(size) for size in (near, far, *sizes))
-    if lead[1] >= orientation.track.width - RAIL or not lead[0] < weight < lead[1]:
-        return None
-    return Rails(DESIGN_KEY, span=span, lead=lead).rewritten()
+    every = (*cuts, last, *behind)
+    if partly:
+        return chain.propose(task, every, (is_returned & ~same) | gone, same)
+    return chain.propose_needed(task, every, (is_returned & ~same) | gone, same)
 
 
 # -- turning devices

@@ -1,0 +1,254 @@
+"""Chains with rails, by what trials show: which parts hang, and what is changed where some do not.
+
+The static rule ranks: it says where rails lie and which cuts come before them. It refuses none of them: a
+short flanged part rolls by the rule, and hangs in a trial.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.arrays import Bools, Floats
+from feederscrew.designing.findings import Move, MoveKind
+from feederscrew.designing.proposals import MARGINS, Proposal
+from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.short_trials import SELDOM_SHARE, ShortTrial
+from feederscrew.geometry import vectors
+from feederscrew.rates.stream import Orientations
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.blades import Wiper
+from feederscrew.tooling.devices.kinds import dearer
+from feederscrew.tooling.devices.ledges import Rails
+from feederscrew.tooling.isolating import chain, rails
+from feederscrew.tooling.isolating.chain import Design, DesignConstraints, DesignTask
+from feederscrew.tooling.isolating.design import design_around_rails
+from feederscrew.tooling.isolating.rails import USUAL_RAILS, RailSetting, find_head
+from feederscrew.tooling.orientations import SAME_HEAD_COSINE, Neck, Orientation
+from feederscrew.trial.course import Fate
+
+# what is varied, one after the other, from the best chain so far: chosen on an eyelet, a cup with a flange, a
+# T-nut and a push button, for which one of these decides
+OFFSETS_M = (5e-4, -3e-4, 1e-3)  # of the slot, farther off the wall
+PLAYS_M = (3e-4, 6e-4)  # by which the slot is wider
+LEADS = (1.7, 0.6)  # times the length of the lead-in
+SWEEPS_DEG = (25.0, 45.0, 20.0, 55.0)  # of the blade behind the rails, beside the first
+FIRST_SWEEP_DEG = 30.0
+HELD_FATES = frozenset({Fate.STOPPED, Fate.HANGING, Fate.STUCK})
+MAY_HANG = 0.6  # of the parts whose head could hang, that are taken to do so before a trial has said it
+
+
+def expected_gain(orientations: Orientations, shares: Floats, row: int) -> float:
+    """Return the share [1] of what comes that may hang by the same head, before any trial.
+
+    Parameters
+    ----------
+    orientations : Orientations
+        M, through a chain with rails.
+    shares : (M,) float [1]
+        In which they come.
+    row : int
+        The wanted one.
+
+    Returns
+    -------
+    float [1]
+        ``MAY_HANG`` of the share that has the head of the wanted row.
+    """
+    own = find_head(orientations.lying[row])
+    if own is None:
+        return 0.0
+    return MAY_HANG * float(
+        sum(share for share, has in zip(shares, same_head(orientations.lying, own)) if has)
+    )
+
+
+def same_head(orientations: Sequence[Orientation], own: Neck) -> Bools:
+    """Return which orientations (M,) bool could hang by the same head of the part."""
+    heads = [find_head(orientation) for orientation in orientations]
+    return np.array(
+        [head is not None and vectors.dot(head.down, own.down) > SAME_HEAD_COSINE for head in heads]
+    )
+
+
+def head_rows(orientations: Sequence[Orientation], shares: Floats, rows: Sequence[int]) -> list[int]:
+    """Return the most frequent of some rows with each head of a part, the most frequent head first."""
+    chosen: list[int] = []
+    left = [k for k in rows if find_head(orientations[k]) is not None]
+    while left:
+        own = find_head(orientations[left[0]])
+        if own is None:
+            break
+        alike = same_head(orientations, own)
+        chosen.append(max((k for k in left if alike[k]), key=lambda k: (shares[k], -k)))
+        left = [k for k in left if not alike[k]]
+    return chosen
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a trial shows of M orientations at rails."""
+
+    hangs: Bools  # (M,) which leave hanging, most of their parts at least
+    gone: Bools  # (M,) which the bare track or the rails return
+    stands: Bools  # (M,) which stand at the rails, or before them
+    unswept: Bools  # (M,) which stand at a blade behind the rails, or pass it otherwise than hanging
+    held_hanging: bool = False  # whether a part of those that hang stood at such a blade
+
+    @classmethod
+    def before_trial(cls, hangs: Bools) -> "Shown":
+        """Return what is taken before any trial: what has the head hangs, the rest needs a device."""
+        return cls(hangs, *np.zeros((3, len(hangs)), bool))
+
+
+@dataclass(frozen=True)
+class RailsTry:
+    """A chain with rails that is to be tried."""
+
+    proposal: Proposal
+    setting: RailSetting
+    is_livelier: bool = False  # at a livelier drive than the best chain so far
+
+
+class RailsSearch:
+    """The rails of one head on one track, and what is tried of them from one trial to the next."""
+
+    def __init__(
+        self, lying: Sequence[Orientation], shares: Floats, row: int, before: tuple[Device, ...],
+        request: DesignRequest, cost_class: int,
+    ) -> None:  # fmt: skip
+        self.row, self.before, self.shares, self.request = row, before, shares, request
+        kinds = (*dearer(cost_class), *request.without)
+        self.constraints = DesignConstraints(without=tuple(dict.fromkeys(kinds)), up=request.up)
+        self.lying = tuple(lying)
+        self.seen: set[tuple[str, ...]] = set()  # chains that were proposed
+
+    def start(self) -> Iterator[RailsTry]:
+        """Yield chains before any trial: what has the head is taken to hang, the rest to need a device."""
+        head = find_head(self.lying[self.row])
+        if head is None or not self.constraints.allows(Rails.kind):
+            return
+        hangs = same_head(self.lying, head)
+        for sweep in (FIRST_SWEEP_DEG, None):
+            shown = Shown.before_trial(hangs)
+            for proposal in self._build(Move(MoveKind.RAILS), USUAL_RAILS, sweep, shown):
+                yield RailsTry(proposal, USUAL_RAILS)
+
+    def moves(self, tried: RailsTry, trial: ShortTrial) -> Iterator[RailsTry]:
+        """Yield what changes a chain where a trial shows it to fail, the likeliest first."""
+        proposal, setting = tried.proposal, tried.setting
+        shown = shown_by(trial, proposal, len(self.lying))
+        sweep = _sweep_of(proposal)
+
+        def build(
+            kind: MoveKind, value: float, setting: RailSetting, sweep: float | None
+        ) -> Iterator[RailsTry]:
+            for built in self._build(Move(kind, value), setting, sweep, shown):
+                yield RailsTry(built, setting)
+
+        stays_at_blade = sweep is not None and bool(shown.unswept.any() or shown.held_hanging)
+        if stays_at_blade:
+            yield replace(tried, is_livelier=True)
+        if shown.hangs.any() and (stays_at_blade or shown.stands.any() or trial.wrong.any()):
+            # what the trial shows to be left over is returned before the rails, or swept off behind them
+            yield from build(MoveKind.CUTS_BEFORE, 0.0, setting, sweep)
+            if sweep is None:
+                yield from build(MoveKind.BLADE_BEHIND, 0.0, setting, FIRST_SWEEP_DEG)
+        for degrees in SWEEPS_DEG if stays_at_blade else ():
+            yield from build(MoveKind.SWEEP, math.radians(degrees), setting, degrees)
+        places = [
+            *((MoveKind.SLOT_PLACE, x, replace(setting, offset=setting.offset + x)) for x in OFFSETS_M),
+            *((MoveKind.WIDER_SLOT, x, replace(setting, play=setting.play + x)) for x in PLAYS_M),
+            *((MoveKind.LEAD_IN, x, replace(setting, lead=setting.lead * x)) for x in LEADS),
+        ]
+        for kind, value, other in places:
+            yield from build(kind, value, other, sweep)
+
+    def _build(
+        self, move: Move, setting: RailSetting, sweep: float | None, shown: Shown
+    ) -> Iterator[Proposal]:
+        """Yield the chain of a setting, if it is a new one."""
+        device, task, hangs = self._rails(setting), self._task(), shown.hangs
+        if device is None or not hangs.any():
+            return
+        wanted = self.row if hangs[self.row] else int(np.flatnonzero(hangs)[0])
+        task = replace(task, wanted=wanted)
+        angle = None if sweep is None else math.radians(sweep)
+        if angle is not None and not self.constraints.allows(Wiper.kind):
+            return
+        design = design_around_rails(
+            task, device, hangs, shown.gone | ~task.stays, shown.stands, sweep=angle, unswept=shown.unswept,
+            partly=True,
+        )  # fmt: skip
+        if design is None:  # the blade has nothing to sweep
+            return
+        proposal = self._proposal(design, move)
+        if proposal.chain not in self.seen:
+            self.seen.add(proposal.chain)
+            yield proposal
+
+    def _proposal(self, design: Design, move: Move) -> Proposal:
+        cuts = design.cuts
+        changed = next((cut.device for cut in reversed(cuts) if cut.device.overhead), None)
+        if move.kind in (MoveKind.BLADE_BEHIND, MoveKind.SWEEP) and changed is not None:
+            move = replace(move, device=changed.kind, device_text=changed.text)
+        if move.kind is MoveKind.WIDER_SLOT:
+            slot = next(cut.device.span for cut in cuts if cut.device.hangs)
+            move = replace(move, value=slot[1] - slot[0])
+        return Proposal(self.row, cuts, self.before, move, margin=MARGINS[-1])
+
+    def _task(self) -> DesignTask:
+        return chain.design_task(
+            self.lying, self.shares, self.row, MARGINS[-1], 1.0 - SELDOM_SHARE, self.before,
+            constraints=self.constraints,
+        )  # fmt: skip
+
+    def _rails(self, setting: RailSetting) -> Rails | None:
+        own = self.lying[self.row]
+        head = find_head(own)
+        if head is None:
+            return None
+        width = rails.slot_width(head, MARGINS[-1])
+        if width + setting.play >= head.head - rails.LEAD_IN_MARGIN_M:
+            return None
+        return rails.place_rails(own, head, width, self.constraints.step, setting)
+
+
+def shown_by(trial: ShortTrial, proposal: Proposal, count: int) -> Shown:
+    """Return what a trial shows of M orientations at rails.
+
+    What a cut before the rails returns, or a blade behind them sweeps off, needs that device: it is neither
+    gone nor does it stand, as what was not tried.
+    """
+    placed = [device for device in proposal.devices if device.placed]
+    station = next((n for n, device in enumerate(placed, start=1) if device.hangs), -1)
+    hangs, gone, stands, unswept = np.zeros((4, count), bool)
+    held_hanging = False
+    for n, row in enumerate(trial.rows.tolist()):
+        hangs[row] = 2 * trial.right[n] > trial.parts[n]
+        left = trial.right[n] or trial.wrong[n] or trial.held[n]
+        gone[row] = not left and all(end.station in (0, station) for end in trial.ends[n])
+        at = [end.station for end in trial.ends[n] if end.fate in HELD_FATES]
+        stands[row] = not hangs[row] and any(place <= station for place in at)
+        unswept[row] = not hangs[row] and not stands[row] and bool(at or trial.wrong[n])
+        held_hanging = held_hanging or bool(hangs[row] and at)
+    return Shown(hangs, gone, stands, unswept, held_hanging)
+
+
+def _sweep_of(proposal: Proposal) -> float | None:
+    """The sweep [deg] of the blade behind the rails; None without one."""
+    behind = False
+    for cut in proposal.cuts:
+        behind = behind or cut.device.hangs
+        if behind and isinstance(cut.device, Wiper):
+            return round(math.degrees(cut.device.sweep), 6)
+    return None
+
+
+def score(trial: ShortTrial) -> float:
+    """Return how good a chain is by its trial: what leaves as wanted, less what stands or leaves otherwise.
+
+    A share that stands or leaves wrongly counts three times: it stops a bowl. What comes back only slows it.
+    """
+    return trial.efficiency - 3.0 * (trial.stopped + trial.wrong_share)

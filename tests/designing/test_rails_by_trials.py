@@ -1,0 +1,145 @@
+"""Rails are proposed for every part with a head, and trials say what hangs: a short flanged part rolls."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+import trimesh
+from design_counts import short_trial, stopped_at
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import calm_drive, exploring, hanging, proposals
+from feederscrew.designing.findings import MoveKind
+from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.search import Search
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.isolating.chain import OutcomeKind
+from feederscrew.tooling.isolating.rails import find_head
+from feederscrew.tooling.orientations import hang, may_hang
+from feederscrew.tooling.orientations import orientations as on_the_track
+
+# a sleeve of 7 mm, 9 mm long with its flange of 12 mm: its head is as long as the part
+SLEEVE = [(0, 0), (6, 0), (6, 1.5), (3.5, 1.5), (3.5, 9), (0, 9)]
+
+
+@pytest.fixture(scope="module")
+def sleeve():
+    return shapes.part(trimesh.creation.revolve(np.array(SLEEVE, float), sections=32), "sleeve")
+
+
+@pytest.fixture(scope="module")
+def lying(sleeve):
+    """Its orientations along a track of 14 mm."""
+    track = bowls.default().track
+    return on_the_track(sleeve, find(sleeve), replace(track, width=14e-3, bank=np.radians(3.0)))
+
+
+@pytest.fixture
+def rails_search(lying):
+    shares = np.full(len(lying), 1.0 / len(lying))
+    row = hanging.head_rows(lying, shares, range(len(lying)))[0]
+    return hanging.RailsSearch(lying, shares, row, (), DesignRequest(0.5), 1)
+
+
+def test_a_flange_wider_than_its_neck_is_a_head_whatever_rolls(lying):
+    heads = [find_head(orientation) for orientation in lying]
+    headed = [head for head in heads if head is not None]
+    assert len(headed) == 2  # along the track, either way round
+    for head in headed:  # the sleeve's own sizes, to a facet's sagitta
+        assert head.shank == pytest.approx(7e-3, abs=0.1e-3)
+        assert head.head == pytest.approx(12e-3, abs=0.4e-3)
+    # of a step of less than 1 mm nothing hangs by its head
+    low = np.array([(0, 0), (3.9, 0), (3.9, 1.5), (3.5, 1.5), (3.5, 9), (0, 9)], float)
+    stepped = shapes.part(trimesh.creation.revolve(low, sections=32), "stepped")
+    track = replace(bowls.default().track, width=14e-3)
+    assert all(find_head(orientation) is None for orientation in on_the_track(stepped, find(stepped), track))
+
+
+def test_rails_are_proposed_for_what_rolls(lying, rails_search):
+    assert lying[rails_search.row].posture.kind == "rolling"
+    first, bare = rails_search.start()
+    kinds = [[cut.device.kind for cut in tried.proposal.cuts] for tried in (first, bare)]
+    assert kinds[0][-2:] == ["rails", "wiper"] and kinds[1][-1] == "rails"
+    slot = next(cut.device for cut in bare.proposal.cuts if cut.device.hangs)
+    assert 7e-3 < slot.span[1] - slot.span[0] < 8e-3
+    assert may_hang(lying[rails_search.row], slot.span)
+    # heads of what hangs pass below the blade, and it sweeps the foot of what lies over the slot
+    blade = first.proposal.cuts[-1].device
+    head = hang(lying[rails_search.row], slot.span).height
+    assert head + 1e-3 <= blade.limit <= head + 4e-3
+
+
+@pytest.mark.parametrize("left_out", ["rails", "wiper"])
+def test_no_kind_of_device_is_proposed_that_the_user_left_out(lying, rails_search, left_out):
+    request = DesignRequest(0.5, without=(left_out,))
+    search = hanging.RailsSearch(lying, rails_search.shares, rails_search.row, (), request, 1)
+    kinds = {cut.device.kind for tried in search.start() for cut in tried.proposal.cuts}
+    assert left_out not in kinds and bool(kinds) == (left_out != "rails")
+
+
+def trial_of(lying, search, proposal, held_at_blade):
+    """A trial in which what has the head hangs, and one other orientation stands at the blade."""
+    ways = type("Ways", (), {"lying": lying})()
+    same = hanging.same_head(lying, find_head(lying[search.row]))
+    right = [k for k in range(len(lying)) if same[k]]
+    placed = [device.kind for device in proposal.devices if device.placed]
+    blade = stopped_at("wiper", placed.index("wiper") + 1)
+    ends = tuple({blade: 2} if k == held_at_blade else {} for k in range(len(lying)))
+    held = [] if held_at_blade is None else [held_at_blade]
+    return short_trial(ways, right, held=held, row=search.row, ends=ends)
+
+
+def test_what_stands_at_the_blade_asks_for_a_livelier_drive_then_cuts_then_sweeps(lying, rails_search):
+    first = next(rails_search.start())
+    other = next(k for k in range(len(lying)) if find_head(lying[k]) is None)
+    trial = trial_of(lying, rails_search, first.proposal, other)
+    shown = hanging.shown_by(trial, first.proposal, len(lying))
+    assert shown.unswept[other] and not shown.stands.any() and not shown.gone[other]
+    tries = list(rails_search.moves(first, trial))
+    assert tries[0].is_livelier and tries[0].proposal is first.proposal
+    assert not any(tried.is_livelier for tried in tries[1:])
+    kinds = [tried.proposal.move.kind for tried in tries[1:]]
+    assert MoveKind.SWEEP in kinds and MoveKind.SLOT_PLACE in kinds
+    assert kinds.index(MoveKind.SWEEP) < kinds.index(MoveKind.SLOT_PLACE)
+    chains = [tried.proposal.chain for tried in tries[1:]]
+    assert len(set(chains)) == len(chains) and first.proposal.chain not in chains
+    # where nothing stands there, the blade is left as it is
+    clean = trial_of(lying, rails_search, first.proposal, None)
+    kinds = {tried.proposal.move.kind for tried in rails_search.moves(first, clean)}
+    assert MoveKind.SWEEP not in kinds and not any(t.is_livelier for t in rails_search.moves(first, clean))
+
+
+def test_standing_counts_more_against_a_chain_than_coming_back(lying, rails_search):
+    first = next(rails_search.start())
+    stands = trial_of(lying, rails_search, first.proposal, next(
+        k for k in range(len(lying)) if find_head(lying[k]) is None
+    ))  # fmt: skip
+    clean = trial_of(lying, rails_search, first.proposal, None)
+    assert hanging.score(clean) == pytest.approx(clean.efficiency)
+    assert hanging.score(stands) < hanging.score(clean) - stands.stopped
+
+
+def test_a_livelier_drive_is_the_next_of_the_list_before_another_blade(sleeve):
+    plain = bowls.default()
+    plain_bowl = calm_drive.section(sleeve, find(sleeve), plain, frozenset(), diameter=None, bank=0.05)
+    calm = calm_drive.drive_at(plain_bowl, 0.05)
+    next_one = calm_drive.find_livelier(plain_bowl, calm, calm_drive.NEXT_LIVELIER_HOP, 0.0)
+    far = calm_drive.find_livelier(plain_bowl, calm)
+    hops = [calm_drive.hop(bowl).height for bowl in (calm, next_one, far)]
+    assert 1.6 * hops[0] <= hops[1] < hops[2]
+
+
+def test_hanging_is_searched_once_for_each_head_where_steel_is_asked_for(sleeve, monkeypatch):
+    """And by nothing else: a design of what hangs tries no chain of what lies."""
+    request = DesignRequest(0.5, outcome=OutcomeKind.HANGING, rule="csa")
+    search = Search.begin(sleeve, request, bowls.default())
+    searched, lying_rows = [], []
+    monkeypatch.setattr(
+        exploring, "_try_rails", lambda s, b, rails, w: searched.append(rails.row) or iter(())
+    )
+    monkeypatch.setattr(exploring, "_propose", lambda s, t, row, recipe: lying_rows.append(recipe.outcome))
+    assert not list(exploring.candidates(search, proposals.COST_CLASSES[0]))
+    assert len(searched) >= len(search.state.tracks)  # of each bank, and what the static rule proposes
+    assert set(lying_rows) <= {OutcomeKind.HANGING}
+    assert not search.state.attempts
