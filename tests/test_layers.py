@@ -125,7 +125,8 @@ OTHERWISE = {"gap", "step"}  # kinds whose names have other uses
 
 
 def test_a_device_is_known_by_name_in_its_own_folder_only():
-    others = [path for path in FILES if "devices" not in path.parts]
+    words = ROOT / "feederscrew/output/page/words.py"  # a glossary for people, on which nothing decides
+    others = [path for path in FILES if "devices" not in path.parts and path != words]
     named_once = set(KINDS) - OTHERWISE
     assert len(others) < len(FILES) and set(KINDS) > OTHERWISE
     for path in others:

@@ -398,14 +398,14 @@ def save(record: Any, folder: str | PathLike[str], pictures: bool = True) -> Pat
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownPart:
     """A page that shows a part, to be turned."""
 
     path: Path
     page: str
 
     def __repr__(self) -> str:
-        return f"Shown({str(self.path)!r})"
+        return f"ShownPart({str(self.path)!r})"
 
     def _repr_html_(self) -> str:
         """Return the page in a frame, as a notebook shows it."""
@@ -423,14 +423,14 @@ def part_page(part: Part) -> str:
     return page_of(Page(part.name, _part(part), (views,), "part"))
 
 
-def shown(part: Part) -> Shown:
+def shown(part: Part) -> ShownPart:
     """Return the page of a part; opened in a browser where no notebook shows it."""
     page = part_page(part)
     path = Path(tempfile.mkdtemp(prefix="feeder-")) / f"{safe_name(part.name)}.html"
     path.write_text(page, encoding="utf-8")
     if "ipykernel" not in sys.modules:
         webbrowser.open(path.as_uri())
-    return Shown(path, page)
+    return ShownPart(path, page)
 
 
 def html(record: object) -> str:

@@ -98,7 +98,7 @@ class Part(ReadableRecord):
 
         Returns
         -------
-        Shown
+        ShownPart
             Its ``path`` is the page, one HTML file that needs no other and no network.
 
         Raises

@@ -140,7 +140,7 @@ def test_a_headed_pin_is_fed_hanging():
     assert made.hopeful == pytest.approx(1.0) and made.purity_is_least
     assert made.reasons == ("no verdict is sure to return A@90: the purity counts it as leaving",)
     assert ", purity at least 81.86 %, by " in tables.bowl_file(study, ())
-    assert "leave so, at least 81.86 % of what leaves" in tables.remarks(study)[0]
+    assert "leave hanging, at least 81.86 % of what leaves" in tables.remarks(study)[0]
     assert made.purity == pytest.approx(leaves / (leaves + across)) and across > 0.1
     # An L that hangs over a track by more than half has no second rail there.
     outline = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
