@@ -175,13 +175,14 @@ class Option(click.Option):
 class AspectOption(Option):
     """An option of an aspect, which takes the name of an orientation, 'A@354', for both of its options."""
 
-    def __init__(self, *arguments: Any, **keywords: Any) -> None:
-        super().__init__(*arguments, is_eager=True, **keywords)  # before --heading and --outcome
-
     def handle_parse_result(
         self, ctx: click.Context, opts: Mapping[str, Any], args: list[str]
     ) -> tuple[Any, list[str]]:
-        """Give the aspect, and to ``--heading`` and ``--outcome`` what the name says of them."""
+        """Give the aspect, and to ``--heading`` and ``--outcome`` what the name says of them.
+
+        Options that are given are read before those that are not, so a heading that the name says is there
+        when its option is read.
+        """
         text = opts.get("aspect")
         named = ORIENTATION.fullmatch(text.strip()) if isinstance(text, str) else None
         takes = {param.name for param in ctx.command.params}

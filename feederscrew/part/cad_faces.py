@@ -242,7 +242,7 @@ def _signature(surface: dict[str, Any]) -> Signature:
     if kind == "plane":
         normal = np.array(surface["normal"], dtype=float) + 0.0
         normal *= _side(normal)
-        height = float(np.dot(normal, surface["origin"]))
+        height = float(vectors.dot(normal, np.asarray(surface["origin"], dtype=float)))
         return kind, *(f"{number:.4f}" for number in normal + 0.0), f"{height + 0.0:.7f}"
     return kind, *(
         f"{surface[name]:.5e}" for name in ("radius", "major_radius", "minor_radius") if name in surface
@@ -259,7 +259,7 @@ def _outwards(triangles: Floats, surface: dict[str, Any], matrix: Floats) -> flo
     normals = vectors.cross(b - a, c - a)
 
     def turned(name: str) -> Vector:
-        return np.array([np.dot(row[:3], surface[name]) for row in matrix[:3]])
+        return vectors.dot(matrix[:3, :3], np.asarray(surface[name], dtype=float))
 
     if surface["type"] == "plane":
         own = np.array(surface["normal"], dtype=float)
