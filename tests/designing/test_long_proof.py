@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -35,6 +36,8 @@ AGREED = 1.0 / HOUR
 def cache(monkeypatch, tmp_path):
     monkeypatch.setenv("FEEDER_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(fills, "TOUCHING_PARTS", 3)
+    # a thread that another test left would make a process that begins anew, with rows of twelve parts
+    monkeypatch.setattr(threading, "active_count", lambda: 1)
     return tmp_path / "cache"
 
 
