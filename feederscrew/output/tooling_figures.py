@@ -30,6 +30,7 @@ PASSED_COLOUR, REJECTED_COLOUR = "#0072b2", "#d55e00"
 TRACK_FACE, PART_FACE, TOUCHING = "#e3e8ec", "#9fb3c4", "#56697a"
 MAX_ROWS_OF_ONE_PANEL, MAX_TWO_PANELS_PX = 9, 2200  # more rows: two panels, if no wider [px]
 TEXT_LINE_PX = 17  # pixels between lines of text
+HEAD_LETTER_PX = 9.8  # [px] of a letter in the bold head of a column
 READING_NOTES = (
     "from above: wall below, parts move to the right",
     "light: part, dark: what touches the track, outline: hull of the support, dot: weight",
@@ -62,7 +63,9 @@ def chain(
             value = f" {device.text}" if np.isfinite(device.limit) else ""
             value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
             value += f" {device.like[2] / MM:.3g} mm" if device.like else ""
-            write_text(page, left, PAGE_HEAD_PX - 22, f"{place + 1}  {device.kind}{value}", weight="bold")
+            head = textwrap.wrap(f"{place + 1}  {device.kind}{value}", int((column - 16) / HEAD_LETTER_PX))
+            for above, text in enumerate(reversed(head)):
+                write_text(page, left, PAGE_HEAD_PX - 22 - above * TEXT_LINE_PX, text, weight="bold")
         write_text(page, (panel + 1) * wide - OUT + 8, PAGE_HEAD_PX - 22, "as it leaves", weight="bold")
     size = _scale(orientations, rows, column)
     _draw_scale_bar(page, panels * wide - 16, 66, size)  # below the title, which may be as long

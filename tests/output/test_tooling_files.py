@@ -152,11 +152,14 @@ def test_the_files_of_a_study_and_a_bowl_file_that_gives_what_it_promises(isolat
     assert rated.efficiency == pytest.approx(study.design.efficiency, rel=1e-6)
 
 
-def test_pages_are_read_in_panels_and_no_text_lies_on_another(lying, isolated):
+def test_pages_are_read_in_panels_and_no_text_lies_on_another(lying, isolated, tmp_path):
     """A page of one column of all orientations was three times as high as wide."""
     bowl, every = lying
     page = tooling_figures.chain(bowl.devices, every, even(every))
-    for figure in (page, tooling_figures.limits(isolated[0], "")):
+    path = tmp_path / "swept.yaml"  # its last head takes two lines
+    path.write_text("devices: [gap: 8 mm, canyon: 9.7 mm, wiper: {clearance: 4.95 mm, sweep: 30 deg}]\n")
+    last = tooling_figures.chain(bowls.read(path).devices, every, even(every))
+    for figure in (page, last, tooling_figures.limits(isolated[0], "")):
         renderer = figure.canvas.get_renderer()
         boxes = [text.get_window_extent(renderer) for text in figure.texts if text.get_text()]
         width, height = figure.canvas.get_width_height()
