@@ -16,7 +16,13 @@ for _library in ("OPENBLAS", "MKL"):  # before numpy is imported
 
 
 def end_while_loading(*_received: object) -> None:
-    """Leave at once with the status of Ctrl-C: nothing has been begun."""
+    """Leave at once with the status of Ctrl-C: nothing has been begun.
+
+    Parameters
+    ----------
+    *_received : object
+        The signal and the frame, as Python gives them; not used.
+    """
     os.write(2, b"Stopped.\n")
     os._exit(128 + signal.SIGINT)
 

@@ -13,7 +13,23 @@ END_AFTER_S = 6.0  # [s] from Ctrl-C to the end, whatever is loading
 
 
 def process_count(value: str) -> int | None:
-    """Return a number of processes; None of 'auto'."""
+    """Return a number of processes.
+
+    Parameters
+    ----------
+    value : str
+        As typed: '4' or 'auto'.
+
+    Returns
+    -------
+    int or None
+        None of 'auto'.
+
+    Raises
+    ------
+    click.BadParameter
+        If it is not a whole number above 0.
+    """
     if value == "auto":
         return None
     if not WHOLE_NUMBER.fullmatch(value) or not int(value) > 0:

@@ -246,7 +246,7 @@ def _batch(
 
 @contextlib.contextmanager
 def _stoppable(out: Output) -> Iterator[dict[str, Any]]:
-    """What tells of a search, and ends it where a Ctrl-C was dropped while something loaded."""
+    """Yield keywords that tell of a search, and end it where a Ctrl-C was dropped while something loaded."""
     with note_interrupts() as let_through:
         bar = progress.StageBar(not out.quiet)
 
@@ -265,7 +265,7 @@ def _stoppable(out: Output) -> Iterator[dict[str, Any]]:
 def _write(
     out: Output, folder: "ResultFolder | None", study: "DesignStudy", settings: Sequence["Setting"]
 ) -> "DesignStudy":
-    """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
+    """Write the files of one design; return it with the limits that its machine is out of."""
     from feederscrew.designing import design
     from feederscrew.output import design_pages, designs
 

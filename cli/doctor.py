@@ -61,7 +61,15 @@ def doctor() -> None:
 
 
 def requirements() -> tuple[list[str], dict[str, list[str]]]:
-    """Return the libraries that are always needed, and those of each extra by its name."""
+    """Return the libraries that the program needs.
+
+    Returns
+    -------
+    needed : list of str
+        Those that are always needed.
+    extras : dict of str to list of str
+        Those of each extra, by its name; extras for developers are left out.
+    """
     extras: dict[str, list[str]] = {}
     needed = []
     for line in metadata.requires(DISTRIBUTION) or []:
@@ -75,7 +83,18 @@ def requirements() -> tuple[list[str], dict[str, list[str]]]:
 
 
 def installed_version(name: str) -> str | None:
-    """Return the version of a library, or None."""
+    """Return the version of a library.
+
+    Parameters
+    ----------
+    name : str
+        Of its distribution.
+
+    Returns
+    -------
+    str or None
+        None where it is not installed.
+    """
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
@@ -91,7 +110,13 @@ def _state(extra: str, names: list[str]) -> str:
 
 
 def kernels() -> list[tuple[str, str]]:
-    """Return how many compiled functions are kept, and where; they are compiled on first use."""
+    """Return how many compiled functions are kept, and where; they are compiled on first use.
+
+    Returns
+    -------
+    list of (str, str)
+        Lines of the report: name and value.
+    """
     home = caches.kernel_folder()
     refused = [("not used", reason) for reason in caches.kernel_refusals()]
     if home is None:
@@ -103,7 +128,13 @@ def kernels() -> list[tuple[str, str]]:
 
 
 def simulations() -> list[tuple[str, str]]:
-    """Return how many simulations of earlier runs are kept, and where."""
+    """Return how many simulations of earlier runs are kept, and where.
+
+    Returns
+    -------
+    list of (str, str)
+        Lines of the report: name and value.
+    """
     try:
         from feederscrew.studies import simulation_cache
     except ImportError:  # of a library that is missing: the report says so above

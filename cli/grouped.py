@@ -57,7 +57,13 @@ class Grouped(click.Command):
         self.params.append(click.Option(["--help-all"], help=text, callback=show, **flag))
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the example and the first paragraph, or with --help-all every one."""
+        """Write the example and the first paragraph, or with --help-all every one.
+
+        Parameters
+        ----------
+        ctx, formatter
+            As click gives them.
+        """
         paragraphs = inspect.cleandoc(self.help or "").split("\n\n")
         whole, self.help = self.help, "\n\n".join(paragraphs if _is_whole(ctx) else paragraphs[:2])
         try:
@@ -66,7 +72,13 @@ class Grouped(click.Command):
             self.help = whole
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the command's own options, then those that it shares; the rare ones with --help-all."""
+        """Write the command's own options, then those that it shares; the rare ones with --help-all.
+
+        Parameters
+        ----------
+        ctx, formatter
+            As click gives them.
+        """
         listed = [option for option in self.get_params(ctx) if isinstance(option, click.Option)]
         whole = _is_whole(ctx)
         headings = (OWN_OPTIONS, *OPTION_GROUPS) if whole else (OWN_OPTIONS, COMMON)
@@ -87,7 +99,13 @@ class Grouped(click.Command):
             formatter.write(textwrap.fill(text, formatter.width, break_on_hyphens=False) + "\n")
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write where words are explained."""
+        """Write where words are explained.
+
+        Parameters
+        ----------
+        ctx, formatter
+            As click gives them.
+        """
         super().format_epilog(ctx, formatter)
         _write_glossary(formatter)
 
@@ -96,7 +114,13 @@ class Words(click.Group):
     """A group of commands whose help ends in where words are explained."""
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write where words are explained."""
+        """Write where words are explained.
+
+        Parameters
+        ----------
+        ctx, formatter
+            As click gives them.
+        """
         super().format_epilog(ctx, formatter)
         _write_glossary(formatter)
 
@@ -111,5 +135,15 @@ def _is_whole(ctx: click.Context) -> bool:
 
 
 def command(**keywords: Any) -> Callable:
-    """Return the decorator ``click.command`` for a ``Grouped`` command; ``rare`` are names of parameters."""
+    """Return the decorator ``click.command`` for a ``Grouped`` command.
+
+    Parameters
+    ----------
+    **keywords : object
+        As of ``click.command``; ``rare`` are names of parameters that only --help-all lists.
+
+    Returns
+    -------
+    callable
+    """
     return click.command(cls=Grouped, **keywords)

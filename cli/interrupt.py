@@ -27,19 +27,39 @@ _waiting: list[int] = []  # the signal that waits for the end of an import
 
 
 def was_heard() -> bool:
-    """Return whether Ctrl-C, or a signal taken for it, has come since the program began."""
+    """Tell whether Ctrl-C, or a signal taken for it, has come since the program began.
+
+    Returns
+    -------
+    bool
+    """
     return bool(_heard)
 
 
 def exit_status() -> int:
-    """Return the exit status of a run that was stopped: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP."""
+    """Return the exit status of a run that was stopped.
+
+    Returns
+    -------
+    int
+        By its first signal: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
+    """
     return 128 + _heard[0] if _heard else INTERRUPTED
 
 
 def heed_interrupts(tell: Callable[..., Any]) -> Callable[..., None]:
-    """Return ``tell``, which raises the interrupt again that a library dropped while it was loading.
+    """Return a function that tells, and raises again an interrupt that a loading library dropped.
 
     For work that says how far it is.
+
+    Parameters
+    ----------
+    tell : callable
+        Called with the values, as long as no signal has come.
+
+    Returns
+    -------
+    callable
     """
 
     def tell_unless_stopped(*values: Any) -> None:
@@ -54,10 +74,17 @@ def heed_interrupts(tell: Callable[..., Any]) -> Callable[..., None]:
 def note_every_interrupt(*, ends: bool = False) -> Iterator[Callable[[], None]]:
     """Note every signal of the block beside letting it through: a library may drop it, a run end early.
 
-    Where the program ``ends`` after the block Ctrl-C does nothing more, as Python takes its own handler away
-    while it ends, and the signal would kill a program that has given its answer. From a call of what it
-    yields on signals are noted alone. A signal that the program was started to ignore, as by nohup, is
-    ignored.
+    Parameters
+    ----------
+    ends : bool, optional
+        Whether the program ends after the block: then Ctrl-C does nothing more, as Python takes its own
+        handler away while it ends, and the signal would kill a program that has given its answer.
+
+    Yields
+    ------
+    callable
+        From a call of it on signals are noted alone. A signal that the program was started to ignore, as by
+        nohup, is ignored.
     """
     _heard.clear()
     done = threading.Event()
@@ -183,6 +210,15 @@ def hold_interrupts() -> Iterator[None]:
     """Hold back signals until the end of the block, as while libraries load; a second one gets through.
 
     Some of them drop an interrupt that reaches them while they load, or crash on it.
+
+    Yields
+    ------
+    None
+
+    Raises
+    ------
+    KeyboardInterrupt
+        At the end of the block, if a signal has come; at once, if two have.
     """
 
     def hold(count: int, *_: Any) -> None:
@@ -197,9 +233,14 @@ def hold_interrupts() -> Iterator[None]:
 
 @contextlib.contextmanager
 def note_interrupts() -> Iterator[Callable[[], None]]:
-    """Note signals beside letting them through; gives a function that lets them through again.
+    """Note signals beside letting them through.
 
     A library that is loading may drop one: whoever works on asks now and then.
+
+    Yields
+    ------
+    callable
+        Raises KeyboardInterrupt if a signal has come in the block.
     """
 
     def let_through_again() -> None:
@@ -212,10 +253,19 @@ def note_interrupts() -> Iterator[Callable[[], None]]:
 
 @contextlib.contextmanager
 def end_within(seconds: float) -> Iterator[None]:
-    """Let a signal end the program within so many seconds [s], from any moment of the block.
+    """Let a signal end the program within some time, from any moment of the block.
 
     Libraries drop an interrupt that reaches them while they load or tidy up, and a process that is still
     loading may not be waited for. What the block has written must be whole at any moment.
+
+    Parameters
+    ----------
+    seconds : float [s]
+        From the first signal to the end.
+
+    Yields
+    ------
+    None
     """
     from multiprocessing import active_children  # before an interrupt: the import lock may be held then
 

@@ -61,17 +61,46 @@ class Fence(click.Group):
     """Turns every fault into its lines on stderr and the exit status that goes with it."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """In the order of a job, not of the alphabet."""
+        """Return the names of the commands in the order of a job, not of the alphabet.
+
+        Parameters
+        ----------
+        ctx
+            As click gives it; not used.
+
+        Returns
+        -------
+        list of str
+        """
         return list(self.commands)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the commands by group."""
+        """Write the commands by group.
+
+        Parameters
+        ----------
+        ctx, formatter
+            As click gives them.
+        """
         for heading, names in COMMAND_GROUPS.items():
             with formatter.section(heading):
                 formatter.write_dl([(name, self.commands[name].short_help or "") for name in names])
 
     def main(self, args: Sequence[str] | None = None, **extra: Any) -> NoReturn:  # type: ignore[override]
-        """Run one command line and leave the interpreter, in any mode of click."""
+        """Run one command line and leave the interpreter, in any mode of click.
+
+        Parameters
+        ----------
+        args : sequence of str, optional
+            Words of the command line; those of the program without it.
+        **extra : object
+            Keywords of ``click.Group.main``.
+
+        Raises
+        ------
+        SystemExit
+            Always: 0, 1 for wrong data, 2 for a wrong call, 128 and the signal of a run that was stopped.
+        """
         arguments = list(sys.argv[1:] if args is None else args)
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):  # an escape for what cannot be written, as in a file's name
@@ -122,7 +151,18 @@ class Fence(click.Group):
         return WRONG_DATA
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command, each fault printed on a line of its own."""
+        """Run the command, each fault printed on a line of its own.
+
+        Parameters
+        ----------
+        ctx
+            As click gives it.
+
+        Returns
+        -------
+        object
+            The exit status where it is an int.
+        """
         try:
             return super().invoke(ctx)
         except FeederError as error:

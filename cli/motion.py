@@ -9,7 +9,22 @@ LIKELIEST = "As `feeder aspects` names it.  [default: the likeliest]"
 
 
 def vibration_angle(value: str) -> float:
-    """Return a vibration angle [rad] of '20' or '20 deg', within the limits of the bowl file's."""
+    """Return a vibration angle, within the limits of the bowl file's.
+
+    Parameters
+    ----------
+    value : str
+        '20' or '20 deg'.
+
+    Returns
+    -------
+    float [rad]
+
+    Raises
+    ------
+    click.BadParameter
+        If it is not an angle, or out of the limits.
+    """
     from feederscrew.bowl.reading import checked
     from feederscrew.bowl.schema import BY_NAME
     from feederscrew.errors import ConfigError

@@ -26,7 +26,7 @@ class WrongValue(click.BadParameter):
         self.what, self.value = what, value
 
     def format_message(self) -> str:
-        """The line, with the whole option to be typed where its value is known."""
+        """Return the line, with the whole option to be typed where its value is known."""
         if self.value is None or not isinstance(self.param, click.Option):
             return super().format_message()
         text = f"{self.what} - write {typed(self.param.opts, self.value)}"
@@ -37,7 +37,17 @@ class Place(click.Path):
     """A path; the library says what is wrong with it, unless it is none, as of an unset shell variable."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The path as typed, or a wrong call."""
+        """Return the path as typed, or refuse an empty one as a wrong call.
+
+        Parameters
+        ----------
+        value, param, ctx
+            As click gives them.
+
+        Returns
+        -------
+        str
+        """
         if not value:
             self.fail("is empty - give a path", param, ctx)
         return super().convert(value, param, ctx)
@@ -47,7 +57,17 @@ class LengthUnit(click.Choice):
     """A unit of a file; that of a micrometre also with its sign."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The unit, or a wrong call."""
+        """Return the unit, or refuse another word as a wrong call.
+
+        Parameters
+        ----------
+        value, param, ctx
+            As click gives them.
+
+        Returns
+        -------
+        str
+        """
         return super().convert(value.translate(MICRO_SIGNS) if isinstance(value, str) else value, param, ctx)
 
 
@@ -57,7 +77,17 @@ class Number(click.FloatRange):
     name = "number"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number, or a wrong call."""
+        """Return the number, or refuse it as a wrong call.
+
+        Parameters
+        ----------
+        value, param, ctx
+            As click gives them.
+
+        Returns
+        -------
+        float
+        """
         if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
             self.fail(f"{value!r} is not a number - write digits with a decimal point, as in 0.4", param, ctx)
         return _within(super().convert, value, self, param, ctx)
@@ -67,7 +97,17 @@ class Whole(click.IntRange):
     """A whole number within limits, of the digits 0 to 9: Python takes those of other scripts, and '1_0'."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number, or a wrong call."""
+        """Return the number, or refuse it as a wrong call.
+
+        Parameters
+        ----------
+        value, param, ctx
+            As click gives them.
+
+        Returns
+        -------
+        int
+        """
         if isinstance(value, str) and not WHOLE_NUMBER.fullmatch(value.strip()):
             example = str(10 if self.max is None or self.max >= 10 else self.max)
             what, mend = f"{value!r} is not a valid whole number", f"write digits, as {example}"
@@ -93,7 +133,22 @@ def _within(
 def quantity_type(
     dimension: str, *, positive: bool = False, most: float = math.inf
 ) -> Callable[[str | float], float]:
-    """Return the type '0.5 mm', '120/min': a quantity of one dimension in SI units, 0 unless ``positive``."""
+    """Return the type of an option that takes a quantity: '0.5 mm', '120/min'.
+
+    Parameters
+    ----------
+    dimension : str
+        Of ``units.UNITS_BY_DIMENSION``.
+    positive : bool, optional
+        Whether 0 is refused; a number below it always is.
+    most : float [SI], optional
+        The greatest value.
+
+    Returns
+    -------
+    callable
+        From a text to the number in SI units.
+    """
 
     def read(value: str | float) -> float:
         from feederscrew import units
@@ -114,7 +169,22 @@ def quantity_type(
 
 
 def angle(value: str | float) -> float:
-    """Return an angle in radians; a number alone is in degrees."""
+    """Return an angle; a number alone is in degrees.
+
+    Parameters
+    ----------
+    value : str or float
+        As typed; a number that is no text is in radians already.
+
+    Returns
+    -------
+    float [rad]
+
+    Raises
+    ------
+    click.BadParameter
+        If it is not an angle, or beyond ten turns.
+    """
     from feederscrew.units import QuantityError, quantity
 
     try:
@@ -127,7 +197,22 @@ def angle(value: str | float) -> float:
 
 
 def span(value: str) -> tuple[float, float]:
-    """Return a least and a greatest length in metres; one alone is both."""
+    """Return a least and a greatest length; one alone is both.
+
+    Parameters
+    ----------
+    value : str
+        '200mm:400mm' or '300mm'.
+
+    Returns
+    -------
+    low, high : float [m]
+
+    Raises
+    ------
+    click.BadParameter
+        If an end is not a length above 0, or the ends run backwards.
+    """
     ends = value.split(":")
     if len(ends) > 2:
         raise click.BadParameter(f"{value!r} has more than two ends - write 200mm:400mm")
@@ -159,7 +244,17 @@ class Option(click.Option):
         self.opts += self.former
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        """The help of the present name with the names behind it, which says the former."""
+        """Return the help of the present name, with the names behind it, and the former ones.
+
+        Parameters
+        ----------
+        ctx
+            As click gives it.
+
+        Returns
+        -------
+        (str, str) or None
+        """
         whole, self.opts, text = self.opts, self.present, self.help
         if self.names:
             self.help = f"{(text or '').removesuffix('.')}: {', '.join(self.names())}."
@@ -178,10 +273,20 @@ class AspectOption(Option):
     def handle_parse_result(
         self, ctx: click.Context, opts: Mapping[str, Any], args: list[str]
     ) -> tuple[Any, list[str]]:
-        """Give the aspect, and to ``--heading`` and ``--outcome`` what the name says of them.
+        """Take the aspect, and give ``--heading`` and ``--outcome`` what the name says of them.
 
         Options that are given are read before those that are not, so a heading that the name says is there
         when its option is read.
+
+        Parameters
+        ----------
+        ctx, opts, args
+            As click gives them; ``opts`` is changed.
+
+        Returns
+        -------
+        tuple
+            As click wants it.
         """
         text = opts.get("aspect")
         named = ORIENTATION.fullmatch(text.strip()) if isinstance(text, str) else None
@@ -207,28 +312,100 @@ METAVARS = {"length": "LENGTH", "number": "SHARE", "rate": "RATE", "time": "TIME
 
 
 def option(names: str, /, metavar: str | None, text: str, **keywords: Any) -> Callable:
-    """Return an option of a text, or of ``type``; ``former`` are names that it once had."""
+    """Return an option of a text, or of a ``type``.
+
+    Parameters
+    ----------
+    names : str
+        As typed, and the parameter's where it is another one: '--limit seconds'.
+    metavar : str or None
+        The value, as the help shows it.
+    text : str
+        The help.
+    **keywords : object
+        As of ``click.option``; ``former`` are names that it once had.
+
+    Returns
+    -------
+    callable
+        A decorator of a command.
+    """
     return click.option(*names.split(), cls=Option, metavar=metavar, help=text, **keywords)
 
 
 def aspect(text: str, **keywords: Any) -> Callable:
-    """Return the option ``--aspect``: the name of an aspect, or of one of its orientations, 'A@354'."""
+    """Return the option ``--aspect``: the name of an aspect, or of one of its orientations, 'A@354'.
+
+    Parameters
+    ----------
+    text : str
+        The help.
+    **keywords : object
+        As of ``click.option``.
+
+    Returns
+    -------
+    callable
+        A decorator of a command.
+    """
     return click.option("--aspect", cls=AspectOption, metavar="NAME", help=text, **keywords)
 
 
 def flag(names: str, text: str, **keywords: Any) -> Callable:
-    """Return an option without a value."""
+    """Return an option without a value.
+
+    Parameters
+    ----------
+    names, text : str
+        As of ``option``.
+    **keywords : object
+        As of ``click.option``.
+
+    Returns
+    -------
+    callable
+        A decorator of a command.
+    """
     return option(names, None, text, is_flag=True, **keywords)
 
 
 def whole(names: str, low: int, high: int | None, text: str, **keywords: Any) -> Callable:
-    """Return an option of a whole number within limits, which shows its default where it has one."""
+    """Return an option of a whole number within limits, which shows its default where it has one.
+
+    Parameters
+    ----------
+    names, text : str
+        As of ``option``.
+    low : int
+    high : int or None
+        None for any.
+    **keywords : object
+        As of ``click.option``.
+
+    Returns
+    -------
+    callable
+        A decorator of a command.
+    """
     shown = {"show_default": True} if keywords.get("default") else {}
     return option(names, "N", text, type=Whole(low, high), **shown, **keywords)
 
 
 def choice(names: str, choices: Sequence[str], text: str, default: str | None = None) -> Callable:
-    """Return an option of one of several words, which shows its default where it has one."""
+    """Return an option of one of several words, which shows its default where it has one.
+
+    Parameters
+    ----------
+    names, text : str
+        As of ``option``.
+    choices : sequence of str
+    default : str, optional
+
+    Returns
+    -------
+    callable
+        A decorator of a command.
+    """
     shown = {"default": default, "show_default": True} if default else {}
     return option(names, None, text, type=click.Choice(choices), **shown)
 
@@ -237,7 +414,24 @@ path = functools.partial(option, type=Place())  # of a file or a folder
 
 
 def quantity(names: str, dimension: str, default: str, text: str, **more: Any) -> Callable:
-    """Return an option of a quantity with a default, which its help shows; bounds as of ``quantity_type``."""
+    """Return an option of a quantity with a default, which its help shows.
+
+    Parameters
+    ----------
+    names, text : str
+        As of ``option``.
+    dimension : str
+        As of ``quantity_type``.
+    default : str
+        '0 mm'.
+    **more : object
+        As of ``click.option``; ``positive`` and ``most`` as of ``quantity_type``.
+
+    Returns
+    -------
+    callable
+        A decorator of a command.
+    """
     bounds = {name: more.pop(name) for name in ("positive", "most") if name in more}
     more |= {"type": quantity_type(dimension, **bounds), "default": default, "show_default": True}
     return option(names, METAVARS[dimension], text, **more)
@@ -252,20 +446,54 @@ seed = functools.partial(whole, "--seed", 0, None, default=1)
 
 
 def stack_decorators(command: Callable, *decorators: Callable) -> Callable:
-    """Return the command with several decorators, the first outermost: options are listed in this order."""
+    """Return the command with several decorators, the first outermost: options are listed in this order.
+
+    Parameters
+    ----------
+    command : callable
+    *decorators : callable
+
+    Returns
+    -------
+    callable
+    """
     for decorate in reversed(decorators):
         command = decorate(command)
     return command
 
 
 def names(*decorators: Callable) -> list[str]:
-    """Return the names of the parameters that decorators add to a command."""
+    """Return the names of the parameters that decorators add to a command.
+
+    Parameters
+    ----------
+    *decorators : callable
+
+    Returns
+    -------
+    list of str
+    """
     command = stack_decorators(lambda: None, *decorators)
     return [param.name for param in getattr(command, "__click_params__")]  # noqa: B009
 
 
 def group(name: str, *decorators: Callable, pack: Callable = dict) -> Callable:
-    """Return a decorator that adds options; the command receives ``pack`` of them as ``name``."""
+    """Return a decorator that adds options, which the command receives together.
+
+    Parameters
+    ----------
+    name : str
+        Of the command's argument.
+    *decorators : callable
+        An option each.
+    pack : callable, optional
+        Makes the value of that argument from the options as keywords; a dict without it.
+
+    Returns
+    -------
+    callable
+        A decorator of a command.
+    """
     keywords = names(*decorators)
 
     def decorate(command: Callable) -> Callable:
@@ -280,13 +508,34 @@ def group(name: str, *decorators: Callable, pack: Callable = dict) -> Callable:
 
 
 def is_typed(name: str) -> bool:
-    """Return whether the option of a parameter stands on the command line."""
+    """Tell whether the option of a parameter stands on the command line.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter.
+
+    Returns
+    -------
+    bool
+        False of a default, and of one from the environment.
+    """
     context = click.get_current_context()
     return context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
 
 
 def typed_options(*names: str) -> Iterator[str]:
-    """Yield the options, as '--bed', of those parameters that stand on the command line."""
+    """Yield the options, as '--bed', of those parameters that stand on the command line.
+
+    Parameters
+    ----------
+    *names : str
+        Of the parameters.
+
+    Yields
+    ------
+    str
+    """
     for param in click.get_current_context().command.params:
         if param.name in names and is_typed(param.name):
             yield param.opts[0]
@@ -378,7 +627,17 @@ as_published = functools.partial(flag, "--as-published")
 
 
 def parts(command: Callable) -> Callable:
-    """Add PART or many FILEs, and how to read the part: ``sources`` and ``reading``."""
+    """Add PART or many FILEs to a command, and how to read the part.
+
+    Parameters
+    ----------
+    command : callable
+
+    Returns
+    -------
+    callable
+        It receives ``sources`` and ``reading``.
+    """
     sources = click.argument("sources", metavar="PART|FILE...", nargs=-1, type=FILE, required=True)
     return stack_decorators(command, sources, group("reading", *READING))
 

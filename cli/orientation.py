@@ -32,7 +32,17 @@ chain = options.group("chain_options", *CHAIN_OPTIONS)
 
 
 def any_chain(text: str) -> tuple[Callable, ...]:
-    """Return the same options where ``--aspect``, of what the help says, may be left out."""
+    """Return the options of ``chain`` where ``--aspect`` may be left out.
+
+    Parameters
+    ----------
+    text : str
+        The help of ``--aspect``.
+
+    Returns
+    -------
+    tuple of callable
+    """
     return (options.aspect(text), *CHAIN_OPTIONS[1:])
 
 
@@ -58,13 +68,34 @@ share_options_and_seed = options.group("share_options", *SHARE_OPTIONS, FED_SEED
 
 
 def check_heading(request: Values) -> None:
-    """Refuse a heading without the aspect that it is a heading of."""
+    """Refuse a heading without the aspect that it is a heading of.
+
+    Parameters
+    ----------
+    request : dict of str to object
+        Values of the chain's options.
+
+    Raises
+    ------
+    click.UsageError
+    """
     if request["heading"] is not None and request["aspect"] is None:
         raise click.UsageError("--heading is given without --aspect - name the aspect as well")
 
 
 def name(request: Values) -> str | None:
-    """Return the name of the orientation that is asked for, 'A@90', or of its aspect; None where none is."""
+    """Return the name of the orientation that is asked for, or of its aspect.
+
+    Parameters
+    ----------
+    request : dict of str to object
+        Values of the chain's options.
+
+    Returns
+    -------
+    str or None
+        'A@90', 'A'; None where neither is asked for.
+    """
     if request["aspect"] is None or request["heading"] is None:
         return request["aspect"]
     return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
@@ -73,11 +104,29 @@ def name(request: Values) -> str | None:
 def shares_finder(
     out: Output, part: "Part", share_options: Values, request: Values
 ) -> Callable[["Bowl"], "Shares"]:
-    """Return a function from a bowl to the answer that the options name, a ``studies.rate.Shares``.
+    """Return a function from a bowl to the shares of the aspects that the options name.
 
-    Where the options name no answer, parts are fed onto the moving floor of the bowl; a bar shows how far the
-    first bowl is. ``request`` has the rule, and an aspect and a heading, which are refused first if the part
-    has none such.
+    Where the options name none, parts are fed onto the moving floor of the bowl; a bar shows how far the
+    first bowl is.
+
+    Parameters
+    ----------
+    out : Output
+    part : Part
+    share_options : dict of str to object
+        Values of ``SHARE_OPTIONS``.
+    request : dict of str to object
+        With the rule, and an aspect and a heading.
+
+    Returns
+    -------
+    callable
+        From a Bowl to ``studies.rate.Shares``; each bowl is answered once.
+
+    Raises
+    ------
+    ArgumentError
+        If the part has no such aspect or heading.
     """
     from feederscrew.studies import rate as study
 
@@ -94,12 +143,40 @@ def shares_finder(
 
 
 def shares(out: Output, part: "Part", bowl: "Bowl", share_options: Values, request: Values) -> "Shares":
-    """Return what arrives in one bowl, a ``studies.rate.Shares``: ``shares_finder`` called once."""
+    """Return what arrives in one bowl: ``shares_finder`` called once.
+
+    Parameters
+    ----------
+    out : Output
+    part : Part
+    bowl : Bowl
+    share_options, request : dict of str to object
+        As of ``shares_finder``.
+
+    Returns
+    -------
+    Shares
+    """
     return shares_finder(out, part, share_options, request)(bowl)
 
 
 def share_keywords(share_options: Values) -> Values:
-    """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
+    """Return the keywords of ``studies.rate.shares`` that the options name.
+
+    Parameters
+    ----------
+    share_options : dict of str to object
+        Values of ``SHARE_OPTIONS``.
+
+    Returns
+    -------
+    dict of str to object
+
+    Raises
+    ------
+    click.UsageError
+        If two of them clash.
+    """
     launch, fed = share_options["launch"], share_options["fed"]
     own_answers = {"--launch": launch, "--rule": options.is_typed("rule"), "--fed": fed}
     names = [name for name, value in own_answers.items() if value]
@@ -111,7 +188,18 @@ def share_keywords(share_options: Values) -> Values:
 
 
 def progress_keywords(out: Output) -> Values:
-    """Return the keywords of ``studies.rate.shares`` that tell how far it is."""
+    """Return the keywords of ``studies.rate.shares`` that tell how far it is.
+
+    Parameters
+    ----------
+    out : Output
+        Nothing is shown where it is quiet.
+
+    Returns
+    -------
+    dict of str to callable
+        'before' and 'progress'.
+    """
     bar = progress.bar(out, "parts")
 
     def before(drops: int | None) -> None:

@@ -25,7 +25,15 @@ class Progress:
     """A bar on stderr: how many are done, and how long the rest will take.
 
     Where stderr is no terminal, a run that takes longer than ``LINE_EVERY_S`` says where it is, a line each.
-    ``total`` is None where it is not known yet; without ``is_shown`` nothing is said; ``what`` they are.
+
+    Parameters
+    ----------
+    total : int or None
+        None where it is not known yet.
+    is_shown : bool, optional
+        Without it nothing is said.
+    what : str, optional
+        Names what is counted.
     """
 
     shown_bar: "ClassVar[Progress | None]" = None  # the one whose line is not ended
@@ -59,11 +67,25 @@ class Progress:
         self.bar.__enter__()
 
     def tell(self, is_reused: bool) -> None:
-        """Count one more; one that was ``is_reused`` took no time and leaves the bar altogether."""
+        """Count one more.
+
+        Parameters
+        ----------
+        is_reused : bool
+            Whether it took no time: then it leaves the bar altogether.
+        """
         self.reach(self.bar.pos + (not is_reused), self.bar.length - is_reused)
 
     def reach(self, done: int, total: int, widest: float | None = None) -> None:
-        """So many are done of so many, and the widest interval [1] is so wide to either side."""
+        """Show how many are done, and how wide the widest interval is.
+
+        Parameters
+        ----------
+        done, total : int
+            More may be found to be needed than before.
+        widest : float [1], optional
+            Half of the widest interval.
+        """
         now = time.monotonic()
         if self.lines and done < total and now - self.last_line >= LINE_EVERY_S:
             self.last_line, gone = now, now - self.begun
@@ -84,10 +106,15 @@ def end_line() -> None:
 
 
 class StageBar:
-    """How far a run of several stages is: on stderr a bar of the time, elsewhere now and then a line.
+    """Progress of a run of several stages: on stderr a bar of the time, elsewhere now and then a line.
 
-    Without ``is_shown`` nothing is said. A program that runs this one can name a file for it in
-    FEEDER_STAGE_FILE: stage, done, total, seconds gone and to go, and the line that says so, as JSON.
+    A program that runs this one can name a file for it in FEEDER_STAGE_FILE: stage, done, total, seconds gone
+    and to go, and the line that says so, as JSON.
+
+    Parameters
+    ----------
+    is_shown : bool, optional
+        Without it nothing is said.
     """
 
     WIDTH = 24  # letters of the bar
@@ -98,7 +125,17 @@ class StageBar:
         self.notes, self.last_note = os.environ.get(STAGE_VARIABLE), -NOTE_EVERY_S
 
     def reach(self, stage: str, done: int, total: int, gone: float, rest: float) -> None:
-        """So many of a stage are done of so many; ``gone`` and ``rest`` are seconds of the whole run."""
+        """Show how far the run is.
+
+        Parameters
+        ----------
+        stage : str
+            'trial', 'queue' or another name.
+        done, total : int
+            Of that stage.
+        gone, rest : float [s]
+            Of the whole run.
+        """
         text = f"{stage}: {done} of {total}"
         if stage == "queue":
             text = f"queue: {100.0 * done / max(total, 1):.0f} %"
@@ -150,12 +187,31 @@ KERNELS = {  # what waits for the compiler once: its module, and how it is told
 
 
 def tell_compiling(out: "Output", name: str) -> None:
-    """Say so when the first run of a kernel on this machine must wait for the compiler."""
+    """Say so when the first run of a kernel on this machine must wait for the compiler.
+
+    Parameters
+    ----------
+    out : Output
+    name : str
+        Of ``KERNELS``.
+    """
     module, is_compiled, kernel, seconds = KERNELS[name]
     if not getattr(importlib.import_module(module), is_compiled)():
         out.say(f"Compiling {kernel}, once on this machine: about {seconds}.")
 
 
 def bar(out: "Output", what: str) -> Progress:
-    """Return a bar of the ``what`` that are done, where a person waits; hidden elsewhere."""
+    """Return a bar of what is done, where a person waits; hidden elsewhere.
+
+    Parameters
+    ----------
+    out : Output
+    what : str
+        Names what is counted.
+
+    Returns
+    -------
+    Progress
+        Of a total that is not known yet.
+    """
     return Progress(None, not out.quiet, what)

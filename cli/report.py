@@ -80,6 +80,17 @@ def report(part: Values, request_options: Values, share_options: Values, bowl: V
 
 
 def repeat_command(arguments: Iterable[str]) -> str:
-    """Return the command line, of arguments as typed, that gives the same page wherever it is written."""
+    """Return the command line that gives the same page wherever it is written.
+
+    Parameters
+    ----------
+    arguments : iterable of str
+        As typed.
+
+    Returns
+    -------
+    str
+        Without the folder of ``-o`` and the options of what is told.
+    """
     words = [argument for argument in talk.placeless(arguments) if argument not in TALK]
     return shlex.join(["feeder", *words])

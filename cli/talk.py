@@ -39,7 +39,7 @@ OUTPUT_OPTIONS = ("directory", "depfile")  # options that name what is written, 
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """How one call wants its answer; every command prints and writes through it."""
+    """The way in which one call wants its answer; every command prints and writes through it."""
 
     command: str  # the command's name, as run.json records it
     arguments: tuple[str, ...]  # as typed
@@ -56,7 +56,22 @@ class Output:
 
     @classmethod
     def of_call(cls, **options: Any) -> "Output":
-        """The output of the command that is running."""
+        """Return the output of the command that is running.
+
+        Parameters
+        ----------
+        **options : object
+            Values of the options of the output, as fields of this class.
+
+        Returns
+        -------
+        Output
+
+        Raises
+        ------
+        click.UsageError
+            If ``--depfile`` is given without ``-o``.
+        """
         context = click.get_current_context()
         name = context.command_path.removeprefix(context.find_root().command_path).strip()
         if options.get("depfile") and not options["directory"]:
@@ -75,7 +90,13 @@ class Output:
         return out
 
     def warn(self, *texts: str) -> None:
-        """Tell each warning on stderr and keep it for run.json; a detail is told with ``-v`` only."""
+        """Tell each warning on stderr and keep it for run.json.
+
+        Parameters
+        ----------
+        *texts : str
+            Sentences; a ``Detail`` is told with ``-v`` only.
+        """
         for text in texts:
             tell = self.detail if isinstance(text, Detail) else self.say
             warning = translate(text, self.options)
@@ -83,7 +104,13 @@ class Output:
             tell(f"Warning: {warning}")
 
     def say(self, *texts: str) -> None:
-        """Each text as a line on stderr, folded where that is a terminal, unless ``-q``."""
+        """Print each text as a line on stderr, folded where that is a terminal, unless ``-q``.
+
+        Parameters
+        ----------
+        *texts : str
+            With `argument` for an option of the command.
+        """
         width = min(shutil.get_terminal_size().columns, PAGE) if sys.stderr.isatty() else None
         for text in texts:
             if not self.quiet:
@@ -92,23 +119,58 @@ class Output:
                     click.echo(fold_text(printable(translate(text, self.options)), width), err=True)
 
     def fault(self, *texts: object) -> None:
-        """Each fault of one part of many as a line on stderr, with ``-q`` as well: it makes the status 1."""
+        """Print each fault of one part of many as a line on stderr, also with ``-q``: the status is 1 then.
+
+        Parameters
+        ----------
+        *texts : object
+        """
         replace(self, quiet=False).say(*(f"Error: {text}" for text in texts))
 
     def detail(self, text: str) -> None:
-        """One line on stderr, with ``-v`` only."""
+        """Print one line on stderr, with ``-v`` only.
+
+        Parameters
+        ----------
+        text : str
+        """
         if self.verbose:
             self.say(text)
 
     @contextlib.contextmanager
     def step(self, name: str) -> Iterator[None]:
-        """Time what happens inside; said with ``-v``."""
+        """Time the block; said with ``-v``.
+
+        Parameters
+        ----------
+        name : str
+            Of the step.
+
+        Yields
+        ------
+        None
+        """
         start = time.perf_counter()
         yield
         self.detail(f"{name}: {time.perf_counter() - start:.2f} s")
 
     def part(self, keywords: Mapping[str, Any]) -> "Part":
-        """Read the part of ``options.part`` and tell its warnings; the ``Part``."""
+        """Read a part and tell its warnings.
+
+        Parameters
+        ----------
+        keywords : mapping of str to object
+            Values of ``options.part``.
+
+        Returns
+        -------
+        Part
+
+        Raises
+        ------
+        FeederError
+            If it cannot be read, or the folder of ``-o`` cannot take its results.
+        """
         typed = keywords["source"] == "-"  # one who waits for standard input can give it up
         with (
             contextlib.nullcontext() if typed else hold_interrupts(),
@@ -127,7 +189,19 @@ class Output:
         return solid
 
     def check_folder(self, name: str, identity: Mapping[str, str] | None = None) -> None:
-        """Refuse before any work what ``folder`` refuses after it; without ``identity`` its place only."""
+        """Refuse before any work what ``folder`` refuses after it.
+
+        Parameters
+        ----------
+        name : str
+            Of the part or the bowl file.
+        identity : mapping of str to str, optional
+            As of ``folder``; without it only the place is checked.
+
+        Raises
+        ------
+        FeederError
+        """
         if self.directory is not None:
             from feederscrew.output.folder import ResultFolder, check_place, safe_name
 
@@ -139,12 +213,33 @@ class Output:
                 check_place(Path(self.depfile).parent, "give another `depfile`")
 
     def tell_unread(self, *paths: object) -> None:
-        """Say that a bowl file lies in the folder and is not read, where none is named."""
+        """Say that a bowl file lies in the folder and is not read, where none is named.
+
+        Parameters
+        ----------
+        *paths : object
+            Bowl files that the call names, None where it names none.
+        """
         if not any(paths) and Path(UNREAD).is_file():
             self.say(f"{UNREAD} in this folder is not read: add --config {UNREAD} to use it")
 
     def settings(self, bowl: Mapping[str, Any]) -> tuple["Setting", ...]:
-        """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
+        """Read the bowl file and tell what a machine makes of its drive.
+
+        Parameters
+        ----------
+        bowl : mapping of str to object
+            Values of ``options.bowl``.
+
+        Returns
+        -------
+        tuple of Setting
+
+        Raises
+        ------
+        FeederError
+            If the file cannot be read, or a value is wrong.
+        """
         from feederscrew import bowl as bowls
 
         self.tell_unread(bowl["path"])
@@ -155,7 +250,19 @@ class Output:
     def part_in_bowl(
         self, part: Mapping[str, Any], bowl: Mapping[str, Any]
     ) -> tuple["Part", tuple["Setting", ...], "Bowl"]:
-        """Read both; the ``Part``, the settings and the ``Bowl``."""
+        """Read a part and a bowl file.
+
+        Parameters
+        ----------
+        part, bowl : mapping of str to object
+            Values of ``options.part`` and ``options.bowl``.
+
+        Returns
+        -------
+        part : Part
+        settings : tuple of Setting
+        bowl : Bowl
+        """
         from feederscrew.bowl import record
 
         solid, settings = self.part(part), self.settings(bowl)
@@ -171,9 +278,16 @@ class Output:
     ) -> None:
         """Print the document with ``--format json``, else the frame as a table or as CSV.
 
-        A table for people leaves out ``hidden`` columns. Where ``spare`` is given it is no wider than a page.
-        Of these columns, from the first on, as many as that takes are left out, and it says which. Texts of
-        a table that is still wider go on below.
+        Parameters
+        ----------
+        frame : Frame
+        document : mapping of str to object
+        hidden : iterable of str, optional
+            Columns that a table for people leaves out.
+        spare : sequence of sequence of str, optional
+            Where it is given, a table for people is no wider than a page. Of these columns, from the first
+            on, as many as that takes are left out, and it says which. Texts of a table that is still wider go
+            on below.
         """
         from feederscrew.output import tables
 
@@ -197,7 +311,15 @@ class Output:
             self.say(note)
 
     def depend(self, targets: Iterable[Path], inputs: Iterable[str] | None = None) -> None:
-        """Write the rule of ``--depfile``, where it is given: files and what they are made from."""
+        """Write the rule of ``--depfile``, where it is given: files and what they are made from.
+
+        Parameters
+        ----------
+        targets : iterable of Path
+            Files that were written.
+        inputs : iterable of str, optional
+            Files that they are made from; those named on the command line without it.
+        """
         if self.depfile:
             from feederscrew.output import folder
 
@@ -207,11 +329,26 @@ class Output:
     def folder(
         self, name: str, identity: Mapping[str, str], effective: Mapping[str, Any] | None = None
     ) -> Iterator["ResultFolder | None"]:
-        """The folder for this call's files, kept only if all goes well; None without ``-o``.
+        """Yield the folder for this call's files, kept only if all goes well.
 
-        ``name`` is of the part or the bowl file: the folder below ``-o``. ``identity`` has the sha256 of each
-        input by its path, the one that names the folder first; ``effective`` the parameters that led to the
-        numbers, for run.json.
+        Parameters
+        ----------
+        name : str
+            Of the part or the bowl file: that of the folder below ``-o``.
+        identity : mapping of str to str
+            The sha256 of each input by its path, the one that names the folder first.
+        effective : mapping of str to object, optional
+            The parameters that led to the numbers, for run.json.
+
+        Yields
+        ------
+        ResultFolder or None
+            None without ``-o``.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If the user stopped it while it was drawing, once what is there has been written.
         """
         if self.directory is None:
             yield None
@@ -240,7 +377,22 @@ class Output:
         settings: Sequence["Setting"] = (),
         values: Mapping[str, Any] | None = None,
     ) -> contextlib.AbstractContextManager["ResultFolder | None"]:
-        """``folder`` of a part, with further ``inputs``, settings of a bowl file and values of its own."""
+        """Return ``folder`` of a part.
+
+        Parameters
+        ----------
+        solid : Part
+        *inputs : mapping of str to str
+            The sha256 of further inputs by their paths.
+        settings : sequence of Setting, optional
+            Of a bowl file.
+        values : mapping of str to object, optional
+            Further parameters that led to the numbers.
+
+        Returns
+        -------
+        context manager of ResultFolder or None
+        """
         from feederscrew.bowl import texts
         from feederscrew.output.columns import conditions
 
@@ -248,20 +400,52 @@ class Output:
         return self.folder(solid.name, identity, conditions(solid) | texts(settings) | dict(values or {}))
 
     def write(self, folder: "ResultFolder | None", files: Iterable["Offer"], *, jobs: int = 1) -> None:
-        """Make what is offered and put it into ``folder``, unless that is None."""
+        """Make the files that are offered and put them into a folder.
+
+        Parameters
+        ----------
+        folder : ResultFolder or None
+            None: nothing is made.
+        files : iterable of Offer
+        jobs : int, optional
+            Cores to draw on.
+        """
         from feederscrew.output import offers
 
         offers.write(folder, files, pictures=self.pictures, jobs=jobs)
 
 
 def options_by_argument(command: click.Command | None) -> dict[str, str]:
-    """Return the options of a command by the argument they are; of 'config' those of 'show' and 'init'."""
+    """Return the options of a command by the argument they are.
+
+    Parameters
+    ----------
+    command : click.Command or None
+        Of a group, 'config', with those of its commands, 'show' and 'init'.
+
+    Returns
+    -------
+    dict of str to str
+        {'centre_of_mass': '--centre-of-mass'}
+    """
     parts = (command, *getattr(command, "commands", {}).values())
     return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
 
 
 def typed(names: Sequence[str], value: str) -> str:
-    """Return an option with its value as one types it: '--target 60/min', '--set drive.frequency="50 Hz"'."""
+    """Return an option with its value as one types it.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the option, in any order; a long one is taken where there is one.
+    value : str
+
+    Returns
+    -------
+    str
+        '--target 60/min', '--set drive.frequency="50 Hz"'
+    """
     name = next((name for name in names if name.startswith("--")), names[0])
     key, equals, rest = value.partition("=")
     if SAFE_WORD.fullmatch(value):
@@ -272,12 +456,34 @@ def typed(names: Sequence[str], value: str) -> str:
 
 
 def translate(text: str, options: Mapping[str, str]) -> str:
-    """Return a text of the library with `argument` as --option where the command has one, else bare."""
+    """Return a text of the library with `argument` as --option where the command has one, else bare.
+
+    Parameters
+    ----------
+    text : str
+    options : mapping of str to str
+        As ``options_by_argument`` returns them.
+
+    Returns
+    -------
+    str
+    """
     return MARKED.sub(lambda mark: options.get(mark[1], mark[1]), text)
 
 
 def fold_text(text: str, width: int | None) -> str:
-    """Return a text in lines of so many letters, what follows set in; as it stands without a width."""
+    """Return a text in lines of so many letters, those behind the first set in.
+
+    Parameters
+    ----------
+    text : str
+    width : int or None
+        Letters of a line; None leaves the text as it stands.
+
+    Returns
+    -------
+    str
+    """
     if width is None or len(text) <= width:
         return text
     whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
@@ -285,7 +491,16 @@ def fold_text(text: str, width: int | None) -> str:
 
 
 def placeless(arguments: Iterable[str]) -> list[str]:
-    """Return arguments as typed without the folder of ``-o``: the same wherever the results are put."""
+    """Return arguments as typed without the folder of ``-o``: the same wherever the results are put.
+
+    Parameters
+    ----------
+    arguments : iterable of str
+
+    Returns
+    -------
+    list of str
+    """
     words, skip = [], False
     for argument in arguments:
         if not (skip or argument in FOLDER or argument.startswith(("--output=", "-o="))):

@@ -16,7 +16,17 @@ class FilmFile(Place):
     """The name of a film, whose ending says its format."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The name as typed, or a wrong call."""
+        """Return the name as typed, or refuse another ending as a wrong call.
+
+        Parameters
+        ----------
+        value, param, ctx
+            As click gives them.
+
+        Returns
+        -------
+        str
+        """
         if not str(value).lower().endswith(FILMS):
             self.fail(f"{value!r} is not a name for a film - end it in {', '.join(FILMS)}", param, ctx)
         return super().convert(value, param, ctx)

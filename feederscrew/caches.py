@@ -19,7 +19,13 @@ for _flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"):  # those tha
 
 
 def simulation_folder() -> Path | None:
-    """Return the folder of kept simulations, which need not exist; None where none is wanted or known."""
+    """Return the folder of kept simulations.
+
+    Returns
+    -------
+    Path or None
+        It need not exist. None where none is wanted (``FEEDER_CACHE`` is empty) or the user has no home.
+    """
     named = os.environ.get(SIMULATIONS_VARIABLE)
     if named is not None:
         return Path(named) if named else None
@@ -31,13 +37,23 @@ def kernel_folder() -> Path | None:
     """Return the folder of compiled kernels, the first that is safe and can be written.
 
     Candidates are the folder named in NUMBA_CACHE_DIR, the one beside the sources, and the user's own.
-    It need not exist. None where there is no such folder: every kernel is compiled anew then.
+
+    Returns
+    -------
+    Path or None
+        It need not exist. None where there is no such folder: every kernel is compiled anew then.
     """
     return next((folder for folder in _kernel_folders() if _can_hold(folder)), None)
 
 
 def kernel_refusals() -> list[str]:
-    """Return a sentence for each folder of kernels that others could have filled, and how to mend that."""
+    """Return a sentence for each folder of kernels that others could have filled, and how to mend that.
+
+    Returns
+    -------
+    list of str
+        Empty where every candidate of ``kernel_folder`` is safe or does not exist.
+    """
     reasons = ((folder, why_unsafe(folder, KERNELS_VARIABLE)) for folder in _kernel_folders())
     return [f"the kernels in {folder} are not used: {reason}" for folder, reason in reasons if reason]
 
@@ -72,7 +88,18 @@ def why_unsafe(folder: Path, variable: str) -> str | None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder that only its user can read and write, unless it exists. Raises OSError."""
+    """Make a folder that only its user can read and write, unless it exists.
+
+    Parameters
+    ----------
+    folder : Path
+        Folders above it are made, too, as the system makes them.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made.
+    """
     folder.parent.mkdir(parents=True, exist_ok=True)
     folder.mkdir(mode=0o700, exist_ok=True)
 

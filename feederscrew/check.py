@@ -127,7 +127,17 @@ def path(name: str, value: object) -> Any:
 
 
 def frozen(array: ArrayLike) -> Array:
-    """Return the same array, closed to writing: what a record holds must not change under it."""
+    """Return an array that is closed to writing: what a record holds must not change under it.
+
+    Parameters
+    ----------
+    array : array_like [any]
+
+    Returns
+    -------
+    array [any]
+        The array given, now closed, where it is contiguous; else a copy.
+    """
     array = np.ascontiguousarray(array)
     array.setflags(write=False)
     return array
@@ -244,6 +254,10 @@ def choice(name: str, value: str, kinds: type[Chosen]) -> Chosen:
         As the user gave it.
     kinds : type of enum.StrEnum
         The words that there are.
+
+    Returns
+    -------
+    member of ``kinds``
 
     Raises
     ------

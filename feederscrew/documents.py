@@ -33,7 +33,17 @@ class Node:
     items: tuple["Node", ...] = ()  # of a list
 
     def find(self, key: str) -> "Entry | None":
-        """Return the entry of a mapping under this key, or None."""
+        """Return the entry of a mapping under a key.
+
+        Parameters
+        ----------
+        key : str
+
+        Returns
+        -------
+        Entry or None
+            None where the mapping has no such key, or the node is no mapping.
+        """
         return next((entry for entry in self.entries if entry.key == key), None)
 
 
@@ -47,9 +57,23 @@ class Entry:
 
 
 def read(path: str | os.PathLike[str]) -> tuple[Node, list[FeederError]]:
-    """Return the tree of a YAML file, and what is wrong without hiding the rest, as ``load`` does.
+    """Return the tree of a YAML file, and the faults that do not hide the rest.
 
-    Raises ConfigError if the file, named as the user typed it, cannot be read or is a stream.
+    Parameters
+    ----------
+    path : str or path
+        As the user typed it: every ``where`` opens with it.
+
+    Returns
+    -------
+    root : Node
+    faults : list of ConfigError
+        As ``load`` returns them.
+
+    Raises
+    ------
+    ConfigError
+        If the file cannot be read, is a stream, or is not one YAML document.
     """
     if str(path) == "-" or found_as(Path.is_fifo, path):
         what = "is a stream, and a bowl file is read more than once"
@@ -219,7 +243,18 @@ def decoded(data: bytes | bytearray, name: str) -> str:
 
 
 def raise_all(faults: Iterable[FeederError]) -> None:
-    """Raise up to MAX_FAULTS of the faults of a file, in the order of its lines, the first of each place."""
+    """Raise the faults of a file together; without any, do nothing.
+
+    Parameters
+    ----------
+    faults : iterable of FeederError
+        In any order. Of those of one place the first counts.
+
+    Raises
+    ------
+    Faults
+        Up to MAX_FAULTS, in the order of the file's lines, and a line that counts the others.
+    """
     first: dict[str, FeederError] = {}
     for fault in faults:
         first.setdefault(str(fault.where), fault)

@@ -294,7 +294,7 @@ def _spline(entity: Any, sagitta: float) -> list[Point]:
 
 
 def _chords(radius: float, angle: float, sagitta: float) -> int:
-    """How many chords an arc of an angle [rad] takes for none to be farther from it than the sagitta."""
+    """Return how many chords an arc of an angle [rad] takes for none to be off by more than the sagitta."""
     if not radius > 0.0 or not angle > 0.0:
         return 1
     step = min(2.0 * math.acos(max(1.0 - sagitta / radius, 0.0)), MAX_CHORD_ANGLE)
@@ -429,7 +429,12 @@ def _simplified(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def new_document() -> Any:
-    """Return an empty drawing of ``ezdxf`` in millimetres, without a date."""
+    """Return an empty drawing of ``ezdxf`` in millimetres, without a date.
+
+    Returns
+    -------
+    ezdxf.document.Drawing
+    """
     import ezdxf
 
     with _without_a_date(ezdxf.options):
@@ -439,7 +444,17 @@ def new_document() -> Any:
 
 
 def document_bytes(drawing: "Drawing") -> bytes:
-    """Return a drawing of ``new_document`` as the bytes of a DXF file, the same for the same entities."""
+    """Return a drawing as the bytes of a DXF file, the same for the same entities.
+
+    Parameters
+    ----------
+    drawing : ezdxf.document.Drawing
+        Made by ``new_document``; classes of its entities are added to it.
+
+    Returns
+    -------
+    bytes
+    """
     import ezdxf
 
     with _without_a_date(ezdxf.options):

@@ -25,7 +25,16 @@ DAMAGE: tuple[type[Exception], ...] = (  # what other people's readers raise on 
 
 
 def printable(text: str) -> str:
-    """Return a text on one line, with an escape for every letter that a terminal may take for a command."""
+    """Return a text on one line, with an escape for every letter that a terminal may take for a command.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+    """
     letters = " ".join(text.splitlines())
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in letters)
 
@@ -41,10 +50,21 @@ class Detail(str):
 
 
 class FeederError(Exception):
-    """Say where it is, what is wrong and how to mend it; all three are required.
+    """A fault in what the user gave: where it is, what is wrong and how to mend it.
 
     The line is printable, whatever texts of a file are in it. ``value`` is a text that is right in place of
     the wrong one, where one is likely: the command line prints it with its option, to be typed.
+
+    Parameters
+    ----------
+    where : object
+        The file with line and column, or the argument; ``str`` is taken of it.
+    what : str
+        Says what is wrong, as the rest of a sentence: 'is empty'.
+    mend : str
+        Says what to do: 'name a file'.
+    value : str, optional
+        The text that is right.
     """
 
     value: str | None = None
@@ -55,7 +75,7 @@ class FeederError(Exception):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """Every fault as its own line."""
+        """Return every fault as its own line."""
         return (str(self),)
 
 
@@ -83,7 +103,13 @@ class MissingPackage(ArgumentError):
 
 
 class Faults(FeederError):
-    """All faults of one file, reported together."""
+    """All faults of one file, reported together.
+
+    Parameters
+    ----------
+    faults : iterable of FeederError
+        One at least.
+    """
 
     def __init__(self, faults: Iterable[FeederError]) -> None:
         Exception.__init__(self, "\n".join(str(fault) for fault in faults))
@@ -91,5 +117,5 @@ class Faults(FeederError):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """Every fault as its own line."""
+        """Return every fault as its own line."""
         return tuple(str(fault) for fault in self.faults)

@@ -13,5 +13,15 @@ class _Heavy(ModuleType):
 
 
 def heavy(name: str) -> Any:
-    """Return what stands for a module, 'matplotlib.patches', until something of it is needed."""
+    """Return a stand-in for a module until an attribute of it is needed: that imports it.
+
+    Parameters
+    ----------
+    name : str
+        Of the module: 'matplotlib.patches'.
+
+    Returns
+    -------
+    module
+    """
     return _Heavy(name)

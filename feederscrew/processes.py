@@ -41,12 +41,23 @@ class Process:
         theirs.close()  # so that the line breaks when the process does
 
     def give(self, task: Any) -> None:
-        """Send a task; whether the process has ended shows when its result is taken."""
+        """Send a task to the process; it is not waited for.
+
+        Parameters
+        ----------
+        task : object
+            What can be sent between processes. Whether the process has ended shows when its result is taken.
+        """
         with contextlib.suppress(OSError):
             self.line.send(task)
 
     def take(self) -> Any:
-        """Return what became of the task, once it is done.
+        """Return the outcome of the task, once it is done.
+
+        Returns
+        -------
+        object
+            As the job returned it.
 
         Raises
         ------
@@ -59,7 +70,7 @@ class Process:
             raise ProcessEnded from None
 
     def stop(self) -> None:
-        """End it, whatever it does."""
+        """End the process, whatever it does."""
         self._process.kill()
         self._process.join()
         self.line.close()
@@ -68,7 +79,15 @@ class Process:
 def server_context(preload: Sequence[str]) -> Any:
     """Return the context whose processes are forked from one that imports some modules, once.
 
-    Where the system has none, each process begins anew.
+    Parameters
+    ----------
+    preload : sequence of str
+        Names of the modules.
+
+    Returns
+    -------
+    multiprocessing context
+        Where the system cannot fork, each process begins anew.
     """
     methods = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")

@@ -111,7 +111,17 @@ class ReadableRecord:
 
 
 def text(record: Any) -> str:
-    """Return a record in a line: its fields, arrays by their shape, long ones cut."""
+    """Return a record in a line: its fields, arrays by their shape, long ones cut.
+
+    Parameters
+    ----------
+    record : dataclass instance
+
+    Returns
+    -------
+    str
+        'Part(name='nut', ...)'. Fields that are None, or not of the ``repr``, are left out.
+    """
     parts: list[str] = []
     for field in fields(record):
         value = getattr(record, field.name)

@@ -9,7 +9,7 @@ STAGE_VARIABLE = "FEEDER_STAGE_FILE"  # names a file in which a run of several s
 
 @dataclass(frozen=True)
 class OnCores:
-    """On how many cores something is made that depends on nothing else, and who is told of it."""
+    """Settings of work whose pieces do not depend on each other: on how many cores, and who is told of it."""
 
     jobs: int | None = None  # all there are without it
     progress: Callable[..., None] | None = None  # told how much is done, and of how much
@@ -23,7 +23,7 @@ class OnCores:
 
 @dataclass(frozen=True)
 class RunSettings:
-    """What is the same for every run of parts: no field but the seed changes an outcome."""
+    """Settings that are the same for every run of parts: no field but the seed changes an outcome."""
 
     seed: int = 1  # of all that is drawn at random
     jobs: int = 1  # cores to use
@@ -36,7 +36,13 @@ class RunSettings:
             self.before()
 
     def tell(self, done: int, total: int) -> None:
-        """Tell how much is done, and of how much, where somebody asks."""
+        """Tell how much is done, and of how much, where somebody asks.
+
+        Parameters
+        ----------
+        done, total : int
+            In the units of whoever runs: parts, drops, periods of the drive.
+        """
         if self.progress:
             self.progress(done, total)
 

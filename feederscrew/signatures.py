@@ -31,7 +31,18 @@ class ShownSignature(inspect.Signature):
 
 
 def with_shown_signature(function: Function) -> Function:
-    """Return a function whose ``help()`` has lines that fit a screen; its parameters stay the same."""
+    """Return a function whose ``help()`` has lines that fit a screen; a decorator.
+
+    Parameters
+    ----------
+    function : callable
+        Its parameters stay the same; ``__signature__`` is set on it.
+
+    Returns
+    -------
+    callable
+        The function given.
+    """
     signature = inspect.signature(function)
     shown = ShownSignature([*signature.parameters.values()], return_annotation=signature.return_annotation)
     function.__signature__ = shown  # type: ignore[attr-defined]

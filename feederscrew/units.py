@@ -89,10 +89,21 @@ class PhysicalQuantity(Protocol):
 
     @property
     def magnitude(self) -> Any:
-        """Its number in its own unit."""
+        """Return its number in its own unit."""
 
     def to(self, other: Any, /) -> Any:
-        """Return the same quantity in another unit."""
+        """Return the same quantity in another unit.
+
+        Parameters
+        ----------
+        other : object
+            The unit, as the other library takes it: a text for pint.
+
+        Returns
+        -------
+        object
+            A quantity of the other library.
+        """
 
 
 Quantity: TypeAlias = str | float | PhysicalQuantity  # '2 mm', a number in SI units, or of pint
@@ -199,7 +210,24 @@ def factor(unit: str, dimension: str) -> float:
 
 
 def split(text: str) -> tuple[float, str]:
-    """Return the number and unit of '0.5 mm', as (0.5, 'mm'); raises QuantityError where no number leads."""
+    """Return the number and the unit of a quantity as typed.
+
+    Parameters
+    ----------
+    text : str
+        '0.5 mm'. '°', '²' and the like are read as 'deg' and '2'.
+
+    Returns
+    -------
+    number : float [as typed]
+    unit : str
+        'mm'; '' where there is none. It need not be a unit that is known.
+
+    Raises
+    ------
+    QuantityError
+        If no finite number leads, or it has a comma: '1,5' may mean 1.5, '1,250' 1.25 or 1250.
+    """
     plain = text.strip().translate(UNIT_CHARACTERS)
     if COMMA.match(plain):
         whole, _, rest = plain.partition(",")
@@ -219,7 +247,22 @@ def split(text: str) -> tuple[float, str]:
 
 
 def decimal(text: str) -> float:
-    """Return a plain finite number of the digits 0 to 9, as a file writes it; else raises QuantityError."""
+    """Return a plain finite number of the digits 0 to 9, as a file writes it.
+
+    Parameters
+    ----------
+    text : str
+        '-1.5e-3', blanks around it are left out.
+
+    Returns
+    -------
+    float [as written]
+
+    Raises
+    ------
+    QuantityError
+        If it is anything else: 'nan', '1_000', '1,5'.
+    """
     match = NUMBER_PATTERN.fullmatch(text.strip())
     number = float(match.group()) if match else math.nan
     if not math.isfinite(number):
@@ -228,13 +271,33 @@ def decimal(text: str) -> float:
 
 
 def one_line(text: str) -> str:
-    """Return a user's text fit for a message: printable, on one line and not too long."""
+    """Return a user's text fit for a message.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+        Printable, on one line, of 40 letters at most: longer ones end in '...'.
+    """
     line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return line if len(line) <= 40 else f"{line[:37]}..."
 
 
 def quoted(text: str) -> str:
-    """Return a text as YAML takes it on one line: as it is where it is plain, else in double quotes."""
+    """Return a text as YAML takes it on one line.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+        As it is where it is plain, else in double quotes.
+    """
     return text if PLAIN_YAML.fullmatch(text) else json.dumps(text, ensure_ascii=False)
 
 
@@ -257,13 +320,33 @@ def counted(number: int, noun: str, several: str | None = None) -> str:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names for people: 'A', 'A and B', 'A, B and C'."""
+    """Return names for people: 'A', 'A and B', 'A, B and C'.
+
+    Parameters
+    ----------
+    names : iterable of str
+        One at least.
+
+    Returns
+    -------
+    str
+    """
     *most, last = names
     return f"{', '.join(most)} and {last}" if most else last
 
 
 def quantity_text(text: str) -> str:
-    """Return a user's text fit for a message, in quotes."""
+    """Return a user's text fit for a message, in quotes.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+        ``one_line`` of it between single quotes.
+    """
     return f"'{one_line(text)}'"
 
 

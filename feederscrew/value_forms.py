@@ -38,7 +38,19 @@ def quantity(dimension: str, lowest: str | None = None, highest: str | None = No
 
 
 def pattern(dimension: str) -> str:
-    """Return the regular expression of a quantity as a bowl file writes it."""
+    """Return the regular expression of a quantity as a bowl file writes it.
+
+    Parameters
+    ----------
+    dimension : str
+        Of ``units``.
+
+    Returns
+    -------
+    str
+        Of number and unit, in every spelling that ``units.quantity`` reads; the unit may be left out where
+        the dimension is a plain number.
+    """
     spelt = [
         *units.UNITS_BY_DIMENSION[dimension],
         *(name for name, unit in units.SPELLINGS.items() if unit in units.UNITS_BY_DIMENSION[dimension]),
@@ -55,17 +67,50 @@ def _loose(unit: str) -> str:
 
 
 def either(*forms: dict[str, Any]) -> dict[str, Any]:
-    """Return the form of what is written in one of several ways."""
+    """Return the form of a value that is written in one of several ways.
+
+    Parameters
+    ----------
+    *forms : dict
+        JSON Schema of each.
+
+    Returns
+    -------
+    dict
+    """
     return {"anyOf": list(forms)}
 
 
 def by_name(form: dict[str, Any]) -> dict[str, Any]:
-    """Return the form of values of one form, each with a name, one at least."""
+    """Return the form of values of one form, each with a name, one at least.
+
+    Parameters
+    ----------
+    form : dict
+        JSON Schema of a value.
+
+    Returns
+    -------
+    dict
+    """
     return {"type": "object", "minProperties": 1, "additionalProperties": form}
 
 
 def mapping(optional: Sequence[str] = (), /, **values: dict[str, Any]) -> dict[str, Any]:
-    """Return the form of a mapping of exactly these keys; one that Python keeps for itself ends in '_'."""
+    """Return the form of a mapping of exactly these keys.
+
+    Parameters
+    ----------
+    optional : sequence of str, optional
+        Keys that may be missing.
+    **values : dict
+        JSON Schema of the value of each key. A key that Python keeps for itself ends in '_': 'from_' is
+        'from'.
+
+    Returns
+    -------
+    dict
+    """
     named = {name.rstrip("_"): value for name, value in values.items()}
     needed = [name for name in named if name not in optional]
     return {"type": "object", "properties": named, "required": needed, "additionalProperties": False}

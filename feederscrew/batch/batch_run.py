@@ -175,7 +175,7 @@ def _digest(record: dict[str, Any]) -> str:
 
 
 def _is_possible(record: dict[str, Any]) -> bool:
-    """Whether the kinds of a record's values and the order of its interval are those of a result."""
+    """Tell whether the kinds of a record's values and the order of its interval are those of a result."""
     row, inputs = record["row"], record["inputs"]
     kinds = (("row", dict), ("files", dict), ("inputs", list), ("warnings", list), ("effective", dict))
     if not all(isinstance(record[name], kind) for name, kind in kinds):

@@ -113,7 +113,7 @@ def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = No
 
 
 def _titles(sources: set[str]) -> dict[str, str]:
-    """What each file is called: its name, and as many of its folders as tell it from others of that name."""
+    """Return each file's title: its name, and as many folders as tell it from others of that name."""
     titles = {source: Path(source).name for source in sources}
     length = dict.fromkeys(sources, 1)
     while len(several := [name for name, count in Counter(titles.values()).items() if count > 1]):

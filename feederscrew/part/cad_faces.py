@@ -162,7 +162,7 @@ def refuse_wrong_sides(
 
 
 def _box(points: Floats) -> tuple[Vector, Vector]:
-    """Least and largest coordinates of points (..., 3); of none a box that nothing leaves."""
+    """Return least and largest coordinates of points (..., 3); without points a box that nothing leaves."""
     points = points.reshape(-1, 3)
     if not len(points):
         return np.full(3, -np.inf), np.full(3, np.inf)
@@ -170,7 +170,7 @@ def _box(points: Floats) -> tuple[Vector, Vector]:
 
 
 def _surface_title(surface: dict[str, Any], unit: str) -> str:
-    """What a face lies on, for people: ', a sphere of radius 60 mm'."""
+    """Return the surface that a face lies on, for people: ', a sphere of radius 60 mm'."""
     radius = surface.get("radius", surface.get("minor_radius"))
     if radius is None:
         return f", a {surface['type']}" if surface["type"] else ""
@@ -237,7 +237,7 @@ def _side(normal: Vector) -> int:
 
 
 def _signature(surface: dict[str, Any]) -> Signature:
-    """What tells a surface from the others of its part, alike from the file and from the kernel."""
+    """Return what tells a surface from the others of its part, alike from the file and from the kernel."""
     kind = surface["type"]
     if kind == "plane":
         normal = np.array(surface["normal"], dtype=float) + 0.0

@@ -75,9 +75,26 @@ SMALLEST_QUANTITY_SI, LARGEST_QUANTITY_SI = 1e-18, 1e9  # of every length, area,
 def read_card(file: PartFile) -> Part:
     """Return a part from a part card, a ``PartFile``: without volume, density and surface.
 
-    Raises Faults with every fault of the card, one a line; ConfigError if it is not YAML. Where print gives
-    an inertia matrix whose halves differ in sign alone, the card keeps it as printed; the upper half is used
-    and a warning says so. Their mean would lose the product of inertia.
+    Where print gives an inertia matrix whose halves differ in sign alone, the card keeps it as printed; the
+    upper half is used and a warning says so. Their mean would lose the product of inertia.
+
+    Parameters
+    ----------
+    file : PartFile
+        The bytes of a YAML file with the keys of ``CARD_KEYS``.
+
+    Returns
+    -------
+    Part
+        Its ``vertices``, ``faces`` and ``hull`` are None; ``aspects`` and ``printed`` hold the published
+        data.
+
+    Raises
+    ------
+    Faults
+        With every fault of the card, one a line.
+    ConfigError
+        If the file is not YAML, or not a block of 'key: value' lines.
     """
     root, faults = documents.load(file.data, file.where)
     if root.kind != "mapping":
@@ -225,7 +242,24 @@ ASPECT_LINE_EXAMPLE = "write a line an aspect such as 'head_up: [0, 0, -1]' belo
 def read_aspect_names(path: str | PathLike[str]) -> AspectNames:
     """Return the names of a YAML file: below 'aspects:' one line 'name: [x, y, z]' an aspect.
 
-    Raises Faults with every fault of the file, one a line; ConfigError if it cannot be read or is not YAML.
+    The vector points down when the part rests on that aspect, in the axes of the part file; its length does
+    not matter.
+
+    Parameters
+    ----------
+    path : str or path
+        '-' is refused: standard input is for the part.
+
+    Returns
+    -------
+    AspectNames
+
+    Raises
+    ------
+    Faults
+        With every fault of the file, one a line.
+    ConfigError
+        If the file cannot be read or is not YAML.
     """
     if str(path) == "-":
         raise ConfigError("-", "standard input is for the part", "save the names and give the file")

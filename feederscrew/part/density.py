@@ -75,8 +75,22 @@ MATERIAL_BY_NAME = {name: material for material in MATERIALS for name in (materi
 def find_density(text: str | None = None) -> tuple[float, str]:
     """Return a density [kg/m3] and what to call it: DEFAULT_MATERIAL, 'brass', '7.85 g/cm3'.
 
-    ``text`` is '7.85 g/cm3' or the name of a material; without it, steel. Raises ArgumentError if it names no
-    known material, is not a density, or is one that no solid has.
+    Parameters
+    ----------
+    text : str, optional
+        '7.85 g/cm3', or the name of a material in any case, 'stainless_steel'. Without it, steel.
+
+    Returns
+    -------
+    density : float [kg/m3]
+    name : str
+        The name of the material, or the text with its blanks tidied.
+
+    Raises
+    ------
+    ArgumentError
+        If the text names no known material, is not a density, or is one that no solid has: below
+        ``LIGHTEST_SOLID_KG_M3`` or above ``HEAVIEST_SOLID_KG_M3``. Its ``value`` is what was probably meant.
     """
     if text is None:
         return MATERIAL_BY_NAME[DEFAULT_MATERIAL_NAME].density, DEFAULT_MATERIAL

@@ -49,7 +49,18 @@ class CadFaces:
     is_wrong: Bools  # (N,) whether its facets are on the wrong side of its edges
 
     def of_body(self, facets: Ints) -> "CadFaces":
-        """Return the faces of some facets (K,); those of others are neither turned nor wrong."""
+        """Return the faces as they concern some facets alone.
+
+        Parameters
+        ----------
+        facets : (K,) int
+            Indices of the facets that are kept.
+
+        Returns
+        -------
+        CadFaces
+            Of those K facets. A face with none of them keeps its title, and is neither turned nor wrong.
+        """
         used = np.zeros(len(self.titles), dtype=bool)
         used[self.of_facet[facets]] = True
         return CadFaces(
@@ -151,9 +162,21 @@ CARD_LINE = re.compile(rb"(?m)^(?:mass|centre_of_mass|inertia|aspects|floor|trac
 
 
 def detect_format(data: bytes | bytearray, suffix: str = "") -> tuple[str | None, str | None]:
-    """Return the format of a part file, a key of ``MESH_FORMATS``, or None and what the file is instead.
+    """Detect the format of a part file by its bytes; the suffix decides only where they do not.
 
-    Of all its bytes, and the suffix of its name: lower case, without the dot.
+    Parameters
+    ----------
+    data : bytes
+        The whole file: a binary STL is known by its length.
+    suffix : str, optional
+        Of the file's name: lower case, without the dot.
+
+    Returns
+    -------
+    format : str or None
+        A key of ``MESH_FORMATS`` or ``CARD_FORMAT``; None for a file of no known format.
+    alien : str or None
+        Where the format is None, what the file is instead: the middle of an error line.
     """
     size = STL_HEADER_BYTES + STL_FACET_BYTES * claimed_facets(data)
     if len(data) > STL_HEADER_BYTES and len(data) == size:
@@ -180,19 +203,47 @@ def detect_format(data: bytes | bytearray, suffix: str = "") -> tuple[str | None
 
 
 def claimed_facets(data: bytes | bytearray) -> int:
-    """Return the facet count in the header of a binary STL."""
+    """Return the facet count in the header of a binary STL.
+
+    Parameters
+    ----------
+    data : bytes
+        The file; its bytes 80 to 83 hold the count, lowest byte first.
+
+    Returns
+    -------
+    int
+        The count as announced: the file may hold another number. Anything where the file is no binary STL.
+    """
     return int.from_bytes(data[STL_HEADER_BYTES - 4 : STL_HEADER_BYTES], "little")
 
 
 def mask_non_ascii(text: bytes) -> bytes:
-    """Return the text with '?' for every letter beyond ASCII: numbers have none, names and comments do."""
+    """Return the text with '?' for every letter beyond ASCII: numbers have none, names and comments do.
+
+    Parameters
+    ----------
+    text : bytes
+
+    Returns
+    -------
+    bytes
+        As long as the text.
+    """
     return text.translate(ASCII_ONLY)
 
 
 def refuse_size(corners: int, facets: int) -> None:
     """Refuse numbers of corners or facets, announced or counted so far, that no fed part needs.
 
-    Raises TooManyFacetsError above ``MAX_READ_CORNERS`` or ``MAX_READ_FACETS``.
+    Parameters
+    ----------
+    corners, facets : int
+
+    Raises
+    ------
+    TooManyFacetsError
+        Above ``MAX_READ_CORNERS`` or ``MAX_READ_FACETS``.
     """
     for count, most, noun in ((facets, MAX_READ_FACETS, "facets"), (corners, MAX_READ_CORNERS, "corners")):
         if count > most:
@@ -200,7 +251,17 @@ def refuse_size(corners: int, facets: int) -> None:
 
 
 def refuse_text_size(data: bytes | bytearray) -> None:
-    """Raise TooManyFacetsError where a mesh in text is larger than ``MAX_TEXT_BYTES``."""
+    """Refuse a mesh in text that is larger than ``MAX_TEXT_BYTES``.
+
+    Parameters
+    ----------
+    data : bytes
+
+    Raises
+    ------
+    TooManyFacetsError
+        If it is larger.
+    """
     if len(data) > MAX_TEXT_BYTES:
         raise TooManyFacetsError(f"is text of more than {MAX_TEXT_BYTES >> 20} MB")
 
@@ -219,10 +280,27 @@ class Decimals:
         self.grouped = True  # whether every comma has three digits behind it
 
     def read(self, words: list[bytes]) -> Floats:
-        """Return words as (N,) numbers [unit of the file].
+        """Return words as numbers, and note in which notation they are written.
 
-        Raises CommaError if there are commas in other places than that of a decimal point, or points in other
-        numbers; ValueError if a word is not a number.
+        Decimal commas are read as decimal points, exponents of D (Fortran) as E. Notations count over all
+        calls: a file with points and commas is refused wherever the second turns up.
+
+        Parameters
+        ----------
+        words : list of bytes
+            One number each.
+
+        Returns
+        -------
+        (N,) float [unit of the file]
+
+        Raises
+        ------
+        CommaError
+            If there are commas in other places than that of a decimal point, points in other numbers, or
+            commas that may part thousands.
+        ValueError
+            If a word is not a number.
         """
         text = b" ".join(words)
         if b"_" in text:
@@ -249,7 +327,7 @@ class Decimals:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to say of the numbers that were read."""
+        """Return a sentence for each notation that was read in place of the usual one."""
         commas = ("its numbers have decimal commas: read as decimal points",) if self.commas else ()
         return (
             *commas,
@@ -263,11 +341,28 @@ MAX_FACET_CORNERS = 20_000  # of one facet
 
 
 def split_facets(vertices: Floats, sizes: Ints, corners: Ints) -> tuple[Ints, Ints]:
-    """Split facets into triangles (F, 3), concave ones within their outline, and say of which (F,) each is.
+    """Split facets into triangles, concave ones within their outline, and say which facet each is of.
 
-    ``sizes`` (N,) are the corners of each facet, and ``corners`` those corners, facet after facet; a facet of
-    fewer than three gives no triangle. Raises ValueError if a facet names a corner that is not there, has too
-    many corners, or its outline crosses itself.
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    sizes : (N,) int
+        The number of corners of each facet; one of fewer than three gives no triangle.
+    corners : (sum of sizes,) int
+        Those corners as rows of ``vertices``, facet after facet.
+
+    Returns
+    -------
+    triangles : (F, 3) int
+        In the order of the facets.
+    facet : (F,) int
+        The facet that each triangle is of.
+
+    Raises
+    ------
+    DamageError
+        If a facet names a corner that is not there, has more than ``MAX_FACET_CORNERS`` corners, or its
+        outline crosses itself.
     """
     if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
         raise DamageError("a facet names a corner that is not there")
@@ -319,9 +414,24 @@ HARMLESS_SIZE_BYTES = 1 << 24  # [bytes] below it any packing is harmless
 
 
 def open_archive(data: bytes) -> zipfile.ZipFile:
-    """Return an archive of not too many members.
+    """Open a ZIP archive of at most ``MAX_ARCHIVE_MEMBERS`` members.
 
-    Raises BombError if it has too many members; zipfile.BadZipFile, ValueError if it is damaged.
+    Parameters
+    ----------
+    data : bytes
+        The whole archive.
+
+    Returns
+    -------
+    zipfile.ZipFile
+        To be closed by the caller, as by ``with``.
+
+    Raises
+    ------
+    BombError
+        If it has too many members.
+    zipfile.BadZipFile, ValueError
+        If it is damaged.
     """
     if data.count(b"PK\x01\x02") > MAX_ARCHIVE_MEMBERS:  # the mark of an entry
         raise BombError(f"is an archive of more than {MAX_ARCHIVE_MEMBERS} files")
@@ -332,10 +442,26 @@ def open_archive(data: bytes) -> zipfile.ZipFile:
 
 
 def unpack_pieces(archive: zipfile.ZipFile, name: str, most: int = MAX_MESH_BYTES) -> Iterator[bytes]:
-    """Unpack a member piece by piece, up to ``most`` bytes.
+    """Unpack a member of an archive piece by piece, of a megabyte each.
 
-    Raises BombError as soon as more is unpacked than that, or than a mesh of its packed size can be;
-    ValueError if it is locked by a password, packed in a way that is not read, or damaged.
+    Parameters
+    ----------
+    archive : zipfile.ZipFile
+    name : str
+        Of the member.
+    most : int [bytes], optional
+        That it may unpack to.
+
+    Yields
+    ------
+    bytes
+
+    Raises
+    ------
+    BombError
+        As soon as more is unpacked than ``most``, or than a mesh of its packed size can be.
+    ValueError
+        If the member is locked by a password, packed in a way that is not read, or damaged.
     """
     entry, size = archive.getinfo(name), 0
 

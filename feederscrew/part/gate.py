@@ -34,13 +34,34 @@ def take_together(
 ) -> tuple[Points, Triangles, tuple[str, ...]]:
     """Turn each body outwards and each cavity into it, unite the bodies that overlap, and say so.
 
-    ``faces`` are closed; ``shell`` (F,) int: which closed surface each facet belongs to; ``volume`` (S,)
-    [cubed unit of the file]: that each encloses, negative where it faces inwards. Raises MeshError if it is
-    open to doubt what is material: a cavity within a cavity, or one that crosses a surface; also if bodies
-    overlap and cannot be united.
-
     What lies in no other surface is a body. What lies in a body and faces the other way is its cavity; facing
     the same way it is material that is counted once. What lies in a cavity and faces the other way is a body.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+        Of S closed surfaces.
+    shell : (F,) int
+        The closed surface that each facet belongs to.
+    volume : (S,) float [cubed unit of the file]
+        That each surface encloses, negative where it faces inwards.
+    where, unit : str
+        The file and its unit, for error lines.
+
+    Returns
+    -------
+    vertices : (V', 3) float [unit of the file]
+    faces : (F', 3) int
+        Of all bodies, facing out of the material.
+    warnings : tuple of str
+        A sentence for everything that was done.
+
+    Raises
+    ------
+    MeshError
+        If it is open to doubt what is material: a cavity within a cavity, or one that crosses a surface. Also
+        if bodies overlap and cannot be united, or if there are more than ``MAX_TOGETHER_BODIES``.
     """
     if len(volume) > MAX_TOGETHER_BODIES:
         raise MeshError(where, f"holds {len(volume)} closed surfaces", SAVE_APART)
@@ -170,10 +191,32 @@ class SelfCutError(MeshError):
 def check_surface(
     vertices: Points, faces: Triangles, where: str, unit: str, allow_open: bool = False
 ) -> CheckedSurface:
-    """One solid from loose triangles; with ``allow_open`` an open surface or several bodies as they are.
+    """Make one solid of loose triangles: weld, mend, close, turn outwards; refuse what bounds no solid.
 
-    ``where`` and ``unit`` are of the file, for the lines of faults. Raises MeshError if the triangles bound
-    no volume, do not close, or bound more than one body.
+    Every step that changes the surface leaves a warning.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+        As the file has them, maybe not finite.
+    faces : (F, 3) int
+    where, unit : str
+        The file and its unit, for error lines.
+    allow_open : bool, optional
+        Whether an open surface, several bodies, or facets that cut each other deeply are taken as they are;
+        wide cracks are joined then.
+
+    Returns
+    -------
+    CheckedSurface
+
+    Raises
+    ------
+    MeshError
+        If the triangles bound no volume, do not close, pass through themselves, have moments that no body
+        has, or lie so far from the origin that single precision has lost their shape.
+    SeveralBodiesError
+        If they bound more than one body.
     """
     vertices, faces = _drop_infinite(vertices, faces, where, unit)
     facets = len(faces)
@@ -258,12 +301,23 @@ def check_surface(
 
 
 def check_hull(surface: CheckedSurface, hull_volume: float, where: str, unit: str) -> None:
-    """Refuse a surface that encloses more than its convex hull, in cubed units, or less than any part.
+    """Refuse a surface that encloses more than its convex hull, or less of it than any part does.
 
-    ``hull_volume`` is that of the hull of all corners: the part's own hull leaves out corners of a plate's
-    faces that rounding lifts, and with them as much as ten times what rounding changes in the volume.
     A wire of 0.3 mm along three edges of a cube of 100 mm fills 1.3e-4 of its hull; a surface whose facets
-    hang together nowhere fills what rounding leaves. Raises MeshError.
+    hang together nowhere fills what rounding leaves.
+
+    Parameters
+    ----------
+    surface : CheckedSurface
+    hull_volume : float [cubed unit of the file]
+        Of the hull of all corners. The part's own hull leaves out corners of a plate's faces that rounding
+        lifts, and with them as much as ten times what rounding changes in the volume.
+    where, unit : str
+        The file and its unit, for error lines.
+
+    Raises
+    ------
+    MeshError
     """
     volume = surface.solid.volume
     if volume > hull_volume * (1.0 + HULL_OVERLAP_SHARE):
@@ -292,7 +346,7 @@ def _drop_infinite(vertices: Points, faces: Triangles, where: str, unit: str) ->
 def _enclose_open(
     vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
 ) -> Enclosed:
-    """What an open surface encloses with its holes filled in; none of its facets is known to cut others."""
+    """Return what an open surface encloses, holes filled in; none of its facets is known to cut others."""
     open_edges = int(np.abs(edges.net).sum())
     if open_edges > MAX_OPEN_EDGES:
         raise MeshError(where, f"the surface is open: {open_edges} edges without a neighbour", EXPORT_SOLID)
@@ -383,16 +437,25 @@ NARROW_STRETCH_SHARE = 1e-2  # [1] of the axis: shorter stretches are not looked
 
 
 def unseen_facets(vertices: Points, faces: Triangles, solid: mass.Solid) -> Ints:
-    """Return the facets (N,) of a closed surface among which are all that cut each other.
-
-    ``solid`` is what they enclose. None of a surface that the axis sees whole; also those for which rounding
-    might decide it.
+    """Return the facets of a closed surface among which are all that cut each other.
 
     The axis is a segment of the line about which the part is most slender. Every point off it has a foot, the
     nearest point of the segment, and the rays from each foot through the points that have it fill space once.
     Of the facets that a ray meets, those that face away from its foot less those that face it are as many as
     the turns of the surface round the foot. Where all with a foot there face away and the surface goes round
     once, every ray meets one facet. Beside a line along which two facets cut each other it would meet both.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    solid : Solid
+        Volume, centroid and inertia of what they enclose, in powers of that unit.
+
+    Returns
+    -------
+    (N,) int
+        Empty for a surface that the axis sees whole. Facets for which rounding might decide are among them.
     """
     along, across = vectors.eigen(solid.inertia)[1].T[:2]
     axes = np.array([along, across, vectors.cross(along, across)])
@@ -454,10 +517,25 @@ NO_CROSSINGS = Crossings(np.empty((0, 2), dtype=int), np.empty(0), np.empty((0, 
 
 
 def find_crossings(vertices: Points, faces: Triangles, tolerance: float) -> Crossings:
-    """Find the facets that cut others they share no side with, deeper than the ``tolerance``.
+    """Find the facets that cut others they share no side with, deeper than a tolerance.
 
-    None are looked for in more than ``MAX_CROSSING_FACETS`` facets, nor after ``MAX_BOX_PAIRS`` pairs.
-    Source: T. Möller, "A fast triangle-triangle intersection test", J. Graphics Tools 2(2), 25-30, 1997.
+    None are looked for in more than ``MAX_CROSSING_FACETS`` facets, nor after ``MAX_BOX_PAIRS`` pairs of
+    boxes.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    tolerance : float [unit of the file]
+        Corners this near to the plane of another facet lie on it; a cut must be longer, too.
+
+    Returns
+    -------
+    Crossings
+
+    References
+    ----------
+    T. Möller, "A fast triangle-triangle intersection test", J. Graphics Tools 2(2), 25-30, 1997.
     """
     corners = vertices[faces]
     # unit normals; zero for a facet without area

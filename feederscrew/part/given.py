@@ -45,13 +45,33 @@ Given: TypeAlias = TriangleMesh | tuple[ArrayLike, ArrayLike]
 
 
 def cad_library(source: object) -> str | None:
-    """Return 'build123d' or 'cadquery' for a solid or a workplane of it, None for anything else."""
+    """Return the library that a solid or a workplane is of.
+
+    Parameters
+    ----------
+    source : object
+
+    Returns
+    -------
+    str or None
+        'build123d' or 'cadquery'; None for anything else.
+    """
     modules = (kind.__module__.partition(".")[0] for kind in type(source).__mro__)
     return next((name for name in modules if name in CAD_LIBRARIES), None)
 
 
 def is_given(source: object) -> bool:
-    """Return whether a part is an object in memory, and no path."""
+    """Tell whether a part is an object in memory: a mesh, corners with facets, or a solid of CAD.
+
+    Parameters
+    ----------
+    source : object
+
+    Returns
+    -------
+    bool
+        False for a path, and for a ``Part``, which has been loaded already.
+    """
     is_mesh = isinstance(source, (tuple, list, TriangleMesh)) and not isinstance(source, ReadableRecord)
     return is_mesh or cad_library(source) is not None  # a Part has been loaded
 
@@ -59,7 +79,17 @@ def is_given(source: object) -> bool:
 def read_mesh(source: Any) -> tuple[PartFile, Soup]:
     """Return the triangles of a mesh or of (vertices, faces), and what to call them.
 
-    They are in metres, unless the mesh says its unit (``mesh.units`` of trimesh).
+    Parameters
+    ----------
+    source : TriangleMesh or (vertices, faces)
+        Corners (V, 3) in metres, unless the mesh says its unit (``mesh.units`` of trimesh), and facets (F,
+        3).
+
+    Returns
+    -------
+    file : PartFile
+        A name and a digest of corners and facets; no bytes.
+    soup : Soup
 
     Raises
     ------
@@ -91,6 +121,17 @@ def read_mesh(source: Any) -> tuple[PartFile, Soup]:
 def export_solid(source: Any, folder: Path) -> Path:
     """Write a solid of build123d or cadquery as STL into a folder, by its library, and return the file.
 
+    Parameters
+    ----------
+    source : object
+        A solid, a builder, a workplane or an assembly of one of ``CAD_LIBRARIES``.
+    folder : Path
+
+    Returns
+    -------
+    Path
+        Named after the label of the solid, or 'part.stl'; lengths in mm, facets within ``CAD_TOLERANCE_MM``.
+
     Raises
     ------
     ArgumentError
@@ -119,7 +160,23 @@ def export_solid(source: Any, folder: Path) -> Path:
 
 
 def solid_in_file(source: Any) -> tuple[str, bytes]:
-    """Return the name of a solid of CAD and its STL."""
+    """Return the name of a solid of CAD and its STL.
+
+    Parameters
+    ----------
+    source : object
+        As ``export_solid`` takes it.
+
+    Returns
+    -------
+    name : str
+    stl : bytes
+
+    Raises
+    ------
+    ArgumentError
+        If its library cannot write it.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = export_solid(source, Path(folder))
         return path.stem, path.read_bytes()

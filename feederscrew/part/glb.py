@@ -89,7 +89,25 @@ def read_glb(data: bytes, where: str) -> Soup:
 def merge(
     pieces: list[Piece], names: tuple[str, ...], kind: str, unit: str, warnings: tuple[str, ...] = ()
 ) -> Soup:
-    """Put the pieces of a scene into one soup; ``names`` are of their instances, in order [m]."""
+    """Put the pieces of a scene into one soup, an object for each instance.
+
+    Parameters
+    ----------
+    pieces : list of Piece
+        With corners in metres.
+    names : tuple of str
+        Of the instances, in the order in which the pieces name them.
+    kind : str
+        The format, a key of ``MESH_FORMATS``.
+    unit : str
+        That the soup states of its corners.
+    warnings : tuple of str, optional
+
+    Returns
+    -------
+    Soup
+        Its corners are those of the pieces, [m] whatever the unit says.
+    """
     sizes = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
     vertices = np.concatenate([np.empty((0, 3)), *(piece.vertices for piece in pieces)])
     moved = [piece.faces + first for piece, first in zip(pieces, sizes)]
@@ -154,10 +172,25 @@ class Document:
             instance += 1
 
     def numbers(self, number: int) -> Any:
-        """Return the numbers of an accessor, (count, components) or (count,) of scalars.
+        """Return the numbers of an accessor; they are read once.
 
         Integers that stand for shares of one are such shares, as floats (3.6.2.2); sparse values are put in
         place of those of the base, or of zeros without one (3.6.2.3).
+
+        Parameters
+        ----------
+        number : int
+            Of the accessor, from 0.
+
+        Returns
+        -------
+        (count, components) or (count,) array
+            One-dimensional for scalars.
+
+        Raises
+        ------
+        DamageError
+            If the accessor announces more than the file holds, or stands for matrices.
         """
         if number not in self._numbers:
             accessor = self.accessors[number]
@@ -325,9 +358,17 @@ class Document:
 
 
 def strip_triangles(corners: Ints) -> Triangles:
-    """Return the triangles (N - 2, 3) of a strip of N corners; every second one is turned (3.7.2.1).
+    """Return the triangles of a strip; every second one is turned, so that all face one way (3.7.2.1).
 
-    Those that name a corner twice have no area: they lead from one strip to the next.
+    Parameters
+    ----------
+    corners : (N,) int
+        Of the strip, in order.
+
+    Returns
+    -------
+    (N - 2, 3) int
+        Those that name a corner twice have no area: they lead from one strip to the next.
     """
     count = max(len(corners) - 2, 0)
     odd = np.arange(count) % 2
@@ -400,7 +441,7 @@ def _floats(holder: dict[str, Any], name: str, count: int) -> Floats:
 
 
 def _extensions(holder: dict[str, Any]) -> dict[str, Any]:
-    """What extensions say of a node, a primitive or a buffer view, by their names."""
+    """Return the entries of the extensions of a node, a primitive or a buffer view, by their names."""
     return _require(dict, holder.get("extensions", {}))
 
 

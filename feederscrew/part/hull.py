@@ -52,14 +52,36 @@ class CentreOutsideError(MeshError):
 def convex_hull(points: Points, centre: Vector, where: str = "part", centre_given: bool = True) -> Hull:
     """Return the convex hull of a point set about a centre of mass inside it.
 
-    ``points`` (V, 3) [m]: corners of the part's surface; ``centre`` (3,) [m]: centre of mass, in the same
-    axes; ``where``: the file, for the error line; ``centre_given``: whether the user gave the centre of mass;
-    else it is that of the surface. Raises MeshError if the points span no volume, or the centre of mass is on
-    or outside the hull.
     Corners on a straight edge or in a plane, but for what the file was rounded to, are left out: a surface
     that was split has the hull of the surface that was not.
-    Source: C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The quickhull algorithm for convex hulls", ACM Trans.
-    Math. Softw. 22(4), 469-483, 1996.
+
+    Parameters
+    ----------
+    points : (V, 3) float [m]
+        Corners of the part's surface.
+    centre : (3,) float [m]
+        Centre of mass, in the same axes.
+    where : str, optional
+        The file, for the error line.
+    centre_given : bool, optional
+        Whether the user gave the centre of mass; else it is that of the surface. The error line says how to
+        mend it accordingly.
+
+    Returns
+    -------
+    Hull
+
+    Raises
+    ------
+    MeshError
+        If the points span no volume.
+    CentreOutsideError
+        If the centre of mass is on or outside the hull.
+
+    References
+    ----------
+    C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The quickhull algorithm for convex hulls", ACM Trans. Math.
+    Softw. 22(4), 469-483, 1996.
     """
     centre = check.shaped("centre", centre, (3,))
     points = check.shaped("points", points, (-1, 3)) - centre

@@ -54,9 +54,23 @@ DAMAGE_REASONS: tuple[tuple[tuple[type[Exception], ...], str], ...] = (
 
 
 def read_file(source: str | PathLike[str], stdin: IO[bytes] | None = None) -> PartFile:
-    """Return the bytes of a part file; '-' reads standard input, or ``stdin`` in place of it and of the file.
+    """Read the bytes of a part file.
 
-    Raises MeshError if there is no such file, it cannot be read, is empty or is too large.
+    Parameters
+    ----------
+    source : str or path
+        '-' is standard input.
+    stdin : binary file, optional
+        Read in place of standard input and of the file.
+
+    Returns
+    -------
+    PartFile
+
+    Raises
+    ------
+    MeshError
+        If there is no such file, it cannot be read, is empty or is larger than ``MAX_MESH_BYTES``.
     """
     source = str(source)
     where = "standard input" if source == "-" else source
@@ -78,7 +92,23 @@ def read_file(source: str | PathLike[str], stdin: IO[bytes] | None = None) -> Pa
 
 
 def read_soup(file: PartFile) -> Soup:
-    """Return the triangles of a mesh file; MeshError if it is of no known format, cut short or damaged."""
+    """Return the triangles of a mesh file.
+
+    Parameters
+    ----------
+    file : PartFile
+        Its bytes decide the format, not its name.
+
+    Returns
+    -------
+    Soup
+        With a warning where the suffix stands for another format.
+
+    Raises
+    ------
+    MeshError
+        If the file is of no known format, cut short, damaged, too large, or has no facets.
+    """
     kind, alien = formats.detect_format(file.data, file.suffix)
     if kind is None or kind == CARD_FORMAT:
         mends = {
@@ -137,7 +167,17 @@ class FileBody:
     facets: Ints  # indices into the facets of the file
 
     def text(self, unit: str) -> str:
-        """Return the body as a person reads it in a list: '2 'pin' (64 mm3, 4 x 4 x 4 mm)'."""
+        """Return the body as a person reads it in a list: '2 'pin' (64 mm3, 4 x 4 x 4 mm)'.
+
+        Parameters
+        ----------
+        unit : str
+            Of the file.
+
+        Returns
+        -------
+        str
+        """
         name = f" {quantity_text(self.name)}" if self.name else ""
         size = " x ".join(f"{length:.4g}" for length in self.size)
         return f"{self.number}{name} ({self.volume:.4g} {unit}3, {size} {unit})"
@@ -148,6 +188,15 @@ def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
 
     What touches along edges is one body, unless the file has it as closed objects. A closed surface within a
     body that faces the other way is its cavity. Open surfaces that nearly meet are one body.
+
+    Parameters
+    ----------
+    soup : Soup
+
+    Returns
+    -------
+    tuple of FileBody
+        Empty where no facet has three different corners.
     """
     points = np.nan_to_num(soup.vertices, posinf=0.0, neginf=0.0)
     points[np.abs(points) > gate.FARTHEST_CORNER] = 0.0  # what is not finite, the gate names
@@ -176,10 +225,27 @@ def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
 
 
 def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileBody | None]:
-    """Return the facets of one body of a file, and the body; None where the file holds no other.
+    """Return the facets of one body of a file, and the body.
 
-    ``body`` is its number from 1, its name, or 'largest'. Raises ArgumentError if there is no such body; the
-    line lists those there are.
+    Parameters
+    ----------
+    soup : Soup
+    body : str
+        Its number from 1, its name, or 'largest'.
+    where, unit : str
+        The file and its unit, for error lines.
+
+    Returns
+    -------
+    soup : Soup
+        Of that body alone, with a warning that names what is left out.
+    chosen : FileBody or None
+        None where the file holds no other body.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such body, or several have the name; the line lists those there are.
     """
     bodies, body = list_bodies(soup), body.strip()
     if not bodies:
@@ -224,7 +290,7 @@ def _bodies_text(bodies: tuple[FileBody, ...], unit: str) -> str:
 
 
 def _file_surfaces(points: Points, faces: Triangles, objects: Ints | None) -> tuple[int, Ints, Bools]:
-    """How many surfaces hang together, the one of each facet, and whether each is open."""
+    """Return the number of surfaces that hang together, the one of each facet, and whether each is open."""
     keys = faces
     if objects is not None and objects.max(initial=0) > 0:
         of_object = faces * (int(objects.max()) + 1) + objects[:, None]

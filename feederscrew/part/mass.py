@@ -25,23 +25,49 @@ class Solid:
 
     @property
     def inside_out(self) -> "Solid":
-        """The same solid with its surface turned inside out."""
+        """Return the same solid with its surface turned inside out."""
         return Solid(-self.volume, self.centre, -self.inertia)
 
     def scale(self, factor: float) -> "Solid":
-        """Return the same solid measured in a unit of ``factor`` metres."""
+        """Return the same solid measured in a unit of ``factor`` metres.
+
+        Parameters
+        ----------
+        factor : float [m]
+            The length of the unit that the solid is measured in so far.
+
+        Returns
+        -------
+        Solid
+        """
         return Solid(self.volume * factor**3, self.centre * factor, self.inertia * factor**5)
 
 
 def integrate_solid(corners: Floats) -> Solid:
     """Return volume, centroid and inertia enclosed by triangles.
 
-    ``corners`` (F, 3, 3) [m]: corners by triangle, counter-clockwise seen from outside; together they close.
-    Raises ValueError if the shape is wrong or an entry is not finite.
     Sums over the tetrahedra between the triangles and a point near them: exact for a polyhedron, and free of
     cancellation however far from the origin the part lies.
-    Source: A. M. Messner, G. Q. Taylor, "Algorithm 550: Solid polyhedron measures", ACM Trans. Math. Softw.
-    6(1), 121-130, 1980.
+
+    Parameters
+    ----------
+    corners : (F, 3, 3) float [m]
+        Corners by triangle, counter-clockwise seen from outside; together the triangles close. In another
+        unit of length the results are in its powers.
+
+    Returns
+    -------
+    Solid
+
+    Raises
+    ------
+    ValueError
+        If the shape is wrong or an entry is not finite.
+
+    References
+    ----------
+    A. M. Messner, G. Q. Taylor, "Algorithm 550: Solid polyhedron measures", ACM Trans. Math. Softw. 6(1),
+    121-130, 1980.
     """
     corners = check.shaped("corners", corners, (-1, 3, 3))
 
@@ -57,9 +83,18 @@ def integrate_solid(corners: Floats) -> Solid:
 
 
 def tetrahedron_volumes(corners: Floats) -> Floats:
-    """Return the signed volumes (F,) [m3] between triangles (F, 3, 3) [m] and the middle of them all.
+    """Return the signed volumes between triangles and the middle of them all.
 
-    The sum over a closed surface is its volume.
+    Parameters
+    ----------
+    corners : (F, 3, 3) float [m]
+        Corners by triangle, counter-clockwise seen from outside.
+
+    Returns
+    -------
+    (F,) float [m3]
+        a . (b x c) / 6 of each, with corners a, b, c from that middle. The sum over a closed surface is its
+        volume.
     """
     return _spanned_tetrahedra(corners)[2] / 6.0
 
@@ -72,9 +107,27 @@ def _spanned_tetrahedra(corners: Floats) -> tuple[Floats, tuple[Floats, Floats, 
 
 
 def shift_inertia(inertia: Floats, mass: float, offset: Floats) -> Floats:
-    """Return the inertia (3, 3) [kg m2] about a point other than the centre of mass: parallel-axis theorem.
+    """Return the inertia about a point other than the centre of mass.
 
-    ``inertia`` is about the centre of mass, ``mass`` [kg], ``offset`` (3,) [m] from one to the other.
+    The parallel-axis theorem: I + m (d . d E - d d^T).
+
+    Parameters
+    ----------
+    inertia : (3, 3) float [kg m2]
+        I, about the centre of mass.
+    mass : float [kg]
+        m.
+    offset : (3,) float [m]
+        d, from the centre of mass to the point or the other way: its sign does not matter.
+
+    Returns
+    -------
+    (3, 3) float [kg m2]
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong or an entry is not finite.
     """
     offset = check.shaped("offset", offset, (3,))
     return check.shaped("inertia", inertia, (3, 3)) + mass * (
@@ -83,10 +136,27 @@ def shift_inertia(inertia: Floats, mass: float, offset: Floats) -> Floats:
 
 
 def principal_inertia(inertia: Floats) -> tuple[Floats, Floats]:
-    """Return principal moments (3,) [kg m2], ascending, and axes (3, 3) [1], one a row, right-handed.
+    """Return principal moments and axes of an inertia.
 
-    ``inertia`` (3, 3) [kg m2] is symmetric. The largest component of the first two axes is positive; where
-    moments are equal, and any axes would do, they are those nearest to the file's.
+    The largest component of the first two axes is positive; where moments are equal to within
+    ``EQUAL_MOMENTS_TOLERANCE``, and any axes would do, they are those nearest to the file's.
+
+    Parameters
+    ----------
+    inertia : (3, 3) float [kg m2]
+        Symmetric.
+
+    Returns
+    -------
+    moments : (3,) float [kg m2]
+        Ascending.
+    axes : (3, 3) float [1]
+        Unit vectors, one a row, right-handed.
+
+    Raises
+    ------
+    ValueError
+        If the shape is wrong or an entry is not finite.
     """
     moments, columns = vectors.eigen(check.shaped("inertia", inertia, (3, 3)))
     same = np.diff(moments) <= EQUAL_MOMENTS_TOLERANCE * abs(moments[2])
@@ -122,7 +192,17 @@ class MassBalance:
 
 
 def mass_balance(part: Part) -> MassBalance:
-    """Return the mass properties of a part."""
+    """Return the mass properties of a part that ``Part`` does not hold itself.
+
+    Parameters
+    ----------
+    part : Part
+
+    Returns
+    -------
+    MassBalance
+        Without the fields of the surface for a part card.
+    """
     moments, axes = principal_inertia(part.inertia)
     at_origin = shift_inertia(part.inertia, part.mass, part.centre_of_mass)
     if part.vertices is None:
@@ -220,11 +300,21 @@ class Moments:
 
     @property
     def size(self) -> float:
-        """Root mean square distance from the centre of mass [m], the unit of length."""
+        """Return the root mean square distance from the centre of mass [m], the unit of the moments."""
         return self._integrals[1]
 
     def directional(self, directions: Floats) -> Floats:
-        """Return moments (..., 6) of orders 1 to 6 along unit vectors (..., 3), [size ** order]."""
+        """Return the directional moments of orders 1 to 6: integrals of (x . u)^d over the solid.
+
+        Parameters
+        ----------
+        directions : (..., 3) float [1]
+            Unit vectors u.
+
+        Returns
+        -------
+        (..., 6) float [size ** order]
+        """
         moments, _ = self._integrals
         a, b, c = MOMENT_POWERS
         power = np.ones((*directions.shape[:-1], MOMENT_ORDER + 1, 3))
@@ -236,10 +326,19 @@ class Moments:
         return np.add.reduceat(terms, orders, axis=-1)
 
     def mismatch(self, rotations: Floats) -> Floats:
-        """Return how far (N,) [1] rotations (N, 3, 3) are from being symmetries of the solid.
+        """Return how far rotations are from being symmetries of the solid.
 
-        The largest change of a directional moment by its order: a feature of 1e-3 of the volume, as far out
-        as the size, that finds no counterpart gives about 1e-3.
+        It is the largest change of a directional moment divided by its order, over ``HALF_SPHERE_DIRECTIONS``
+        directions. A feature of 1e-3 of the volume, as far out as the size, that finds no counterpart gives
+        about 1e-3; compare with ``error``.
+
+        Parameters
+        ----------
+        rotations : (N, 3, 3) float [1]
+
+        Returns
+        -------
+        (N,) float [1]
         """
         k = np.arange(HALF_SPHERE_DIRECTIONS) + 0.5
         z, turn = k / HALF_SPHERE_DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k

@@ -37,10 +37,35 @@ Step = tuple[Points, Triangles, Notes]  # a surface after one repair
 def mend_facets(
     vertices: Points, faces: Triangles, tolerance: float, where: str, corners: bool = True
 ) -> tuple[Points, Triangles, MeshEdges, Notes]:
-    """Triangles after every repair that leaves the shape alone; their edges, closed if that was enough.
+    """Apply every repair that leaves the shape alone, until the surface is closed.
 
-    Corners closer than the ``tolerance`` are one; without ``corners`` they and seams stay where they are, for
-    the search for cracks. Raises MeshError if the facets cannot be turned one way round, or cancel out.
+    They are, in this order: leave out stray facets without area, drop repeated facets, join corners that
+    nearly meet, turn facets one way round, close T-junctions.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    tolerance : float [unit of the file]
+        Corners that are closer are one.
+    where : str
+        The file, for error lines.
+    corners : bool, optional
+        Without it corners and seams stay where they are, for the search for cracks.
+
+    Returns
+    -------
+    vertices : (V', 3) float [unit of the file]
+    faces : (F', 3) int
+    edges : MeshEdges
+        Of those faces; closed if that was enough.
+    notes : tuple of str
+        A sentence for everything that was done.
+
+    Raises
+    ------
+    MeshError
+        If the facets cannot be turned one way round, or cancel out.
     """
     vertices, faces, notes = leave_out_strays(vertices, faces, edge_table(faces, len(vertices)), tolerance)
     steps: list[Callable[[Points, Triangles, MeshEdges], Step]] = [_drop_repeats]
@@ -70,6 +95,22 @@ def leave_out_strays(vertices: Points, faces: Triangles, edges: MeshEdges, toler
 
     Facets without area that share edges stand and fall together. One that joins two facets, as the filler of
     a T-junction does, stays.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of those faces.
+    tolerance : float [unit of the file]
+        A facet no higher than that over its longest side has no area.
+
+    Returns
+    -------
+    vertices : (V', 3) float [unit of the file]
+    faces : (F', 3) int
+    notes : tuple of str
+        Empty where nothing was left out.
     """
     # by their height over the longest side
     a, b, c = (vertices[corner] for corner in faces.T)
@@ -176,7 +217,7 @@ def find_sheets(
 
 
 def _is_flat(points: Points, tolerance: float) -> bool:
-    """Whether points (N, 3) lie in one plane."""
+    """Tell whether points (N, 3) lie in one plane."""
     offsets = points - points.mean(axis=0)
     _, axes = vectors.eigen(vectors.product(offsets.T, offsets))
     return float(np.ptp(vectors.product(offsets, axes[:, 0]))) <= tolerance
@@ -213,7 +254,30 @@ def _join_near_corners(vertices: Points, faces: Triangles, edges: MeshEdges, tol
 
 
 def turn_one_way_round(vertices: Points, faces: Triangles, edges: MeshEdges, where: str) -> Step:
-    """Facets turned until neighbours agree, as few in each shell as can be; MeshError if they cannot."""
+    """Turn facets until neighbours agree, as few in each shell as can be.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of those faces; those of exactly two facets count.
+    where : str
+        The file, for the error line.
+
+    Returns
+    -------
+    vertices : (V, 3) float [unit of the file]
+        As given.
+    faces : (F, 3) int
+    notes : tuple of str
+        Empty where all agreed.
+
+    Raises
+    ------
+    MeshError
+        If no turning makes neighbours agree: the surface has one side only.
+    """
     two = np.flatnonzero(edges.count == 2)
     askew = edges.net[two] != 0
     if not askew.any():
@@ -238,10 +302,30 @@ def turn_one_way_round(vertices: Points, faces: Triangles, edges: MeshEdges, whe
 def close_seams(
     vertices: Points, faces: Triangles, edges: MeshEdges, tolerance: float
 ) -> tuple[Points, Triangles, Notes, int, float]:
-    """Join edges that meet corners of their neighbours half way by facets without area, which come last.
+    """Join edges that meet corners of their neighbours half way (T-junctions) by facets without area.
 
-    Corners closer to an edge than the ``tolerance`` are on it. Returns the surface, what was done, how many
-    edges were joined and the largest distance of a corner from such an edge [unit of the file].
+    Nothing is changed where there are more than ``MAX_SEAM_EDGES`` open edges, or where fewer would not be
+    left.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of those faces.
+    tolerance : float [unit of the file]
+        Corners closer than that to an edge are on it.
+
+    Returns
+    -------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F', 3) int
+        The new facets come last.
+    notes : tuple of str
+    joined : int
+        The number of edges that were joined.
+    width : float [unit of the file]
+        The largest distance of a corner from such an edge.
     """
     tails, heads = edges.rim()
     if not 0 < len(tails) <= MAX_SEAM_EDGES:
@@ -300,13 +384,30 @@ class JoinedSurface:
 def join_cracks(
     vertices: Points, faces: Triangles, least: float, size: float, where: str, allow_open: bool = False
 ) -> JoinedSurface | None:
-    """Join corners and edges across cracks by the least width that closes the surface; None if none does.
+    """Join corners and edges across cracks by the least width that closes the surface.
 
-    Corners closer than ``least`` are one already; ``size`` is the part's largest extent. With ``allow_open``
-    wider cracks are joined too, and what leaves the fewest edges open is taken if nothing closes the surface.
     Nothing is joined that would let a facet vanish, fold facets onto each other, make more than two
     facets meet at an edge where two met, or move walls by a share of their thickness: a thin wall stays, or
     the surface stays open.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    least : float [unit of the file]
+        Corners that are closer are one already.
+    size : float [unit of the file]
+        The part's largest extent.
+    where : str
+        The file, for error lines.
+    allow_open : bool, optional
+        Whether wider cracks are joined too, up to ``OPEN_JOIN_SHARE`` of the size in place of ``JOIN_SHARE``.
+        What leaves the fewest edges open is taken then if nothing closes the surface.
+
+    Returns
+    -------
+    JoinedSurface or None
+        None if no width closes the surface, or with ``allow_open`` if none makes fewer edges open.
     """
     largest, thin = (OPEN_JOIN_SHARE, OPEN_THIN_SHARE) if allow_open else (JOIN_SHARE, THIN_SHARE)
     edges = edge_table(faces, len(vertices))
@@ -334,9 +435,26 @@ def join_cracks(
 
 
 def measure_gaps(vertices: Points, edges: MeshEdges, size: float) -> tuple[int, int, float, Points]:
-    """How many open edges run along others near them, how many round holes; the widest gap, and where.
+    """Count open edges that run along others near them and those round holes; measure the widest crack.
 
-    ``size`` is the part's extent. Of very many open edges some, evenly drawn, stand for all.
+    Of very many open edges some, evenly drawn, stand for all.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    edges : MeshEdges
+        Of an open surface.
+    size : float [unit of the file]
+        The part's largest extent; a gap wider than ``GAP_SHARE`` of it is a hole.
+
+    Returns
+    -------
+    cracks, rim_edges : int
+        Numbers of open edges.
+    width : float [unit of the file]
+        Of the widest crack; 0 without one.
+    place : (3,) float [unit of the file]
+        Where the widest is.
     """
     gaps, middles = _open_gaps(vertices, edges)
     along, count = gaps <= GAP_SHARE * size, int(np.count_nonzero(edges.net))
@@ -346,7 +464,19 @@ def measure_gaps(vertices: Points, edges: MeshEdges, size: float) -> tuple[int, 
 
 
 def folded_share(vertices: Points, faces: Triangles, edges: MeshEdges) -> float:
-    """Return the share [1] of the area in facets that lie back to back with a neighbour: 0 for a solid."""
+    """Return the share of the area in facets that lie back to back with a neighbour: 0 for a solid.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of those faces.
+
+    Returns
+    -------
+    float [1]
+    """
     area, pairs = _back_to_back(vertices, faces, edges)
     return float(area[np.unique(pairs)].sum()) / float(area.sum())
 
@@ -395,7 +525,7 @@ def _back_to_back(vertices: Points, faces: Triangles, edges: MeshEdges) -> tuple
 
 
 def _open_gaps(vertices: Points, edges: MeshEdges) -> tuple[Floats, Points]:
-    """How far open edges, evenly drawn, are from the nearest of other facets along them; their middles.
+    """Return how far open edges, evenly drawn, are from the nearest along them; their middles.
 
     Infinite without one.
     """
@@ -425,9 +555,24 @@ FAN_RIM_CORNERS = 60  # corners: rims with more are closed by a fan
 
 
 def find_holes(vertices: Points, edges: MeshEdges) -> tuple[list[list[int]], float, Points]:
-    """The rim of each hole, against the sense of the facets beside it; width and middle of the widest.
+    """Find the rim of each hole of an open surface, and the widest hole.
 
     Open sides are strung together to closed rims that pass no corner twice.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    edges : MeshEdges
+        Of an open surface.
+
+    Returns
+    -------
+    rims : list of list of int
+        Corners of each rim, against the sense of the facets beside it.
+    width : float [unit of the file]
+        Of the widest hole: twice the largest distance of its corners from their middle.
+    middle : (3,) float [unit of the file]
+        Of that hole's corners.
     """
     heads, tails = edges.rim()
     onward: dict[int, list[int]] = {}
@@ -457,9 +602,20 @@ def find_holes(vertices: Points, edges: MeshEdges) -> tuple[list[list[int]], flo
 
 
 def cap_holes(vertices: Points, rims: list[list[int]]) -> Floats:
-    """Triangles (N, 3, 3) that close holes: of least area in all, or a fan from the middle of a long rim.
+    """Return triangles that close holes: of least area in all, or a fan from the middle of a long rim.
 
     Either is exact where the rim is flat.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    rims : list of list of int
+        As ``find_holes`` returns them; one of more than ``FAN_RIM_CORNERS`` corners is long.
+
+    Returns
+    -------
+    (N, 3, 3) float [unit of the file]
+        Corners by triangle.
     """
     caps = []
     for rim in (vertices[rim] for rim in rims):

@@ -21,7 +21,22 @@ ANNOUNCES_MORE = "it announces more than it holds"
 
 
 def read_obj(data: bytes) -> Soup:
-    """Return the triangles of an OBJ file."""
+    """Return the triangles of an OBJ file; its objects, or without any its groups, keep their names.
+
+    Parameters
+    ----------
+    data : bytes
+        The file, without a byte order mark.
+
+    Returns
+    -------
+    Soup
+
+    Raises
+    ------
+    ValueError
+        If it is damaged, or has more corners or facets than are read.
+    """
     words: list[bytes] = []  # coordinates
     sizes: list[int] = []
     corners: list[int] = []  # counted from 1
@@ -67,7 +82,22 @@ def read_obj(data: bytes) -> Soup:
 
 
 def read_off(data: bytes) -> Soup:
-    """Return the triangles of an OFF file."""
+    """Return the triangles of an OFF file, in text.
+
+    Parameters
+    ----------
+    data : bytes
+        The file, without a byte order mark.
+
+    Returns
+    -------
+    Soup
+
+    Raises
+    ------
+    ValueError
+        If it is damaged, binary, or has more corners or facets than are read.
+    """
     text = mask_non_ascii(data).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     text = re.sub(rb"\s*(?:ST)?C?N?OFF\b", b"", re.sub(rb"#[^\n]*", b"", text), count=1)
     lines = [line.split() for line in text.splitlines() if line.strip()]
@@ -138,7 +168,24 @@ class PlyElement:
 
 
 def read_ply(data: bytes) -> Soup:
-    """Return the triangles of a PLY file."""
+    """Return the triangles of a PLY file, in text or binary, from its facets and its triangle strips.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file.
+
+    Returns
+    -------
+    Soup
+
+    Raises
+    ------
+    ValueError
+        If it is damaged, or has more corners or facets than are read.
+    LookupError
+        If its header names a type or an order of bytes that PLY has not.
+    """
     end = re.search(rb"(?m)^[ \t]*end_header[ \t]*(?:\r\n|\n|\r)", data)
     if end is None:
         raise DamageError("its header does not end")
@@ -320,7 +367,29 @@ EXPORT_OR_COPY_AGAIN = "export the part again, or copy the whole file"
 
 
 def read_stl(data: bytes, kind: str, where: str) -> Soup:
-    """Return the triangles of an STL file, 'stl' or 'stl-ascii'; MeshError if it is cut short."""
+    """Return the triangles of an STL file.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file.
+    kind : str
+        'stl' for the binary form, 'stl-ascii' for text.
+    where : str
+        The file, for error lines.
+
+    Returns
+    -------
+    Soup
+        With warnings where the file announces fewer facets than it has, or has bytes behind the last one.
+
+    Raises
+    ------
+    MeshError
+        If it is cut short, or has other words than an STL.
+    TooManyFacetsError
+        If it has more facets than are read.
+    """
     if kind == formats.ASCII_STL:
         return _stl_from_text(data, where)
     if len(data) < formats.STL_HEADER_BYTES:
@@ -362,7 +431,20 @@ class StlText:
     whole: bool = True  # whether the last facet ends
 
     def take(self, block: bytes, name: bytes) -> None:
-        """Add the facets of one solid; ValueError if a line that is no facet's is among them."""
+        """Add the facets of one solid.
+
+        Parameters
+        ----------
+        block : bytes
+            The text between the lines 'solid' and 'endsolid'.
+        name : bytes
+            Of the solid.
+
+        Raises
+        ------
+        ValueError
+            If a line that is no facet's is among them.
+        """
         words = re.sub(rb"(?:#|//|;)[^\n]*", b"", block).lower().split()
         first, each = len(self.sizes), len(STL_TRIANGLE)
         if len(words) % each or any(set(words[at::each]) - {mark} for at, mark in STL_MARKS):

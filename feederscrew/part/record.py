@@ -120,7 +120,15 @@ class Part(ReadableRecord):
 def refuse_many_facets(part: Part) -> None:
     """Refuse a part whose surface has more facets than can be followed past devices.
 
-    Raises FeederError: With more than ``MAX_FACETS`` facets. A part card has none.
+    Parameters
+    ----------
+    part : Part
+        A part card has no facets.
+
+    Raises
+    ------
+    FeederError
+        With more than ``MAX_FACETS`` facets.
     """
     if part.faces is not None and len(part.faces) > MAX_FACETS:
         what = f"has {len(part.faces)} facets, too many to follow on the track"
@@ -130,10 +138,22 @@ def refuse_many_facets(part: Part) -> None:
 def small_part_remarks(part: Part, allowances: Mapping[str, float], width: float | None) -> tuple[str, ...]:
     """Say where allowances are of the size of a part, or a track is no wider than one.
 
-    ``part``: nothing is said of one without a surface; ``allowances`` [m]: 'margin', 'play', 'tolerance':
-    they are added up; ``width`` [m]: of the track. Returns a sentence each, with the numbers.
     A part is compared with its box along the file's axes. It lies on the track with its middle dimension
     across it where it lies as low and as narrow as it can without standing on edge.
+
+    Parameters
+    ----------
+    part : Part
+        Nothing is said of one without a surface.
+    allowances : mapping of str to float [m]
+        'margin', 'play', 'tolerance': they are added up.
+    width : float [m] or None
+        Of the track.
+
+    Returns
+    -------
+    tuple of str
+        A sentence each, with the numbers.
     """
     if part.vertices is None:
         return ()

@@ -124,7 +124,22 @@ def _referred_files(data: bytes) -> list[str]:
 
 
 def convert(data: bytes) -> bytes:
-    """Return a STEP file as GLB, in metres; ValueError where OpenCASCADE cannot, or takes too long."""
+    """Return a STEP file as GLB, in metres, converted by OpenCASCADE in a process of its own.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole STEP file.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    DamageError
+        If OpenCASCADE cannot convert it, or takes longer than ``STEP_TIMEOUT_S``.
+    """
     with tempfile.TemporaryDirectory() as folder:
         source, target = Path(folder, "part.step"), Path(folder, "part.glb")
         source.write_bytes(data)

@@ -89,10 +89,28 @@ class Piece3MF:
 
 
 def read_3mf(data: bytes, where: str) -> Soup:
-    """Return the parts of a 3MF file, as its build places them; ``where`` names the file in error lines.
+    """Return the parts of a 3MF file, as its build places them.
 
-    Raises MeshError if it is in an extension that is not read, or a negative part cannot be subtracted;
-    ValueError if it is damaged, or stands for too much.
+    Negative parts are cut out of the parts of their item; supports and modifiers are left out, with a
+    warning.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file, a ZIP archive.
+    where : str
+        The file, for error lines.
+
+    Returns
+    -------
+    Soup
+
+    Raises
+    ------
+    MeshError
+        If it is in an extension that is not read, or a negative part cannot be subtracted.
+    ValueError
+        If it is damaged, or stands for too much.
     """
     with formats.open_archive(data) as archive:
         package = _Package(archive, where)
@@ -267,7 +285,7 @@ class _Package:
             raise DamageError(f"its XML: {error}") from None
 
     def _notes_handler(self) -> Callable[[str, dict[str, str]], None]:
-        """What takes the elements of a slicer's file: of Bambu Studio and Orca, PrusaSlicer and Slic3r."""
+        """Return the handler of elements of a slicer's file: Bambu Studio, Orca, PrusaSlicer, Slic3r."""
         owner, part = "", None
 
         def begin(name: str, attributes: dict[str, str]) -> None:
@@ -304,10 +322,20 @@ class ModelReader:
         self.mark = ""
 
     def begin(self, name: str, attributes: dict[str, str]) -> None:
-        """Take one element.
+        """Take one element of the XML.
 
-        Raises MeshError if it is of an extension that changes the shape and is not read; KeyError or
-        ValueError if an attribute is missing, or not a number.
+        Parameters
+        ----------
+        name : str
+            Of the element, with its namespace in front.
+        attributes : dict of str to str
+
+        Raises
+        ------
+        MeshError
+            If it is of an extension that changes the shape and is not read.
+        KeyError, ValueError
+            If an attribute is missing, or not a number.
         """
         if self.mark:
             self.mark, self.parser.CharacterDataHandler = "", None
@@ -366,7 +394,7 @@ def _as_part(surface: Piece3MF) -> Piece3MF:
 
 
 def _role(text: str) -> str:
-    """What a slicer's word for a volume stands for."""
+    """Return the role that a slicer's word for a volume stands for."""
     return next((role for pattern, role in ROLE_PATTERNS if pattern.search(text)), PART_ROLE)
 
 

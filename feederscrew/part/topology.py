@@ -18,16 +18,38 @@ MAX_NEAR_PAIRS = 10_000_000  # near pairs: what a few hundred MB hold
 
 
 def weld_corners(vertices: Points, faces: Triangles) -> tuple[Points, Triangles]:
-    """Triangles with each distinct corner once, none without a facet; corners are finite.
+    """Return triangles with each distinct corner once and no corner without a facet.
 
     Facets that have collapsed to an edge or a point are left out: their sides cancel.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+        Finite.
+    faces : (F, 3) int
+
+    Returns
+    -------
+    vertices : (V', 3) float [unit of the file]
+    faces : (F', 3) int
     """
     first, group = distinct_points(vertices)
     return drop_unused_corners(vertices[first], group[faces])
 
 
 def drop_unused_corners(vertices: Points, faces: Triangles) -> tuple[Points, Triangles]:
-    """The same triangles without collapsed facets and without corners that no facet uses."""
+    """Return the same triangles without collapsed facets and without corners that no facet uses.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+
+    Returns
+    -------
+    vertices : (V', 3) float [unit of the file]
+    faces : (F', 3) int
+    """
     a, b, c = faces.T
     collapsed = (a == b) | (b == c) | (c == a)
     if collapsed.any():
@@ -40,9 +62,19 @@ def drop_unused_corners(vertices: Points, faces: Triangles) -> tuple[Points, Tri
 
 
 def distinct_points(rows: Array) -> tuple[Ints, Ints]:
-    """One row (M,) int of each kind, and the kind (N,) of each row: which of them are the same.
+    """Find rows that are the same, by a hash of their bits.
 
-    ``rows`` (N, K), K up to 4, are finite; minus zero counts as zero.
+    Parameters
+    ----------
+    rows : (N, K) float [any]
+        K up to 4; finite; minus zero counts as zero.
+
+    Returns
+    -------
+    first : (M,) int
+        One row of each of the M kinds.
+    group : (N,) int
+        The kind of each row.
     """
     rows = np.ascontiguousarray(rows, dtype=float) + 0.0
     keys = np.zeros(len(rows), dtype=np.uint64)  # a hash of each row; wraps round on purpose
@@ -63,7 +95,21 @@ def distinct_points(rows: Array) -> tuple[Ints, Ints]:
 
 
 def near_pairs(vertices: Points, candidates: Ints, tolerance: float) -> Ints:
-    """For each corner (V,) the one it is joined with; only candidates (N,) closer than a tolerance are."""
+    """Join candidates that are closer than a tolerance, directly or by others between them.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    candidates : (N,) int
+        Corners that may be joined.
+    tolerance : float [unit of the file]
+
+    Returns
+    -------
+    (V,) int
+        The corner that each is joined with; itself where there is none, and for all of them where more than
+        ``MAX_NEAR_PAIRS`` pairs are that close.
+    """
     target = np.arange(len(vertices))
     tree = spatial.cKDTree(vertices[candidates])
     if tree.count_neighbors(tree, tolerance) > MAX_NEAR_PAIRS:
@@ -88,12 +134,12 @@ class MeshEdges:
 
     @cached_property
     def is_closed(self) -> bool:
-        """Whether every side has one that runs back along it."""
+        """Tell whether every side has one that runs back along it."""
         return not self.net.any()
 
     @cached_property
     def is_paired(self) -> bool:
-        """Whether every edge joins exactly two facets, wound the same way round."""
+        """Tell whether every edge joins exactly two facets, wound the same way round."""
         return self.is_closed and bool((self.count == 2).all())
 
     @property
@@ -107,7 +153,17 @@ class MeshEdges:
         return self.keys % self.corners
 
     def mates(self, edges: Array) -> Ints:
-        """(N, 2) the two facets at edges that have two; ``edges`` is a mask or indices."""
+        """Return the two facets at each of some edges that have two.
+
+        Parameters
+        ----------
+        edges : (E,) bool or (N,) int
+            A mask of all edges, or indices.
+
+        Returns
+        -------
+        (N, 2) int
+        """
         start = self.start[edges]
         return np.column_stack([self.order[start], self.order[start + 1]]) // 3
 
@@ -120,7 +176,19 @@ class MeshEdges:
 
 
 def edge_table(faces: Triangles, corners: int) -> MeshEdges:
-    """The edges of facets, none with a corner twice; ``corners`` is how many there are."""
+    """Return the edges of facets.
+
+    Parameters
+    ----------
+    faces : (F, 3) int
+        None has a corner twice.
+    corners : int
+        The number of corners of the mesh, V.
+
+    Returns
+    -------
+    MeshEdges
+    """
     tails, heads = faces, faces[:, [1, 2, 0]]
     keys = np.minimum(tails, heads) * corners + np.maximum(tails, heads)
     keys = (2 * keys + (tails > heads)).ravel()
@@ -144,9 +212,21 @@ MOVE_CAVITY = "move the cavity inside the material in CAD"
 
 
 def split_shells(edges: MeshEdges, faces: Triangles) -> tuple[int, Ints]:
-    """How many shells there are, facets joined across edges, and which of them (F,) each facet belongs to.
+    """Split a mesh into shells: facets joined across edges.
 
     Where more than two facets meet, shells touch; they are one only if they do not close without each other.
+
+    Parameters
+    ----------
+    edges : MeshEdges
+    faces : (F, 3) int
+
+    Returns
+    -------
+    number : int
+        The number of shells.
+    shell : (F,) int
+        The shell that each facet belongs to.
     """
     first, second = edges.mates(edges.count == 2).T
     number, shell = graphs.components(first, second, len(faces))
@@ -167,9 +247,23 @@ def split_shells(edges: MeshEdges, faces: Triangles) -> tuple[int, Ints]:
 def shell_fault(
     vertices: Points, faces: Triangles, shell: Ints, volume: Floats, unit: str
 ) -> tuple[str, str] | None:
-    """What keeps shells from being one outer surface and its cavities, and how to mend it; None if nothing.
+    """Say why closed shells are not one outer surface and its cavities.
 
-    ``volume`` (S,) [cubed unit of the file] is that of each shell, the largest positive.
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    shell : (F,) int
+        The shell of each facet.
+    volume : (S,) float [cubed unit of the file]
+        Of each shell, the largest positive.
+    unit : str
+        Of the file.
+
+    Returns
+    -------
+    (str, str) or None
+        What is wrong and how to mend it; None if they are.
     """
     by_size = np.argsort(-np.abs(volume), kind="stable")
     bodies = by_size[volume[by_size] > 0.0]
@@ -193,12 +287,37 @@ def _several(volume: Floats, unit: str) -> tuple[str, str]:
 
 
 def list_volumes(volume: Floats) -> str:
-    """Return the first volumes of some (S,) in a sentence: '64, 8, 1, ...'."""
+    """Return the first volumes of some in a sentence: '64, 8, 1, ...'.
+
+    Parameters
+    ----------
+    volume : (S,) float [cubed unit of the file]
+
+    Returns
+    -------
+    str
+        ``LISTED_SHELLS`` of them at most, without a unit.
+    """
     return ", ".join([*(f"{v:.4g}" for v in volume[:LISTED_SHELLS]), *["..."][: len(volume) > LISTED_SHELLS]])
 
 
 def shell_boxes(vertices: Points, faces: Triangles, shell: Ints, number: int) -> tuple[Points, Points]:
-    """Return (S, 3) and (S, 3) [unit of the file] the lowest and highest corner of each shell's box."""
+    """Return the lowest and highest corner of each shell's box along the file's axes.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    shell : (F,) int
+        The shell of each facet.
+    number : int
+        Of shells, S.
+
+    Returns
+    -------
+    low, high : (S, 3) float [unit of the file]
+        Infinite, low above high, for a shell without facets.
+    """
     low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
     for corner in faces.T:
         np.minimum.at(low, shell, vertices[corner])
@@ -210,9 +329,27 @@ def turns_around(
     vertices: Points, faces: Triangles, shell: Ints, inner: int, outer: int | None = None,
     probes: int = 64,
 ) -> Floats:  # fmt: skip
-    """Return how often (N,) [1] one shell, or all the others, go round some corners of a shell.
+    """Return how often one shell, or all the others, go round some corners of a shell.
 
-    1 inside the outer one, 0 outside; negative where it faces inwards.
+    It is the sum of the solid angles of their facets, seen from the corner, divided by 4 pi.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    shell : (F,) int
+        The shell of each facet.
+    inner : int
+        The shell whose corners are looked at.
+    outer : int, optional
+        The shell that may go round them; all but ``inner`` without it.
+    probes : int, optional
+        The number of corners to look at, about; fewer of a large mesh.
+
+    Returns
+    -------
+    (N,) float [1]
+        1 inside the outer one, 0 outside; negative where it faces inwards.
     """
     corners = np.unique(faces[shell == inner])
     around = vertices[faces[shell != inner if outer is None else shell == outer]]

@@ -51,7 +51,7 @@ class Posture(ReadableRecord):
 
     @property
     def rolls(self) -> bool:
-        """Whether it lies on a round side."""
+        """Tell whether the part lies on a round side."""
         return self.kind == "rolling"
 
     @property

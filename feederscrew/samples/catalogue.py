@@ -67,7 +67,13 @@ class Sample:
 
 
 def samples() -> list[Sample]:
-    """Return every sample: the files, then each family with a size of it."""
+    """Return every sample: the files, then each family with a size of it.
+
+    Returns
+    -------
+    list of Sample
+        In the order in which `feeder sample` lists them.
+    """
     rows = [Sample(name, *row) for name, row in FILES.items()]
     for family in families.FAMILIES.values():
         file = f"{families.shape(family.name, family.size).name}.stl"
@@ -84,10 +90,19 @@ def files(
     ----------
     name : str
         Of a file, 'washer_m6', or of a family, 'hex-bolt'.
-    size, ratio, wall
-        Of a family: ``families.shape``.
-    step : bool
+    size : str, optional
+        Of a family, 'M8x25': ``families.shape``.
+    ratio : float [1], optional
+        Thickness over width of 't-shape'.
+    wall : float [m], optional
+        Thickness of what is made of sheet.
+    step : bool, optional
         The exact faces of a part beside its mesh. Those of a family need OpenCASCADE.
+
+    Returns
+    -------
+    dict of str to bytes
+        One file, or two with ``step``.
 
     Raises
     ------
@@ -122,14 +137,36 @@ def files(
 
 
 def all_files() -> dict[str, bytes]:
-    """Return the contents of the files that the examples of the commands name, by their names."""
+    """Return the contents of the files that the examples of the commands name, by their names.
+
+    Returns
+    -------
+    dict of str to bytes
+        Those of ``FILES``; families have no file of their own.
+    """
     return {file: content for name in FILES for file, content in files(name).items()}
 
 
 def write(contents: dict[str, bytes], folder: Path, *, replace: bool = False) -> tuple[list[str], list[str]]:
-    """Write files into a folder, all of them or none; the names written, and those that were there alike.
+    """Write files into a folder, all of them or none.
 
-    Raises FeederError if one is there with other content, unless ``replace``, or cannot be written.
+    Parameters
+    ----------
+    contents : dict of str to bytes
+        By the names of the files.
+    folder : Path
+    replace : bool, optional
+        Whether files of other content are replaced.
+
+    Returns
+    -------
+    written, alike : list of str
+        The names of files that were written, and of those that were there with the same content.
+
+    Raises
+    ------
+    FeederError
+        If a file is there with other content, unless ``replace``, or cannot be written.
     """
     paths = {name: folder / name for name in contents}
     alike = [name for name, path in paths.items() if path.is_file() and path.read_bytes() == contents[name]]

@@ -170,12 +170,16 @@ def shape(name: str, size: str = "", *, ratio: float | None = None, wall: float 
     ----------
     name : str
         One of ``FAMILIES``: 'hex-bolt'.
-    size : str
+    size : str, optional
         As the family writes it: 'M8x25', '16x9'; lengths in mm.
     ratio : float [1], optional
         Thickness over width of 't-shape'.
     wall : float [m], optional
         Thickness of what is made of sheet.
+
+    Returns
+    -------
+    SampleShape
 
     Raises
     ------
@@ -202,7 +206,22 @@ def shape(name: str, size: str = "", *, ratio: float | None = None, wall: float 
 
 
 def hex_bolt(*words: str) -> SampleShape:
-    """Return a hexagon bolt 'M8', '25' of ISO 4017: thread up to its head, seat at Z = 0, shank downwards."""
+    """Return a hexagon bolt of ISO 4017: thread up to its head, seat at Z = 0, shank downwards.
+
+    Parameters
+    ----------
+    *words : str
+        Thread and length in mm: 'M8', '25'.
+
+    Returns
+    -------
+    SampleShape
+
+    Raises
+    ------
+    ArgumentError
+        If the standard has no such bolt.
+    """
     thread, length = _bolt("ISO 4017", "M8x25", words, {key: row[-2:] for key, row in HEX_BOLTS_MM.items()})
     high, flats = (MM * value for value in HEX_BOLTS_MM[thread][:2])
 
@@ -214,7 +233,22 @@ def hex_bolt(*words: str) -> SampleShape:
 
 
 def socket_screw(*words: str) -> SampleShape:
-    """Return a socket head cap screw 'M3', '8' of ISO 4762 with a plain head; seat at Z = 0."""
+    """Return a socket head cap screw of ISO 4762 with a plain head; seat at Z = 0, shank downwards.
+
+    Parameters
+    ----------
+    *words : str
+        Thread and length in mm: 'M3', '8'.
+
+    Returns
+    -------
+    SampleShape
+
+    Raises
+    ------
+    ArgumentError
+        If the standard has no such screw.
+    """
     rows = {key: row[-2:] for key, row in SOCKET_SCREWS_MM.items()}
     thread, length = _bolt("ISO 4762", "M3x8", words, rows)
     across, flats, deep = (MM * value for value in SOCKET_SCREWS_MM[thread][:3])
@@ -231,7 +265,22 @@ def socket_screw(*words: str) -> SampleShape:
 
 
 def hex_nut(*words: str) -> SampleShape:
-    """Return a hexagon nut 'M6' of ISO 4032 on Z = 0; its bore is as wide as the thread's minor diameter."""
+    """Return a hexagon nut of ISO 4032 on Z = 0; its bore is as wide as the thread's minor diameter.
+
+    Parameters
+    ----------
+    *words : str
+        Thread: 'M6'.
+
+    Returns
+    -------
+    SampleShape
+
+    Raises
+    ------
+    ArgumentError
+        If the standard has no such nut.
+    """
     thread = _thread("ISO 4032", "M6", words, HEX_NUTS_MM)
     high, flats = (MM * value for value in HEX_NUTS_MM[thread])
     minor = 0.5 * (major_diameter(thread) - MINOR_INSIDE * MM * PITCHES_MM[thread])
@@ -248,7 +297,22 @@ def hex_nut(*words: str) -> SampleShape:
 
 
 def washer(*words: str) -> SampleShape:
-    """Return a plain washer for 'M6' of ISO 7089, on Z = 0."""
+    """Return a plain washer of ISO 7089, on Z = 0.
+
+    Parameters
+    ----------
+    *words : str
+        The thread that goes through it: 'M6'.
+
+    Returns
+    -------
+    SampleShape
+
+    Raises
+    ------
+    ArgumentError
+        If the standard has no such washer.
+    """
     thread = _thread("ISO 7089", "M6", words, WASHERS_MM)
     hole, across, high = (MM * value for value in WASHERS_MM[thread])
     rim = 0.5 * np.array([(hole, 0), (across, 0), (across, 2 * high), (hole, 2 * high)])
@@ -256,7 +320,17 @@ def washer(*words: str) -> SampleShape:
 
 
 def major_diameter(thread: str) -> float:
-    """Return the major diameter [m] of a thread 'M8': what a shank with it is as thick as."""
+    """Return the major diameter of a thread, as thick as a shank with it.
+
+    Parameters
+    ----------
+    thread : str
+        'M8', as the tables above write it.
+
+    Returns
+    -------
+    float [m]
+    """
     return MM * float(thread[1:])
 
 
@@ -314,7 +388,22 @@ def _thread(standard: str, example: str, words: tuple[str, ...], sizes: Mapping[
 
 
 def pin(*words: str) -> SampleShape:
-    """Return a dowel pin of diameter and length '6', '20' with bevelled ends, about the origin, along Z."""
+    """Return a dowel pin with bevelled ends, about the origin, along Z.
+
+    Parameters
+    ----------
+    *words : str
+        Diameter and length in mm: '6', '20'.
+
+    Returns
+    -------
+    SampleShape
+
+    Raises
+    ------
+    ArgumentError
+        If a length is missing or out of range, or the bevels meet.
+    """
     across, length = _lengths("6x20", words, 2)
     radius, half, bevel = 0.5 * across, 0.5 * length, PIN_BEVEL * across
     _check_room("size", "the bevels meet", bevel < half, f"make it longer than {2.0 * bevel / MM:g} mm")
@@ -324,7 +413,24 @@ def pin(*words: str) -> SampleShape:
 
 
 def cap(*words: str, wall: float = WALL_MM * MM) -> SampleShape:
-    """Return a cap of outer diameter and height '14', '10', open above, with a ``wall`` [m]; on Z = 0."""
+    """Return a cap, a round cup of sheet, open above; on Z = 0.
+
+    Parameters
+    ----------
+    *words : str
+        Outer diameter and height in mm: '14', '10'.
+    wall : float [m], optional
+        Thickness of its wall and of its bottom.
+
+    Returns
+    -------
+    SampleShape
+
+    Raises
+    ------
+    ArgumentError
+        If a length is missing or out of range, or the wall is too thin or leaves no room in it.
+    """
     across, high = _lengths("14x10", words, 2)
     radius, inner = 0.5 * across, 0.5 * across - wall
     _check_room("wall", "leaves no room in it", inner > 0.0 and wall < high, "make it thinner")
@@ -335,9 +441,26 @@ def cap(*words: str, wall: float = WALL_MM * MM) -> SampleShape:
 
 
 def bracket(*words: str, wall: float = WALL_MM * MM) -> SampleShape:
-    """Return an angle of sheet with a hole: length, height and width '25', '10', '12', a ``wall`` [m] thick.
+    """Return an angle of sheet with a hole.
 
     Its long leg lies on Z = 0 and has the hole, as wide as a third of the leg; the other one stands at X = 0.
+
+    Parameters
+    ----------
+    *words : str
+        Length, height and width in mm: '25', '10', '12'.
+    wall : float [m], optional
+        Thickness of the sheet.
+
+    Returns
+    -------
+    SampleShape
+
+    Raises
+    ------
+    ArgumentError
+        If a length is missing or out of range, the wall is too thin or leaves no legs, or the hole leaves its
+        leg.
     """
     long, high, wide = _lengths("25x10x12", words, 3)
     hole = wide / 3.0
@@ -357,9 +480,23 @@ def bracket(*words: str, wall: float = WALL_MM * MM) -> SampleShape:
 
 
 def t_shape(ratio: float = T_RATIO) -> SampleShape:
-    """Return the T of the thesis with a ``ratio`` [1] of thickness over width; upright along Y, about Z = 0.
+    """Return the T of the thesis; upright along Y, about Z = 0.
 
     Its outline is that which follows from Table 3-8 of the thesis: ``thesis.parts.t_solid``.
+
+    Parameters
+    ----------
+    ratio : float [1], optional
+        Thickness over width, within ``T_RATIO_RANGE``.
+
+    Returns
+    -------
+    SampleShape
+
+    Raises
+    ------
+    ArgumentError
+        If the ratio is out of range.
     """
     low, high = T_RATIO_RANGE
     if not low <= ratio <= high:
@@ -396,7 +533,20 @@ def _words(*lengths: float) -> str:
 
 
 def chords(radius: float) -> int:
-    """Return how many chords make a circle of a radius [m]: a multiple of 12, so that hexagons fit."""
+    """Return how many chords make a circle: a multiple of 12, so that hexagons fit.
+
+    A chord that spans the angle s lies r (1 - cos(s / 2)) within the circle: at most ``CHORD_M``, and s at
+    most ``CHORD_RAD``.
+
+    Parameters
+    ----------
+    radius : float [m]
+        r, above 0.
+
+    Returns
+    -------
+    int
+    """
     step = min(CHORD_RAD, 2.0 * np.arccos(1.0 - min(CHORD_M / radius, 1.0)))
     return 12 * int(np.ceil(2.0 * np.pi / step / 12.0))
 

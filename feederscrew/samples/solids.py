@@ -15,7 +15,17 @@ STEP_TOLERANCE = 1e-2  # [1] of the volume of the mesh, whose chords lie within 
 
 
 def triangles(shape: SampleShape) -> Floats:
-    """Return the facets (F, 3, 3) [m] of a sample's mesh, counter-clockwise seen from outside."""
+    """Return the facets of a sample's mesh.
+
+    Parameters
+    ----------
+    shape : SampleShape
+
+    Returns
+    -------
+    (F, 3, 3) float [m]
+        Corners by facet, counter-clockwise seen from outside, rounded to multiples of ``WELD_MM``.
+    """
     mesh = shape.build(facets).to_mesh64()
     corners = np.asarray(mesh.vert_properties)[:, :3]
     places, joined = np.unique(np.round(corners / WELD_MM).astype(np.int64), axis=0, return_inverse=True)
@@ -25,14 +35,38 @@ def triangles(shape: SampleShape) -> Floats:
 
 
 def stl(shape: SampleShape) -> bytes:
-    """Return a sample as binary STL in mm."""
+    """Return a sample as binary STL.
+
+    Parameters
+    ----------
+    shape : SampleShape
+
+    Returns
+    -------
+    bytes
+        With lengths in mm.
+    """
     return binary_stl(triangles(shape), f"feeder sample: {shape.name}, in mm")
 
 
 def step(shape: SampleShape) -> bytes:
-    """Return a sample as STEP in mm, with planes, cylinders and cones.
+    """Return a sample as STEP, with planes, cylinders and cones.
 
-    Raises MissingPackage without OpenCASCADE, FeederError if what it makes is not the part of the mesh.
+    Parameters
+    ----------
+    shape : SampleShape
+
+    Returns
+    -------
+    bytes
+        With lengths in mm.
+
+    Raises
+    ------
+    MissingPackage
+        If OpenCASCADE is not installed.
+    FeederError
+        If the part that OpenCASCADE makes has another volume than the mesh, by more than ``STEP_TOLERANCE``.
     """
     exact_body.check()
     corners = triangles(shape) / MM

@@ -31,7 +31,7 @@ OTHERWISE = "choose another rate, machine or material, or give this part to feed
 
 
 class DesignState(StrEnum):
-    """What became of a design so far."""
+    """State of a design so far."""
 
     RUNNING = "running"
     STOPPING = "stopping"
@@ -55,14 +55,22 @@ class Guard:
         self._turn = threading.Lock()
 
     def tell(self, word: str, process: int) -> None:
-        """Tell it of a group of processes: 'run' or 'end'."""
+        """Tell the guard of a group of processes; a guard that has ended is told nothing.
+
+        Parameters
+        ----------
+        word : str
+            'run' or 'end'.
+        process : int
+            The id of the process that leads the group.
+        """
         with self._turn, contextlib.suppress(OSError, ValueError):
             if self._process.stdin is not None:
                 self._process.stdin.write(f"{word} {process}\n")
                 self._process.stdin.flush()
 
     def close(self) -> None:
-        """End it: it removes the folder."""
+        """End the guard: it removes the folder."""
         with self._turn, contextlib.suppress(OSError, ValueError):
             if self._process.stdin is not None:
                 self._process.stdin.close()
@@ -118,12 +126,12 @@ class DesignJob:
 
     @property
     def is_running(self) -> bool:
-        """Whether it is still at work."""
+        """Tell whether the design is still at work."""
         return self._process.poll() is None
 
     @property
     def lines(self) -> list[str]:
-        """The last lines that it said, with the name of the part in place of its path."""
+        """Return the last lines that the design said, with the name of the part in place of its path."""
         if not self.is_running:
             self._reader.join(timeout=1.0)
         upload, places = self.order.upload, (str(self.results), str(self.folder))
@@ -134,7 +142,7 @@ class DesignJob:
 
     @property
     def state(self) -> DesignState:
-        """What became of it so far."""
+        """Return the state of the design so far."""
         if self.is_running:
             return DesignState.STOPPING if self._stop_asked else DesignState.RUNNING
         if self._process.returncode and (self._stop_asked or self._process.returncode in STOPPED):
@@ -143,7 +151,7 @@ class DesignJob:
 
     @property
     def fault(self) -> str:
-        """Why it failed, in the words of the page; '' where it did not."""
+        """Return the reason why it failed, in the words of the page; '' where it did not."""
         if self.state != DesignState.FAILED:
             return ""
         faults = [line.removeprefix("Error: ") for line in self.lines if line.startswith("Error: ")]
@@ -153,7 +161,7 @@ class DesignJob:
 
     @property
     def stage(self) -> dict[str, Any]:
-        """How far it is: stage, done, total, seconds gone and to go; empty where nothing is said."""
+        """Return its progress: stage, done, total, seconds gone and to go; empty where nothing is said."""
         return _json_file(self._stage_file) if self.is_running else {}
 
     def files(self) -> dict[str, Path]:
@@ -168,13 +176,13 @@ class DesignJob:
 
     @property
     def answer(self) -> dict[str, Any]:
-        """The document of its answer, ``design.json``; empty where there is none, or none yet."""
+        """Return the document of its answer, ``design.json``; empty where there is none, or none yet."""
         if self._answer is None and not self.is_running:
             self._answer = _json_file(self.files().get("design.json"))
         return self._answer or {}
 
     def document(self) -> dict[str, Any]:
-        """Return what a list of designs says of it."""
+        """Return the row of the design in a list of designs, as JSON has it."""
         answer = self.answer
         names = ("status", "wanted", "delivered_per_minute")
         return {

@@ -13,7 +13,13 @@ import sys
 
 
 def main(folder: str) -> None:
-    """Wait for the end of the server, then kill what runs and remove its folder."""
+    """Wait for the end of the server, then kill what runs and remove its folder.
+
+    Parameters
+    ----------
+    folder : str
+        The folder of the server, with everything in it.
+    """
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)

@@ -20,7 +20,7 @@ class NextStep:
 
     @property
     def document(self) -> dict[str, Any]:
-        """What the page is told of it."""
+        """Return the step as the page gets it, as JSON has it."""
         return {"label": self.label, "change": self.change}
 
 

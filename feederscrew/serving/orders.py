@@ -29,25 +29,25 @@ BEST_HEADING = "best"
 
 
 class MayUse(StrEnum):
-    """What a design may use beside steel."""
+    """Means that a design may use beside steel."""
 
     AIR = "air"
     CAMERA = "camera"
 
     @property
     def label(self) -> str:
-        """What the page calls it."""
+        """Return the name that the page has for it."""
         return {"air": "steady air", "camera": "camera or sensor with an air valve"}[self]
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of devices that take it, as --without knows them."""
+        """Return the kinds of devices that take it, as --without knows them."""
         return tuple(name for name, kind in KINDS.items() if kind.cost_class == {"air": 2, "camera": 3}[self])
 
 
 @dataclass(frozen=True)
 class PageOrder:
-    """What a page asks for: a part, and the values of its fields."""
+    """Order of a page: a part, and the values of its fields."""
 
     upload: Upload
     rate: float  # [1/min]
@@ -62,7 +62,26 @@ class PageOrder:
 
     @classmethod
     def of(cls, values: Mapping[str, Any], upload: Upload, bowl: BowlUpload | None = None) -> "PageOrder":
-        """Return the order of a page. Raises Refusal of a value that the page does not offer."""
+        """Return the order of a page.
+
+        Parameters
+        ----------
+        values : mapping of str to object
+            What the page sent, not checked: 'rate' [1/min], 'material', 'machine', and the optional fields.
+        upload : Upload
+            The part.
+        bowl : BowlUpload, optional
+            The file of the bowl at hand.
+
+        Returns
+        -------
+        PageOrder
+
+        Raises
+        ------
+        Refusal
+            If a value is not of its list or a number is out of range.
+        """
         may_use = values.get("may_use", list(MayUse))
         if not isinstance(may_use, list) or not all(name in list(MayUse) for name in may_use):
             raise Refusal(400, "what may be used: is not of the list - tick what is there")
@@ -84,7 +103,7 @@ class PageOrder:
 
     @property
     def options(self) -> tuple[str, ...]:
-        """The options of ``feeder design``, without the folder and a bowl file."""
+        """Return the options of ``feeder design``, without the folder and a bowl file."""
         own = ["--target", f"{self.rate:g}/min", "--density", self.material, "--units", self.upload.units]
         if self.up and self.heading == ANY_HEADING:
             own += ["--up", self.up]
@@ -99,19 +118,19 @@ class PageOrder:
 
     @property
     def arguments(self) -> tuple[str, ...]:
-        """The arguments of the program, without its folder."""
+        """Return the arguments of the program, without its folder."""
         config = () if self.bowl is None else ("--config", str(self.bowl.path))
         return "design", str(self.upload.path), *self.options, *config
 
     @property
     def command(self) -> str:
-        """The same on a command line, to be pasted where the files lie."""
+        """Return the same on a command line, to be pasted where the files lie."""
         config = () if self.bowl is None else ("--config", self.bowl.name)
         return shlex.join(["feeder", "design", self.upload.name, *self.options, *config, "-o", "results"])
 
     @property
     def values(self) -> dict[str, Any]:
-        """The values of the page's fields that give this order again."""
+        """Return the values of the page's fields that give this order again."""
         own = ("rate", "material", "machine", "up", "heading", "outcome", "may_use", "diameter")
         bowl = None if self.bowl is None else self.bowl.id
         return {"part": self.upload.id, "bowl": bowl, **{name: getattr(self, name) for name in own}}

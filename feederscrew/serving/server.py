@@ -22,7 +22,15 @@ class Handler(WSGIRequestHandler):
     timeout = IDLE_S
 
     def log(self, type: str, message: str, *args: object) -> None:
-        """Say nothing."""
+        """Say nothing.
+
+        Parameters
+        ----------
+        type, message : str
+            As werkzeug gives them; not used.
+        *args : object
+            Not used.
+        """
 
     def run_wsgi(self) -> None:
         """Answer a request that has come; meanwhile its connection is not idle."""
@@ -54,7 +62,15 @@ class BoundedServer(ThreadedWSGIServer):
         site.port = self.port = self.server_address[1]
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Answer a connection in a thread of its own, if there may be one more."""
+        """Answer a connection in a thread of its own, if there may be one more.
+
+        Parameters
+        ----------
+        request : socket
+            The connection.
+        client_address : tuple
+            Where it comes from.
+        """
         closed = None
         with self._turn:
             if len(self._open) >= MOST_CONNECTIONS:
@@ -71,13 +87,26 @@ class BoundedServer(ThreadedWSGIServer):
         super().process_request(request, client_address)
 
     def mark(self, request: Any, *, is_idle: bool) -> None:
-        """Note whether a connection has a request at work."""
+        """Note whether a connection has a request at work.
+
+        Parameters
+        ----------
+        request : socket
+            The connection; one that is closed already is left alone.
+        is_idle : bool
+        """
         with self._turn:
             if request in self._open:
                 self._open[request] = is_idle
 
     def shutdown_request(self, request: Any) -> None:
-        """Close a connection."""
+        """Close a connection, and forget it.
+
+        Parameters
+        ----------
+        request : socket
+            The connection.
+        """
         with self._turn:
             self._open.pop(request, None)
         super().shutdown_request(request)

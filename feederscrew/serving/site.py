@@ -78,13 +78,13 @@ class Site:
 
     @property
     def hosts(self) -> list[str]:
-        """What a browser says of whom it asks, and after http:// from where a page comes."""
+        """Return the hosts that a browser may name, with the port; http:// and one is an allowed origin."""
         with_port = [f"{name}:{self.port}" for name in NAMES]
         return [*NAMES, *with_port] if self.port == HTTP_PORT else with_port
 
     @property
     def address(self) -> str:
-        """The address to open, with the token of this run."""
+        """Return the address to open, with the token of this run."""
         return f"http://{self.hosts[0]}/?token={self.token}"
 
     def __call__(self, environ: dict[str, Any], start_response: Callable[..., Any]) -> Iterable[bytes]:
@@ -110,7 +110,22 @@ class Site:
     def answer(self, request: Request) -> Response:
         """Return the answer to a request.
 
-        Raises Refusal where it may not ask or cannot be answered, FeederError where a file is at fault.
+        Parameters
+        ----------
+        request : Request
+            Of werkzeug. It needs the token of this run, one of ``hosts``, and to be sent from a page of this
+            server.
+
+        Returns
+        -------
+        Response
+
+        Raises
+        ------
+        Refusal
+            If it may not ask, or cannot be answered.
+        FeederError
+            If a file is at fault.
         """
         words = self._admit(request).strip("/").split("/")
         match request.method, words:
@@ -196,7 +211,17 @@ class Site:
         }
 
     def progress(self, job: DesignJob) -> dict[str, Any]:
-        """Return all that the page shows of a design."""
+        """Return everything that the page shows of a design.
+
+        Parameters
+        ----------
+        job : DesignJob
+
+        Returns
+        -------
+        dict of str to object
+            As JSON has it: ``DesignJob.progress`` and the links to the files of the result, by their names.
+        """
         files = [name for name in job.files() if name]
         links = {name: f"{TOKEN_PATH}{self.token}/design/{job.id}/files/{quote(name)}" for name in files}
         return {**job.progress(), "files": links}
@@ -204,7 +229,21 @@ class Site:
     def start_design(self, request: Request) -> Response:
         """Start a design of a part that is here.
 
-        Raises Refusal where a value is not of its list or a rate is out of range.
+        Parameters
+        ----------
+        request : Request
+            Its body is the values of the page's fields, as JSON.
+
+        Returns
+        -------
+        Response
+            The progress of the new design, as JSON.
+
+        Raises
+        ------
+        Refusal
+            If a value is not of its list, a rate is out of range, the part is not here, or a design is
+            running.
         """
         try:
             values = json.loads(_body(request, VALUES_BYTES, "the request", "use the page of feeder serve"))
@@ -229,7 +268,24 @@ class Site:
         return _json(self.progress(job))
 
     def file(self, job: DesignJob, name: str) -> Response:
-        """Return one file of a result, looked up by its name among those that are there."""
+        """Return one file of a result, looked up by its name among those that are there.
+
+        Parameters
+        ----------
+        job : DesignJob
+        name : str
+            Its path below the folder of the part, with '/'.
+
+        Returns
+        -------
+        Response
+            To be saved, unless it is of ``KINDS``, which a browser shows.
+
+        Raises
+        ------
+        Refusal
+            If the result has no such file.
+        """
         files = job.files()
         if name not in files:
             raise Refusal(404, "the result has no such file - see the list on the page")
@@ -240,7 +296,22 @@ class Site:
         return response
 
     def zipped(self, job: DesignJob) -> Response:
-        """Return the whole folder of a result."""
+        """Return the whole folder of a result, zipped.
+
+        Parameters
+        ----------
+        job : DesignJob
+
+        Returns
+        -------
+        Response
+            An archive named after the part.
+
+        Raises
+        ------
+        Refusal
+            If there is no result yet.
+        """
         files = job.files()
         if not files:
             raise Refusal(404, "there is no result yet - start a design and wait for its end")

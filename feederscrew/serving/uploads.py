@@ -51,7 +51,7 @@ class Upload:
 
     @property
     def document(self) -> dict[str, object]:
-        """What the page is told of it."""
+        """Return the upload as the page gets it, as JSON has it."""
         return {
             "id": self.id,
             "name": self.name,
@@ -77,7 +77,7 @@ class BowlUpload:
 
     @property
     def document(self) -> dict[str, str]:
-        """What the page is told of it."""
+        """Return the file as the page gets it, as JSON has it."""
         return {"id": self.id, "name": self.name}
 
 
@@ -95,7 +95,22 @@ class Uploads:
         self._one_at_a_time = threading.Lock()
 
     def find(self, key: object) -> Upload:
-        """Return an upload by its id. Raises Refusal where there is none."""
+        """Return an upload by its id.
+
+        Parameters
+        ----------
+        key : object
+            As a browser sent it.
+
+        Returns
+        -------
+        Upload
+
+        Raises
+        ------
+        Refusal
+            If there is none.
+        """
         upload = self.kept.get(key) if isinstance(key, str) else None
         if upload is None:
             raise Refusal(409, NO_PART)
@@ -146,21 +161,72 @@ class Uploads:
         return upload
 
     def read_again(self, key: object, units: str, needed: frozenset[str] = frozenset()) -> Upload:
-        """Return an upload of the same file in another unit, which has an id of its own. Raises Refusal."""
+        """Return an upload of the same file in another unit, which has an id of its own.
+
+        Parameters
+        ----------
+        key : object
+            The id of the upload.
+        units : str
+            One of UNITS. In the unit that the upload has, it is returned itself.
+        needed : frozenset of str, optional
+            Ids of uploads that are kept, whatever room they take.
+
+        Returns
+        -------
+        Upload
+
+        Raises
+        ------
+        Refusal
+            If there is no such upload, or it cannot be read in that unit.
+        """
         before = self.find(key)
         if before.units == units:
             return before
         return self.take(before.name, units, before.path.read_bytes(), needed)
 
     def find_bowl(self, key: object) -> BowlUpload:
-        """Return a bowl file by its id. Raises Refusal where there is none."""
+        """Return a bowl file by its id.
+
+        Parameters
+        ----------
+        key : object
+            As a browser sent it.
+
+        Returns
+        -------
+        BowlUpload
+
+        Raises
+        ------
+        Refusal
+            If there is none.
+        """
         bowl = self.bowls.get(key) if isinstance(key, str) else None
         if bowl is None:
             raise Refusal(409, "that bowl file is not here - choose it again")
         return bowl
 
     def take_bowl(self, name: str, data: bytes) -> BowlUpload:
-        """Keep a bowl file that can be read, its bytes ``data``. Raises Refusal."""
+        """Keep a bowl file that can be read.
+
+        Parameters
+        ----------
+        name : str
+            As the browser has it.
+        data : bytes
+            Its content.
+
+        Returns
+        -------
+        BowlUpload
+
+        Raises
+        ------
+        Refusal
+            If it is no bowl file, or cannot be read: then nothing of it is kept.
+        """
         shown = printable(name)[-NAME_LETTERS:]
         stem, _, ending = shown.rpartition(".")
         if not stem or ending.lower() not in BOWL_ENDINGS:

@@ -156,7 +156,7 @@ def several(name: str, items: object, wanted: type, mend: str) -> tuple[Any, ...
     Raises
     ------
     ArgumentError
-        If it is no list, or an item is of another class.
+        If it is not a list, or an item is of another class.
     """
     listed = check.kind(name, items, (tuple, list), mend)
     return tuple(check.kind(name, item, wanted, mend) for item in listed)

@@ -293,7 +293,7 @@ def _read(path: str | PathLike[str]) -> tuple[profiles.CountSheet, str]:
 
 
 def _measured(part: Part, table: profiles.CountSheet, path: str, sha256: str) -> profiles.CountFile:
-    """What was counted, by the aspects of the part: faults of the file come before the part is dropped."""
+    """Return the counts by the aspects of the part: faults of the file come before the part is dropped."""
     aspects, rules = _answers(part, table.head, None, as_published=False, drops=0)
     return profiles.parse_profiles(table, path, sha256, aspects.names, [rule.name for rule in rules])
 

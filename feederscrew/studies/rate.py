@@ -251,7 +251,7 @@ class RateStudy(ReadableRecord):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each: of the devices, the aspects, the velocity."""
+        """Return a sentence for each thing that a user must not overlook: devices, aspects, velocity."""
         odd = checks.speed_remark(self.rate.velocity.value, self.bowl.sizing)
         other = () if self.measured is None else self.measured.warnings(self.part)
         return (

@@ -65,7 +65,7 @@ class ReportStudy(ReadableRecord):
 
     @property
     def row(self) -> int:
-        """Of the wanted aspect."""
+        """Return the row of the wanted aspect among the aspects."""
         return self.resting.aspects.names.index(self.aspect)
 
     @property
@@ -127,7 +127,7 @@ class ReportStudy(ReadableRecord):
 
     @cached_property
     def passages(self) -> rates.PassagesStudy | None:
-        """What the bowl's devices do with each orientation, a PassagesStudy; None without such devices."""
+        """Return the passage of each orientation through the bowl's devices; None without such devices."""
         if not any(device.placed for device in self.bowl.devices):
             return None
         return rates.passages(self.part, self.bowl, self.resting.aspects, self.rule)

@@ -164,7 +164,7 @@ class ToolingStudy(ReadableRecord):
 
     @property
     def leaves_as(self) -> str:
-        """How parts of the orientation asked for leave its design: 'A@188', or 'hanging' of rails.
+        """Return how parts of the orientation asked for leave its design: 'A@188', or 'hanging' of rails.
 
         Empty where every orientation is studied.
         """
@@ -218,7 +218,7 @@ class ToolingStudy(ReadableRecord):
 
     @property
     def of_size(self) -> tuple[str, ...]:
-        """What to say of a part that is not much larger than what is asked for, or than the track is wide."""
+        """Return sentences where a part is not much larger than what is asked for, or than the track."""
         margin = self.margin - self.play - self.tolerance
         allowances = {"margin": margin, "play": self.play, "tolerance": self.tolerance}
         return small_part_remarks(self.part, allowances, self.bowl.track.width)

@@ -91,12 +91,12 @@ class Item:
 
     @property
     def name(self) -> str:
-        """Of kind and number: 'table 3-9'."""
+        """Return the name for people, kind and number: 'table 3-9'."""
         return f"{self.kind} {self.id}"
 
     @property
     def stem(self) -> str:
-        """Of its files: 'table_3_09'."""
+        """Return the stem of the names of its files: 'table_3_09'."""
         chapter, number = self.id.split("-")
         return f"{self.kind}_{chapter}_{int(number):02d}"
 

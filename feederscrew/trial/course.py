@@ -32,7 +32,7 @@ from feederscrew.trial.staging import Stage
 
 
 class Fate(enum.IntEnum):
-    """What became of a part; the numbers are columns of the tables of counts."""
+    """Fate of a part; the numbers are columns of the tables of counts."""
 
     PASSED = 0  # left as it should
     TURNED = 1  # left otherwise
@@ -44,7 +44,7 @@ class Fate(enum.IntEnum):
 
     @property
     def word(self) -> str:
-        """The name that tables and files have: 'rolled_back'."""
+        """Return the name that tables and files have: 'rolled_back'."""
         return self.name.lower()
 
 
@@ -103,13 +103,37 @@ def course(
     may_leave: Bools | None = None,
     run: RunSettings = USUAL_RUN,
 ) -> Course:
-    """Send parts through a chain of devices, in the order parts meet them.
+    """Send parts through a chain of devices, one at a time, in the order parts meet them.
 
-    ``poses`` are the S orientations in which the part may be, its M ``orientations`` first; ``may_leave``
-    (M, S) tells in which of them an orientation may leave and still be said to pass: as it came without it.
-    The seed of ``run`` is of play, heading and phase of the drive: each part draws its own. It tells how
-    many parts are through, of how many. Raises FeederError if the part has no shape or the bowl conveys
-    nothing at all.
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        Its own devices are not looked at.
+    orientations : sequence of Orientation
+        The M in which parts are sent.
+    sent : SentParts
+        Which parts are sent.
+    devices : sequence of Device
+        Along the track; one that is a measured yield is left out.
+    poses : sequence of Orientation, optional
+        The S orientations in which a part may be found, the M first; without it those M.
+    may_leave : (M, S) bool, optional
+        In which of them an orientation may leave and still be said to pass; without it as it came. What hangs
+        between rails may always leave so.
+    run : RunSettings, optional
+        Its seed is of play, heading and phase of the drive: each part draws its own. It is told how many
+        parts are through, of how many.
+
+    Returns
+    -------
+    Course
+        Of the parts that were through when the user stopped it, if he did.
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape or too many facets, or the bowl conveys nothing at all.
     """
     solid, length, principal = solid_of(part)
     solid = round_circles(solid, roll_axes(orientations, principal))
@@ -207,9 +231,22 @@ def course(
 
 
 def lead_on(states: States, station: Stage, begin: float, part_in_bowl: runs.BowlOfPart) -> States:
-    """Return states (N, 13) behind a station, on the track at the begin [m] of the next one.
+    """Return the states of parts behind a station, on the track at the begin of the next one.
 
     What went down to a lower track goes on at its level; one that begins beside a ledge leads to the wall.
+
+    Parameters
+    ----------
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        In which parts have passed the station.
+    station : Stage
+    begin : float [m]
+        Place of the next station along the wall.
+    part_in_bowl : BowlOfPart
+
+    Returns
+    -------
+    (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
     """
     radius, length = part_in_bowl.radius, part_in_bowl.length
     states = part_poses.move_along_wall(
@@ -225,7 +262,22 @@ def lead_on(states: States, station: Stage, begin: float, part_in_bowl: runs.Bow
 
 
 def roll_axes(orientations: Sequence[Orientation], principal: Floats) -> list[Floats]:
-    """Return the axes (N, 3) about which a part rolls, along its principal axes."""
+    """Return the axes about which a part rolls, each once.
+
+    An axis counts where the posture has no circle of its own on which it rolls (``rolling_circle``): the
+    trial then looks for circles of the part about it.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    principal : (3, 3) float [1]
+        Principal axes as columns, in the file's axes.
+
+    Returns
+    -------
+    list of (3,) float [1]
+        Unit vectors, along the principal axes.
+    """
     roll_axes = {}
     postures: list[Any] = [lying.posture for lying in orientations if lying.kind == "rolling"]
     for posture in postures:
@@ -237,16 +289,35 @@ def roll_axes(orientations: Sequence[Orientation], principal: Floats) -> list[Fl
 
 
 def leaves_by_rule(leaving: Floats) -> Bools:
-    """Return the states (M, S) in which an orientation leaves as the static rule says, its own if in none.
+    """Return the states in which an orientation leaves as the static rule says, its own if in none.
 
-    ``leaving`` (M, S) [1] has its share in each, the M first.
+    Parameters
+    ----------
+    leaving : (M, S) float [1]
+        The share of each of M orientations that leaves in each of S states, the M first.
+
+    Returns
+    -------
+    (M, S) bool
     """
     right = leaving > 0.0
     return right | (np.eye(len(right), right.shape[1], dtype=bool) & (right.sum(axis=1) == 0)[:, None])
 
 
 def limits_at(bowl: Bowl, station: Stage, orientations: Sequence[Orientation]) -> runs.RideLimits:
-    """Return how long a part has, and how often it is looked at, by the velocity of the point mass."""
+    """Return how long a part has at a station and how often it is noted, by the velocity of a point mass.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    station : Stage
+    orientations : sequence of Orientation
+        The longest sets how far a part may go back.
+
+    Returns
+    -------
+    RideLimits
+    """
     velocity = answer.answer(bowl).velocity
     speed = max(velocity if np.isfinite(velocity) else 0.0, LEAST_SPEED_M_S)
     distance, period = station.exit - station.begin, 1.0 / bowl.drive.frequency
@@ -259,7 +330,24 @@ def limits_at(bowl: Bowl, station: Stage, orientations: Sequence[Orientation]) -
 
 
 def fate_at(station: Stage, outcome: int, state: State, looks: Looks, length: float) -> int:
-    """Return what became of a part that has not passed a station; ``length`` [m] is of the unit."""
+    """Return the fate of a part that has not passed a station.
+
+    Parameters
+    ----------
+    station : Stage
+    outcome : int
+        Of the ride: RETURNED, ROLLED, STANDS or RUNNING of ``runs``.
+    state : (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+        In which it ended.
+    looks : Looks
+    length : float [m]
+        The unit of length L.
+
+    Returns
+    -------
+    int
+        One of ``Fate``: STOPPED within ``AT_DEVICE_M`` of the device, else STUCK.
+    """
     if outcome in (runs.RETURNED, runs.ROLLED):
         return RETURNED if outcome == runs.RETURNED else ROLLED_BACK
     rear, front, low = part_poses.reaches(state[None], looks.corners, looks.radius)[0] * length
@@ -270,7 +358,20 @@ def fate_at(station: Stage, outcome: int, state: State, looks: Looks, length: fl
 
 
 def velocities(ride: runs.Runs, radius: float) -> Floats:
-    """Return mean velocities (N,) [m/s], over the second half of each path; NaN of a short one."""
+    """Return mean velocities along the wall, over the second half of each path.
+
+    Parameters
+    ----------
+    ride : Runs
+        Of N parts.
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    (N,) float [m/s]
+        NaN of a path of fewer than four places, and of a part that was returned.
+    """
     means = np.full(len(ride.paths), np.nan)
     for n, path in enumerate(ride.paths):
         count = int(np.isfinite(path[:, 0]).sum())
@@ -284,7 +385,7 @@ def velocities(ride: runs.Runs, radius: float) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Landing:
-    """What became of N parts that fell onto the track; A aspects, S orientations in which parts leave."""
+    """Fates of N parts that fell onto the track; A aspects, S orientations in which parts leave."""
 
     launch: str
     parts: int  # N
@@ -331,10 +432,34 @@ def landing(
 ) -> Landing:
     """Let parts fall onto the bare, moving track and send those that lie on it through the devices.
 
-    ``poses`` are the orientations in which the part may leave; ``launch``, a key of
-    ``dropping.launch_conditions.PRESETS``, gives height, spin and speed. Progress is told how many parts are
-    done, of how many, first with the landing. Raises KeyboardInterrupt if the user stops it before all have
-    come to lie and the first of them are through.
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    aspects : Aspects
+        The A of the part.
+    orientations : sequence of Orientation
+        Of the part on that track.
+    poses : sequence of Orientation
+        The S in which a part may leave.
+    launch : str
+        A key of ``dropping.launch_conditions.PRESETS``, which gives height, spin and speed.
+    parts : int
+        To let fall.
+    run : RunSettings, optional
+        It is told how many parts are done, of how many, first with the landing.
+
+    Returns
+    -------
+    Landing
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all have come to lie and the first of them are through.
+    FeederError
+        If the part has no shape or too many facets, or the bowl conveys nothing at all.
     """
     below, thrown = AspectsBelow(part, aspects), named(launch)
     run.begin()

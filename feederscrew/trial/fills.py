@@ -26,7 +26,7 @@ BARE_TRACK = ""  # name of the place before any device
 
 
 class FillLevel(enum.StrEnum):
-    """How closely parts come in a row; files print the word."""
+    """Density of parts in a row; files print the word."""
 
     LOW = "low"  # a third of the row is empty
     NORMAL = "normal"
@@ -34,17 +34,17 @@ class FillLevel(enum.StrEnum):
 
     @property
     def gaps(self) -> float:
-        """Mean free way between parts as they come, over their length [1]."""
+        """Return the mean free way between parts as they come, over their length [1]."""
         return {FillLevel.LOW: 0.5, FillLevel.NORMAL: MEAN_GAP_SHARE, FillLevel.HIGH: 0.0}[self]
 
     @property
     def parts(self) -> int:
-        """Parts of a row that is as long as ``TOUCHING_PARTS`` parts."""
+        """Return how many parts are in a row that is as long as ``TOUCHING_PARTS`` parts."""
         return round(TOUCHING_PARTS / (1.0 + self.gaps))
 
 
 class PoseKind(enum.Enum):
-    """How well the pose in which a part left is known."""
+    """Knowledge of the pose in which a part left."""
 
     ORIENTATION = enum.auto()
     HEADING_OFF = enum.auto()  # on an aspect, at a heading that is none of the listed ones
@@ -61,7 +61,7 @@ class LeavingPose:
 
     @property
     def text(self) -> str:
-        """The pose in words: 'A@90', 'C, heading off', 'in no known pose'."""
+        """Return the pose in words: 'A@90', 'C, heading off', 'in no known pose'."""
         match self.kind:
             case PoseKind.ORIENTATION:
                 return self.name
@@ -75,7 +75,18 @@ LeavingCounts = tuple[tuple[LeavingPose, int], ...]  # the most first
 
 
 def join_leaving_counts(*counts: LeavingCounts) -> LeavingCounts:
-    """Return poses with their numbers of parts added up, the most first."""
+    """Return poses with their numbers of parts added up.
+
+    Parameters
+    ----------
+    *counts : LeavingCounts
+        (pose, number) pairs, a tuple of them for each queue.
+
+    Returns
+    -------
+    LeavingCounts
+        Each pose once, the most first.
+    """
     total = Counter[LeavingPose]()
     for count in counts:
         total.update(dict(count))
@@ -84,7 +95,7 @@ def join_leaving_counts(*counts: LeavingCounts) -> LeavingCounts:
 
 @dataclass(frozen=True)
 class FilledQueue:
-    """What a queue did at one fill."""
+    """Counts of a queue at one fill."""
 
     fill: str  # 'low', 'normal', 'high'
     gaps: float  # [1] mean free way between parts as they come, over their length
@@ -106,14 +117,14 @@ class FilledQueue:
 
     @property
     def rate(self) -> float:
-        """Wanted parts [1/s]."""
+        """Return wanted parts that leave [1/s]: delivered ones times the wanted share of whole ones."""
         if not self.counted > 0.0 or not self.left:
             return 0.0
         return self.delivered / self.counted * self.right / self.left
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Ends of the 95 % interval of that rate [1/s]: of the share of what is offered that leaves right."""
+        """Return the ends of the 95 % interval of that rate [1/s]: pace times the interval of the share."""
         if not self.pace > 0.0:
             return 0.0, 0.0
         low, high = share_interval((self,))
@@ -121,23 +132,41 @@ class FilledQueue:
 
     @property
     def offered(self) -> int:
-        """Whole parts of which something became."""
+        """Return the number of whole parts of which something became."""
         return self.left + self.returned
 
     @property
     def pace(self) -> float:
-        """Parts [1/s] that are offered; 0 where none leaves as wanted."""
+        """Return the parts that are offered [1/s]; 0 where none leaves as wanted."""
         return self.rate * self.offered / self.right if self.right else 0.0
 
 
 def share_interval(queues: Iterable[FilledQueue]) -> tuple[float, float]:
-    """Return the 95 % interval [1] of the share of parts that leave as wanted, of those something became of.
+    """Return the 95 % interval of the share of parts that leave as wanted, of those something became of.
 
     Parts come in their orientations in exact shares, so only what becomes of each orientation is left to
-    chance. The proportions of the orientations, each with its Wilson interval, are added up by these shares.
+    chance. The proportions p of the orientations, each with its Wilson interval (l, u), are added up by their
+    shares w of the parts:
 
-    Source: W. G. Cochran, "Sampling techniques", 3rd ed., 1977, sec. 5.3, for the sum over strata. Its
-    interval: G. Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008.
+        sum(w p) - sqrt(sum((w (p - l))^2))  to  sum(w p) + sqrt(sum((w (u - p))^2)),
+
+    cut off at 0 and 1.
+
+    Parameters
+    ----------
+    queues : iterable of FilledQueue
+        Of one supply: their counts are added up. Where one does not know its counts by orientation, all parts
+        are taken as of one.
+
+    Returns
+    -------
+    low, high : float [1]
+        0 and 1 where nothing became of any part.
+
+    References
+    ----------
+    W. G. Cochran, "Sampling techniques", 3rd ed., 1977, sec. 5.3, for the sum over strata.
+    G. Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008, for its interval.
     """
     queues = tuple(queues)
     right, offered = sum(queue.right for queue in queues), sum(queue.offered for queue in queues)
@@ -172,7 +201,7 @@ class FedRow:
     def queue(
         self, fill: FillLevel, seconds: float, seed: int, *, parts: int | None = None, frames: int = 0
     ) -> PartsQueue:
-        """Return the queue of a fill.
+        """Return the queue of a fill, not yet followed.
 
         Parameters
         ----------
@@ -183,8 +212,12 @@ class FedRow:
             Of play, gaps and the order of the orientations.
         parts : int, optional
             In the row; those of the fill without it.
-        frames : int
+        frames : int, optional
             Poses of all parts that are noted for a film.
+
+        Returns
+        -------
+        PartsQueue
         """
         poses = find_poses(self.orientations, self.states, self.any_heading)
         is_apart = fill.gaps > 0.0
@@ -213,11 +246,29 @@ class FedRow:
 
         On an aspect that counts at any heading a part counts by the face below it, as at the outlet, whatever
         its heading. Any other counts in the orientations that are wanted.
+
+        Parameters
+        ----------
+        outcome : QueuedParts
+
+        Returns
+        -------
+        int
         """
         return int(outcome.whole[self._is_wanted(outcome.whole.shape)].sum())
 
     def left_instead(self, outcome: QueuedParts) -> LeavingCounts:
-        """Return in which poses whole parts left otherwise than wanted, and how many, the most first."""
+        """Return in which poses whole parts left otherwise than wanted.
+
+        Parameters
+        ----------
+        outcome : QueuedParts
+
+        Returns
+        -------
+        LeavingCounts
+            Each pose with its number of parts, the most first; poses without any are left out.
+        """
         lying, names, free = self.orientations.states, list(self.aspects.names), self._free
         counts, counted_headings = Counter[LeavingPose](), Counter[str]()
         for k, orientation in enumerate(lying):
@@ -236,7 +287,18 @@ class FedRow:
         return tuple((pose, number) for pose, number in counts.most_common() if number)
 
     def count(self, fill: FillLevel, outcome: QueuedParts) -> FilledQueue:
-        """Return what a queue did at a fill as a FilledQueue."""
+        """Return the counts of a queue that was followed.
+
+        Parameters
+        ----------
+        fill : FillLevel
+            At which its parts came.
+        outcome : QueuedParts
+
+        Returns
+        -------
+        FilledQueue
+        """
         left = outcome.left_by_entry
         is_wanted = self._is_wanted(outcome.whole.shape)
         as_wanted = left[:, is_wanted].sum(axis=1)

@@ -30,7 +30,7 @@ LEFT = -2  # of a part that has left the track or rolled back
 
 @dataclass(frozen=True, eq=False)
 class RideOfTrack:
-    """What became of N parts on bare track; M orientations."""
+    """Arrivals of N parts that rode on bare track; M orientations."""
 
     names: tuple[str, ...]  # (M,) of the orientations
     entry_rows: Ints  # (N,) the orientation in which each began
@@ -41,12 +41,12 @@ class RideOfTrack:
 
     @property
     def rows(self) -> list[int]:
-        """The orientations that were ridden, in the order in which they were begun."""
+        """Return the orientations that were ridden, in the order in which they were begun."""
         return list(dict.fromkeys(self.entry_rows.tolist()))
 
     @property
     def counts(self) -> Ints:
-        """(M, M + 1) parts by the orientation in which they began and ended; the last column has left."""
+        """Return parts (M, M + 1) by the orientation in which they began and ended; the last column: left."""
         counts = np.zeros((len(self.names), len(self.names) + 1), int)
         columns = np.where(self.end_rows == LEFT, len(self.names), self.end_rows)
         np.add.at(counts, (self.entry_rows, columns), 1)
@@ -54,14 +54,24 @@ class RideOfTrack:
 
     @property
     def is_turned(self) -> Bools:
-        """(M,) whether any part that began so has ended otherwise, or has left."""
+        """Return (M,) bool, whether any part that began so has ended otherwise, or has left."""
         counts = self.counts
         return counts.sum(axis=1) > np.diag(counts)
 
     def arriving_shares(self, shares: Floats) -> Floats:
-        """Return the shares (M,) [1] that arrive at the tooling of those (M,) that enter the track.
+        """Return the shares that arrive at the tooling of those that enter the track.
 
         An orientation that was not ridden stays what it is. What has left comes back with all others.
+
+        Parameters
+        ----------
+        shares : (M,) float [1]
+            Of the orientations at the entry.
+
+        Returns
+        -------
+        (M,) float [1]
+            Their sum is 1; as given where nothing arrives.
         """
         counts = self.counts.astype(float)
         ridden = counts.sum(axis=1)
@@ -87,10 +97,33 @@ def ride_of_track(
     They begin up to OFF_WALL_M from the wall, OFF_HEADING askew and OFF_LEVEL out of level, at any phase. A
     part that stands goes on when others push it: it stays as it is.
 
-    Of the bowl's devices those that lean the track at its entry count. ``repeats`` parts of every one of the
-    ``rows`` ride over a ``distance`` [m], by default a turn of the bowl and RIDE_M at the most, for
-    RIDE_S at the most; each draws its start from the seed of ``run``. Raises KeyboardInterrupt if the user
-    stops it before all have arrived, FeederError if the part has no shape or the bowl conveys nothing.
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        Of its devices those that lean the track at its entry count.
+    orientations : sequence of Orientation
+        M of them.
+    rows : sequence of int
+        Those that ride.
+    repeats : int
+        Parts of every one of them.
+    distance : float [m], optional
+        Over which they ride; a turn of the bowl and RIDE_M at the most without it. They ride for RIDE_S at
+        the most.
+    run : RunSettings, optional
+        From its seed each part draws its start.
+
+    Returns
+    -------
+    RideOfTrack
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all have arrived.
+    FeederError
+        If the part has no shape or the bowl conveys nothing.
     """
     distance = min(2.0 * np.pi * bowl.track.radius, RIDE_M) if distance is None else distance
     solid, length, principal = solid_of(part)
@@ -148,7 +181,17 @@ def ride_of_track(
 
 
 def join_rides(first: RideOfTrack, second: RideOfTrack) -> RideOfTrack:
-    """Return two rides of the same orientations as one."""
+    """Return two rides of the same orientations as one.
+
+    Parameters
+    ----------
+    first, second : RideOfTrack
+
+    Returns
+    -------
+    RideOfTrack
+        The parts of the first, then those of the second.
+    """
     names = ("entry_rows", "end_rows", "is_askew", "distances", "seconds")
     both = (np.concatenate([getattr(ride, name) for ride in (first, second)]) for name in names)
     return RideOfTrack(first.names, *map(check.frozen, both))
@@ -181,17 +224,17 @@ class LongRide:
 
     @property
     def gains(self) -> Floats:
-        """(M,) [1] of all that enters, what began so and arrives as wanted though it was not."""
+        """Return (M,) [1] of all that enters, the share that arrives as wanted though it did not begin so."""
         return np.where(self._is_wanted, 0.0, self.entering * self._share_wanted)
 
     @property
     def losses(self) -> Floats:
-        """(M,) [1] of all that enters, what began so, as wanted, and arrives otherwise or not at all."""
+        """Return (M,) [1] of all that enters, the share that begins as wanted and does not arrive so."""
         return np.where(self._is_wanted, self.entering * (1.0 - self._share_wanted), 0.0)
 
     @property
     def warning(self) -> str:
-        """A sentence where the design depends on an orientation that turns on the way; '' elsewhere."""
+        """Return a sentence where the design depends on an orientation that turns on the way; else ''."""
         entering = float(self.entering[list(self.wanted)].sum())
         moved = self.gains + self.losses
         if not moved.sum() > DEPENDS * max(entering + self.gains.sum() - self.losses.sum(), 1e-12):
@@ -209,12 +252,18 @@ class LongRide:
 
     @property
     def distance(self) -> float:
-        """How far the parts rode that arrived [m], the median."""
+        """Return how far the parts rode that arrived [m], the median."""
         arrived = self.ride.end_rows >= 0
         return float(np.median(self.ride.distances[arrived])) if arrived.any() else 0.0
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return a dict of each orientation that rode: parts, how many stay, become another, or left."""
+        """Return a dict of each orientation that rode: parts, how many stay, become another, or left.
+
+        Returns
+        -------
+        list of dict of str to object
+            Shares and their Wilson interval are [1].
+        """
         lines, counts, names = [], self.ride.counts, self.ride.names
         for row in self.ride.rows:
             parts, stays = int(counts[row].sum()), int(counts[row, row])
@@ -246,9 +295,30 @@ def long_ride(
 ) -> LongRide:
     """Let parts ride from the track's entry to the tooling, and return the mix that arrives there.
 
-    The orientations that come often ride, in shares (M,) [1] in which they enter the track, and those that
-    leave as wanted whether they come often or not. Those of which a part turned or left ride with as many
-    parts again. Raises KeyboardInterrupt if the user stops it before all have arrived.
+    The orientations that come often ride, and those that leave as wanted whether they come often or not.
+    Those of which a part turned or left ride with as many parts again.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) float [1]
+        In which they enter the track; often is RIDING_SHARE or more.
+    wanted : sequence of int
+        Orientations that leave as wanted.
+    run : RunSettings
+        Its seed and its cores; no progress is told.
+
+    Returns
+    -------
+    LongRide
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all have arrived.
     """
     often = [int(k) for k in np.argsort(-shares, kind="stable") if shares[k] >= RIDING_SHARE]
     rows = list(dict.fromkeys([*often, *(k for k in wanted if shares[k] > 0.0)]))

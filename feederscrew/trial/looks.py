@@ -38,6 +38,18 @@ class Looks:
     One that lies turned by up to 10 deg, as a part that has just left a device may, is in the nearest. Where
     any heading of an aspect counts, one on that aspect is in the nearest of its orientations.
     Parts that hang swing and turn about the vertical: they are known by what of them is up.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        In which a part may be.
+    solid : TrueSolid
+        The part, as ``solid_of`` returns it with its unit of length and its principal axes.
+    length : float [m]
+        The unit of length L.
+    principal : (3, 3) float [1]
+    radius : float [m]
+        Of the wall.
     """
 
     def __init__(
@@ -60,7 +72,7 @@ class Looks:
         self.gravity = np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
 
         def reaches(orientation: Orientation, angles: Iterable[float]) -> Floats:
-            """How far it reaches in each direction, lying at angles from its heading."""
+            """Return how far it reaches in each direction, lying at angles from its heading."""
             posture: Any = orientation.posture
             corners = posture.corners - np.array([0.0, 0.0, posture.height])
             rows = []
@@ -75,7 +87,17 @@ class Looks:
         self.heading_reaches = {k: reaches(orientations[k], ALL_HEADINGS) for k in free}
 
     def find_orientations(self, states: Iterable[State]) -> Ints:
-        """Return (N,) orientation of each state, OTHER where it is none of the known."""
+        """Return the orientation in which each part lies, hangs, or comes to lie.
+
+        Parameters
+        ----------
+        states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+
+        Returns
+        -------
+        (N,) int
+            Rows of the orientations; OTHER where it is none of them.
+        """
         rows = []
         for state in states:
             turn = self._attitude(state)
@@ -91,7 +113,17 @@ class Looks:
         return np.array(rows, int)
 
     def find_nearest(self, states: Iterable[State]) -> Ints:
-        """Return (N,) the orientation that is nearest as each comes to lie, however far off it is."""
+        """Return the orientation that is nearest as each part comes to lie, however far off it is.
+
+        Parameters
+        ----------
+        states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+
+        Returns
+        -------
+        (N,) int
+            Rows of the orientations.
+        """
         rows = []
         for state in states:
             turn = self._attitude(state)
@@ -108,7 +140,7 @@ class Looks:
         )
 
     def _reach(self, turn: Floats) -> Floats:
-        """How far a part reaches in each direction."""
+        """Return how far a part reaches in each direction."""
         corners = vectors.product(self.corners, turn.T)
         return vectors.product(corners, self.directions.T).max(axis=0)
 
@@ -143,7 +175,14 @@ class Looks:
 
 
 class AspectsBelow:
-    """Tells on which aspect a part lies, or would come to lie if let go as it is, whatever its heading."""
+    """Tells on which aspect a part lies, or would come to lie if let go as it is, whatever its heading.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of that part.
+    """
 
     def __init__(self, part: Part, aspects: Aspects) -> None:
         faces = require_ground(part, aspects)
@@ -151,7 +190,17 @@ class AspectsBelow:
         self.rows = faces.rows
 
     def find_aspects(self, states: Iterable[State]) -> Ints:
-        """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
+        """Return the aspect on which each part lies or would come to lie.
+
+        Parameters
+        ----------
+        states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+
+        Returns
+        -------
+        (N,) int
+            Rows of the aspects; OTHER where it would come to lie on none.
+        """
         rows = []
         for turn in map(part_poses.matrix, states):
             lowest = int(np.argmin(vectors.product(self.shape.solid.vertices, turn[2])))

@@ -40,13 +40,34 @@ def lay_down(
 ) -> tuple[Floats, Floats]:
     """Return parts laid on the track, a little from the wall, askew and tilted, at any phase of the drive.
 
-    Each lies out of level by ``tilt``, drawn from a normal distribution, about an axis in any direction along
+    Each lies out of level by an angle drawn from a normal distribution, about an axis in any direction along
     the track's surface. What is exactly level keeps a steady state that the least tilt ends: docs/trial.md.
 
-    Returned are states (N, 13) at the place 0, the lowest corner on the track, and times (N,) [s]. In which
-    orientation each is laid is in ``rows`` (N,); ``principal`` (3, 3) [1] and the unit ``length`` [m] are
-    from ``solid_of``; from the ``seed`` each part draws its own numbers. ``play`` [m] is from the wall at
-    most, ``turn`` [rad] of its heading at most to either side, ``tilt`` [rad] a standard deviation.
+    Parameters
+    ----------
+    bowl : Bowl
+    orientations : sequence of Orientation
+    rows : (N,) int
+        The orientation in which each part is laid.
+    solid : TrueSolid
+        The part, as ``solid_of`` returns it with its principal axes and its unit of length.
+    principal : (3, 3) float [1]
+    length : float [m]
+    seed : int
+        From it each part draws its own numbers.
+    play : float [m], optional
+        From the wall, at most.
+    turn : float [rad], optional
+        Of its heading, at most to either side.
+    tilt : float [rad], optional
+        Standard deviation of its angle out of level.
+
+    Returns
+    -------
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        At the place 0, at rest, the lowest corner on the track.
+    times : (N,) float [s]
+        Within one period of the drive: the phase.
     """
     states, times = np.zeros((len(rows), body.STATE)), np.zeros(len(rows))
     for n, k in enumerate(rows):
@@ -63,7 +84,19 @@ def lay_down(
 def tilt_state(state: State, corners: Points, rng: np.random.Generator, spread: float = START_TILT) -> State:
     """Return a part's state out of level about a level axis, its lowest corner on the track.
 
-    Two numbers of ``rng`` are drawn; ``spread`` [rad] is the standard deviation of its tilt.
+    Parameters
+    ----------
+    state : (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+    corners : (C, 3) float [L]
+        Of the part, in its own axes.
+    rng : numpy.random.Generator
+        Two numbers are drawn.
+    spread : float [rad], optional
+        Standard deviation of the tilt.
+
+    Returns
+    -------
+    (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
     """
     angle, direction = spread * rng.standard_normal(), 2.0 * np.pi * rng.random()
     x, y, c, s = np.cos(direction), np.sin(direction), np.cos(angle), np.sin(angle)
@@ -78,14 +111,43 @@ def tilt_state(state: State, corners: Points, rng: np.random.Generator, spread: 
 
 
 def lowest_height(corners: Points, state: State) -> float:
-    """Return the height [L] of the lowest of the corners of a part."""
+    """Return the height of the lowest of the corners of a part.
+
+    Parameters
+    ----------
+    corners : (C, 3) float [L]
+        In its own axes.
+    state : (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+
+    Returns
+    -------
+    float [L]
+    """
     return state[body.Z] + vectors.product(corners, matrix(state)[2]).min()
 
 
 def set_play(
     state: State, solid: TrueSolid, track: Track, length: float, play: float, leans: float = 0.0
 ) -> State:
-    """Return a state moved across the track to ``play`` [m] from a wall that ``leans`` [rad] back."""
+    """Move a part across the track until it is so far from the wall; its state is changed in place.
+
+    Parameters
+    ----------
+    state : (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+    solid : TrueSolid
+    track : Track
+    length : float [m]
+        The unit of length L.
+    play : float [m]
+        From the wall to the part's nearest corner.
+    leans : float [rad], optional
+        Of the wall, back.
+
+    Returns
+    -------
+    (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+        The state given.
+    """
     spots = state[:3] + vectors.product(solid.corners, matrix(state).T)
     radius, off = track.radius / length, track.bank - leans
     lean, up = np.sin(off), np.cos(off)
@@ -98,10 +160,26 @@ def set_play(
 def draw_falling(
     bowl: Bowl, launch: Launch, shape: Shape, count: int, length: float, seed: int
 ) -> tuple[Floats, Floats]:
-    """Return parts that fall onto the track at the place 0, anywhere over its width, and their times [s].
+    """Return parts that fall onto the track at the place 0, anywhere over its width, and their times.
 
-    The launch gives height, spin and speed; friction and restitution are those of the bowl. The axes of the
-    shape are those of ``solid_of``, ``length`` [m] its unit.
+    Parameters
+    ----------
+    bowl : Bowl
+    launch : Launch
+        Height, spin and speed; friction and restitution are those of the bowl.
+    shape : Shape
+        In the axes of ``solid_of``.
+    count : int
+        Of parts, N.
+    length : float [m]
+        The unit of length L.
+    seed : int
+
+    Returns
+    -------
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+    times : (N,) float [s]
+        Within one period of the drive: the phase.
     """
     rng = np.random.default_rng((seed, count))
     states = np.array(sample(launch, shape, count, rng).states)
@@ -121,10 +199,26 @@ def pose_on_track(
     aside: float = 0.0,
     turn: float = 0.0,
 ) -> State:
-    """Return the state of a part laid on the track in an orientation.
+    """Return the state of a part laid on the track in an orientation, at rest.
 
-    ``principal`` (3, 3) [1] and the unit ``length`` [m] are from ``solid_of``; ``place`` [m] of its centre of
-    mass is along the wall, ``aside`` [m] from it; ``turn`` [rad] is of its heading, counter-clockwise.
+    Parameters
+    ----------
+    orientation : Orientation
+    principal : (3, 3) float [1]
+        Principal axes as columns, from ``solid_of``.
+    length : float [m]
+        The unit of length L, from ``solid_of``.
+    track : Track
+    place : float [m]
+        Of its centre of mass, along the wall.
+    aside : float [m], optional
+        From the wall, beyond where the part touches it.
+    turn : float [rad], optional
+        Added to its heading, counter-clockwise from above.
+
+    Returns
+    -------
+    (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
     """
     theta, angle = place / track.radius, place / track.radius + orientation.heading + turn
     c, s = np.cos(angle), np.sin(angle)
@@ -138,7 +232,17 @@ def pose_on_track(
 
 
 def quaternion(axes: Floats) -> Floats:
-    """Return the quaternion (4,) [1], w x y z, of a rotation matrix (3, 3) [1]."""
+    """Return the quaternion of a rotation matrix.
+
+    Parameters
+    ----------
+    axes : (3, 3) float [1]
+
+    Returns
+    -------
+    (4,) float [1]
+        w, x, y, z; of the two that turn alike, the one whose largest component is positive.
+    """
     trace = np.array([axes.trace(), *np.diag(axes)])
     spun = [axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]]
     wxyz, k = np.array([1.0 + trace[0], *spun]), int(np.argmax(trace))
@@ -150,7 +254,16 @@ def quaternion(axes: Floats) -> Floats:
 
 
 def matrix(state: State) -> Floats:
-    """Return the rotation matrix (3, 3) [1] of a state (13,), body to bowl; (3, 3, N) of states (13, N)."""
+    """Return the rotation matrix of a state, from the part's axes to the bowl's.
+
+    Parameters
+    ----------
+    state : (13,) or (13, N) float [L, sqrt(g L), 1, sqrt(g/L)]
+
+    Returns
+    -------
+    (3, 3) or (3, 3, N) float [1]
+    """
     a, b, c, d = state[body.Q : body.Q + 4]
     return np.array(
         [
@@ -162,12 +275,37 @@ def matrix(state: State) -> Floats:
 
 
 def ways_along_wall(states: Floats, radius: float) -> Floats:
-    """Return how far along the wall states are, (N,) [that of the radius]."""
+    """Return how far along the wall parts are, within half a turn to either side of the place 0.
+
+    Parameters
+    ----------
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+    radius : float [L]
+        Of the wall.
+
+    Returns
+    -------
+    (N,) float [L]
+    """
     return radius * np.arctan2(states[:, 0], radius - states[:, 1])
 
 
 def reaches(states: Floats, corners: Points, radius: float) -> Floats:
-    """Return how far parts reach along the wall [L], rear and front, and their lowest points, (N, 3)."""
+    """Return how far parts reach along the wall and down.
+
+    Parameters
+    ----------
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+    corners : (C, 3) float [L]
+        Of the part, in its own axes.
+    radius : float [L]
+        Of the wall.
+
+    Returns
+    -------
+    (N, 3) float [L]
+        Rear and front along the wall, and the height of the lowest point.
+    """
     turns = np.ascontiguousarray(matrix(states.T).transpose(2, 0, 1))
     x, y, z = states[:, :3].T[:, :, None] + np.einsum("nij,cj->inc", turns, corners)
     along = radius * np.arctan2(x, radius - y)
@@ -175,7 +313,20 @@ def reaches(states: Floats, corners: Points, radius: float) -> Floats:
 
 
 def move_along_wall(states: Floats, distance: float | Floats, radius: float) -> Floats:
-    """Return states (N, 13) turned about the bowl's axis by ways along the wall, in one unit of length."""
+    """Return the states of parts turned about the bowl's axis, by ways along the wall.
+
+    Parameters
+    ----------
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+    distance : float or (N,) float [L]
+    radius : float [L]
+        Of the wall.
+
+    Returns
+    -------
+    (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        With velocities and attitudes turned along.
+    """
     theta = np.broadcast_to(np.asarray(distance) / radius, len(states))
     c, s = np.cos(theta), np.sin(theta)
     out = np.array(states, float)

@@ -56,7 +56,23 @@ class CrowdedTrack:
 def lay_out_track(
     bowl: Bowl, orientations: Sequence[Orientation], devices: Sequence[Device], room: float
 ) -> CrowdedTrack:
-    """Return the track for a row of parts: ``room`` [m] of it bare, up to the place 0, then the devices."""
+    """Return the track for a row of parts: bare up to the place 0, then the devices one behind the other.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its track.
+    orientations : sequence of Orientation
+        Of the part.
+    devices : sequence of Device
+        In the order parts meet them; one that is a measured yield is left out.
+    room : float [m]
+        Length of the bare track.
+
+    Returns
+    -------
+    CrowdedTrack
+    """
     track, place, level = bowl.track, 0.0, 0.0
     placed, blows, windows, levels = [], [], [], [0.0]
     size = staging.size_of(orientations)
@@ -88,7 +104,15 @@ def lay_out_track(
 
 
 class PartsOnTrack:
-    """N parts at most on a track, moved period by period; lengths in units of the part's, along the wall."""
+    """N parts at most on a track, moved period by period; lengths in units of the part's, along the wall.
+
+    Parameters
+    ----------
+    part_in_bowl : BowlOfPart
+    track : CrowdedTrack
+    count : int
+        N.
+    """
 
     def __init__(self, part_in_bowl: runs.BowlOfPart, track: CrowdedTrack, count: int) -> None:
         self.part_in_bowl, self.solid, self.stage = part_in_bowl, part_in_bowl.solid, track.stage
@@ -102,18 +126,42 @@ class PartsOnTrack:
         self.pulses = [staging.Pulses() for _ in track.stage.air.watches]
 
     def lay(self, n: int, state: State) -> None:
-        """Put part n onto the track."""
+        """Put a part onto the track.
+
+        Parameters
+        ----------
+        n : int
+            Its number, from 0.
+        state : (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+        """
         self.arrays.states[n] = state
         runs.forget(self.arrays, n)
         self.last_ways[:, n] = np.nan
         self.is_on[n] = True
 
     def take(self, n: int) -> None:
-        """Take part n off the track."""
+        """Take a part off the track.
+
+        Parameters
+        ----------
+        n : int
+            Its number, from 0.
+        """
         self.is_on[n] = False
 
     def ride(self, turn: int) -> float:
-        """Move all through one period of the drive, the ``turn``-th; how deep anything was in anything."""
+        """Move all parts through one period of the drive.
+
+        Parameters
+        ----------
+        turn : int
+            Which period, from 0: it sets the time.
+
+        Returns
+        -------
+        float [L]
+            The deepest that anything was in anything.
+        """
         journals = zero_rows(1, workspace.JOURNAL)
         steps = round(self.period / self.part_in_bowl.floor.step)
         crowd = workspace.QueueSteps(self.is_on, turn * self.period, steps, journals)
@@ -121,7 +169,17 @@ class PartsOnTrack:
         return float(journals.depth[0])
 
     def slides_off(self, n: int) -> bool:
-        """Return whether part n is beyond the free edge, or too fast towards it to stay on the track."""
+        """Tell whether a part is beyond the free edge, or too fast towards it to stay on the track.
+
+        Parameters
+        ----------
+        n : int
+            Its number, from 0.
+
+        Returns
+        -------
+        bool
+        """
         out = travel.slides_to(self.surface, self.arrays.states[n])
         return bool(out > self.stage.width / self.part_in_bowl.length)
 
@@ -129,7 +187,16 @@ class PartsOnTrack:
         """Let sensors look at the parts whose centres of mass have come past them in a period.
 
         What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
-        it comes to them at its mean speed of the last periods, from the next one on, the ``turn``-th.
+        it comes to them at its mean speed of the last periods.
+
+        Parameters
+        ----------
+        rows : (K,) int
+            The parts on the track.
+        before, after : (N,) float [L]
+            Places of all parts along the wall, before the period and behind it.
+        turn : int
+            The next period, from which on jets blow.
         """
         if not self.pulses:
             return
@@ -149,7 +216,22 @@ class PartsOnTrack:
             self.surface.jets.begin[watch.jets], self.surface.jets.end[watch.jets] = pulses.next(now)
 
     def parts_near(self, n: int, rows: Iterable[int], resolution: float) -> list[int]:
-        """Return the parts of a row that are one with part n for a sensor of some resolution [m]."""
+        """Return the parts that are one with a part for a sensor, directly or by others between them.
+
+        Parameters
+        ----------
+        n : int
+            The part.
+        rows : iterable of int
+            The parts on the track, n among them.
+        resolution : float [m]
+            The least gap along the wall that the sensor tells.
+
+        Returns
+        -------
+        list of int
+            Without n.
+        """
         reach = self.reaches(rows)
         touching, rear, front = [], reach[n][0], reach[n][1]
         wide = resolution / self.part_in_bowl.length
@@ -165,14 +247,25 @@ class PartsOnTrack:
         return self.arrays.strains / self.period
 
     def reaches(self, rows: Iterable[int]) -> dict[int, list[float]]:
-        """Return, by part, how far it reaches along the wall, rear and front, and its lowest point."""
+        """Return, by part, how far it reaches along the wall and down.
+
+        Parameters
+        ----------
+        rows : iterable of int
+            Parts on the track.
+
+        Returns
+        -------
+        dict of int to list of float [L]
+            Rear and front along the wall, and the height of the lowest point.
+        """
         states = self.arrays.states[list(rows)]
         return dict(zip(rows, part_poses.reaches(states, self.hull, self.part_in_bowl.radius).tolist()))
 
 
 @dataclass(frozen=True, eq=False)
 class QueuedParts:
-    """What a queue of N parts did; D devices, S orientations in which parts may leave, A aspects."""
+    """Counts of a queue of N parts; D devices, S orientations in which parts may leave, A aspects."""
 
     parts: int  # N
     on_track: int  # of them at a time, at most; the others wait to enter
@@ -222,7 +315,7 @@ class QueuedParts:
 
 @dataclass(frozen=True)
 class QueuePlan:
-    """How many parts are in a queue, how they come, and how long they are followed."""
+    """Plan of a queue: its number of parts, how they come, and how long they are followed."""
 
     parts: int
     seconds: float  # [s] at most
@@ -246,9 +339,34 @@ def queue_of(
 ) -> QueuedParts:
     """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
 
-    They come in M ``orientations`` in ``shares`` (M,) [1], whose sum is 1, and may leave in S ``poses``:
-    those, then those that hang. Progress is told how many periods of the drive are done, of how many; a queue
-    takes one core. Raises KeyboardInterrupt if the user stops it before the first period is done.
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    aspects : Aspects
+        Of the part.
+    orientations : sequence of Orientation
+        The M in which parts come.
+    poses : sequence of Orientation
+        The S in which they may leave: those M, then those that hang.
+    shares : (M,) float [1]
+        In which they come; the sum is 1.
+    plan : QueuePlan
+    run : RunSettings
+        It is told how many periods of the drive are done, of how many. A queue takes one core.
+
+    Returns
+    -------
+    QueuedParts
+        Of the periods until the user stopped it, if he did.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before the first period is done.
+    FeederError
+        If the part has no shape or too many facets.
     """
     run.begin()
     queue = PartsQueue(part, bowl, aspects, (orientations, shares), poses, plan, run.seed)
@@ -263,8 +381,19 @@ def queue_of(
 class PartsQueue:
     """A queue that is followed bit by bit; lengths in units of the part's, times in seconds.
 
-    Arguments are as of ``queue_of``; of ``supply``, how parts come (M orientations), and in which shares
-    (M,) [1]. The plan's seconds are not looked at.
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+    aspects : Aspects
+    supply : (sequence of Orientation, (M,) float [1])
+        The M orientations in which parts come, and their shares.
+    poses : sequence of Orientation
+        As of ``queue_of``.
+    plan : QueuePlan
+        Its seconds are not looked at: ``follow`` says how long the queue goes on.
+    seed : int
+        Of play, gaps, tilt and the order of the orientations.
     """
 
     def __init__(
@@ -319,18 +448,37 @@ class PartsQueue:
 
     @property
     def time(self) -> float:
-        """Followed so far [s]."""
+        """Return the time followed so far [s]."""
         return self.periods / self.bowl.drive.frequency
 
     def periods_in(self, seconds: float) -> int:
-        """Return how many periods of the drive are followed in a time [s]: no less than the time, and one."""
+        """Return how many periods of the drive are followed in a time.
+
+        Parameters
+        ----------
+        seconds : float [s]
+
+        Returns
+        -------
+        int
+            No less than the time, and one at least.
+        """
         return max(math.ceil(seconds * self.bowl.drive.frequency - WHOLE_PERIOD_TOLERANCE), 1)
 
     def follow(self, seconds: float, tell: Callable[[int, int], None] | None = None) -> None:
-        """Go on until a time [s] since the queue began; what was followed before is not followed again.
+        """Go on until a time since the queue began; what was followed before is not followed again.
 
-        ``tell`` is told after each period how many are done, of how many. Raises KeyboardInterrupt if the
-        user stops it: ``result`` has the periods until then.
+        Parameters
+        ----------
+        seconds : float [s]
+            Since the queue began.
+        tell : callable, optional
+            Told after each period how many are done, of how many.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If the user stops it: ``result`` has the periods until then.
         """
         count = self.periods_in(seconds)
         while self.periods < count:
@@ -349,8 +497,14 @@ class PartsQueue:
     def enter(self, reach: dict[int, list[float]] | None = None) -> None:
         """Let waiting parts in at the end of the row, as long as there is room.
 
-        ``reach`` is that of all parts, some of which may have been taken off. What has no room yet is the
-        next one to come: were another drawn for it, short ones would come more often than they do.
+        What has no room yet is the next one to come: were another drawn for it, short ones would come more
+        often than they do.
+
+        Parameters
+        ----------
+        reach : dict of int to list of float [L], optional
+            Of all parts, as ``PartsOnTrack.reaches`` returns it; some may have been taken off since. Found
+            here without it.
         """
         if not self.waiting_parts:
             return
@@ -406,7 +560,13 @@ class PartsQueue:
         return self.drawn_rows.pop()
 
     def ride(self, turn: int) -> None:
-        """Move all for one period of the drive, and look what became of them."""
+        """Move all parts for one period of the drive, and look what became of them.
+
+        Parameters
+        ----------
+        turn : int
+            Which period, from 0.
+        """
         lying, radius = np.flatnonzero(self.crowd.is_on), self.part_in_bowl.radius
         before = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
         self.depth = max(self.depth, self.crowd.ride(turn))
@@ -439,7 +599,7 @@ class PartsQueue:
     def _look(
         self, n: int, place: float, reach: dict[int, list[float]], order: Sequence[int], has_fallen: bool
     ) -> None:
-        """What became of one part: left, fell, stands at a device, goes on."""
+        """Look what became of one part: it left, fell, stands at a device, or goes on."""
         rear, front, _ = reach[n]
         if self.first_time is None and front > self.outlet and not has_fallen:
             self.first_time = self.time
@@ -476,7 +636,7 @@ class PartsQueue:
                 self._send_back(n)
 
     def _is_pushed_off(self, n: int, rear: float, front: float) -> bool:
-        """Whether a part that stands is at a pressure break, reaches over its ledge, and is pushed.
+        """Tell whether a part that stands is at a pressure break, reaches over its ledge, and is pushed.
 
         Source: the trade's use of a pressure break: parts that back up leave the track there.
         """
@@ -506,11 +666,22 @@ class PartsQueue:
         self.waiting_parts.append(n)
 
     def _outside(self, rear: float, front: float) -> float:
-        """How much of a part has left [1]."""
+        """Return the share of a part's length that has left [1]."""
         return float(np.clip((front - self.outlet) / (front - rear), 0.0, 1.0))
 
     def result(self, partial: bool = False) -> QueuedParts:
-        """Return what the parts did so far; ``partial`` where the user stopped it."""
+        """Return the counts of the queue so far, in SI units.
+
+        Parameters
+        ----------
+        partial : bool, optional
+            Whether the user stopped it.
+
+        Returns
+        -------
+        QueuedParts
+            Valid once one period has been followed.
+        """
         length, unit, seconds = self.part_in_bowl.length, self.part_in_bowl.unit, self.time
         reach = self.crowd.reaches(np.flatnonzero(self.crowd.is_on))  # none of them has fallen
         part = sum(self._outside(rear, front) for rear, front, _ in reach.values())

@@ -32,7 +32,7 @@ VERDICT_SHARE = 0.95  # [1] of the trials in which it should
 
 @dataclass(frozen=True, eq=False)
 class TrialRun:
-    """What parts did in one bowl; M orientations, S stations."""
+    """Outcomes of parts in one bowl; M orientations, S stations."""
 
     bowl: Bowl
     throw_number: float  # [1]
@@ -46,7 +46,7 @@ class TrialRun:
 
     @property
     def partial(self) -> bool:
-        """Say whether the user stopped it before all was done."""
+        """Tell whether the user stopped it before all was done."""
         return any(run.partial for run in (self.course, self.landing, self.queue) if run is not None)
 
     @cached_property
@@ -123,7 +123,7 @@ class TrialRun:
 
     @cached_property
     def rebound(self) -> answer.Neighbours | None:
-        """Return what a point travels at, at both ends of the spread of restitution; None where none hops."""
+        """Return the velocities of a point at both ends of the spread of restitution; None if none hops."""
         return answer.restitution_doubt(self.bowl) if self.throw_number > 1.0 else None
 
     @property
@@ -160,7 +160,10 @@ class TrialRun:
 
     @property
     def margin(self) -> Floats:
-        """Return (M,) [m] of the static verdict; NaN of none: nothing met, lost before, or not sure."""
+        """Return (M,) [m] of the static verdict; NaN without one.
+
+        It has none where nothing was met, the orientation was lost before, or the rule is not sure.
+        """
         lost = np.array([orientation.returned for orientation in self.orientations.lying])
         return np.where(lost | ~self.is_sure, np.nan, self.orientations.margin)
 
@@ -189,7 +192,7 @@ class TrialRun:
 
     @property
     def sorts(self) -> bool:
-        """Say whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
+        """Tell whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
         passed = self.counts[:, course.PASSED]
         lost = self.passes_by_rule & (passed < VERDICT_SHARE * self.tried_counts)
         stays = ~self.passes_by_rule & (self.tried_counts - passed < VERDICT_SHARE * self.tried_counts)
@@ -288,7 +291,24 @@ def outlet(
     aspects: Sequence[str],
     columns: Sequence[AspectProfile] = (),
 ) -> Outlet:
-    """Return what left a queue by aspect; its parts come in ``orientations`` in ``shares`` [1]."""
+    """Return the parts that left a queue by aspect, beside what was measured.
+
+    Parameters
+    ----------
+    queue : QueuedParts
+    orientations : sequence of Orientation
+        The M in which its parts come.
+    shares : (M,) float [1]
+        In which they come.
+    aspects : sequence of str
+        Names of the A aspects, as the queue counts them.
+    columns : sequence of AspectProfile, optional
+        Measured shares over the same aspects.
+
+    Returns
+    -------
+    Outlet
+    """
     offered = np.zeros(len(aspects))
     np.add.at(offered, [aspects.index(orientation.aspect) for orientation in orientations], shares)
     counts, other = queue.aspects[:-1], int(queue.aspects[-1])

@@ -61,7 +61,7 @@ NO_PARTS_SENT = Solo(
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """What became of N parts at one station, in SI units; K places of each."""
+    """Outcomes of N parts at one station, in SI units; K places of each."""
 
     outcomes: Ints  # (N,) PASSED, RETURNED, STANDS, ROLLED or RUNNING
     states: Floats  # (N, 13) at the end, without dimensions
@@ -93,7 +93,7 @@ class BowlOfPart:
 
 
 class RideLimits(NamedTuple):
-    """How long a part has at a station, and how often its place is noted."""
+    """Limits of a ride: how long a part has at a station, and how often its place is noted."""
 
     longest: float  # [s] after which it is given up
     patience: float  # [s] in which it must get on ...
@@ -108,7 +108,22 @@ Follow = Callable[[States, Floats], Runs]
 
 
 def setting(solid: TrueSolid, length: float, bowl: Bowl) -> BowlOfPart:
-    """Return what the kernel needs of a bowl, for a part whose unit is ``length`` [m]."""
+    """Return a part in a bowl, without dimensions, as the kernel takes it.
+
+    Units are L, the length given, and sqrt(L/g). A period of the drive has ``STEPS_OF_PERIOD`` steps, or
+    ``STEPS_OF_HOPPING`` where the throw number is above 1.
+
+    Parameters
+    ----------
+    solid : TrueSolid
+    length : float [m]
+        The unit of length of the solid.
+    bowl : Bowl
+
+    Returns
+    -------
+    BowlOfPart
+    """
     floor, track, friction = plate_test.floor_of(bowl, length), bowl.track, bowl.friction
     if bowl.drive.amplitude == 0.0:
         floor = floor._replace(along=0.0, up=0.0)
@@ -135,11 +150,30 @@ def ride(
     jobs: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> Runs:
-    """Follow parts past one station, from their states (N, 13) at times (N,) [s], the phase of the drive.
+    """Follow parts past one station, on several cores.
 
-    States are in [L, sqrt(g L), 1, sqrt(g/L)]. The outcome does not depend on ``jobs``; ``progress`` is told
-    after every batch how many parts are done. After an interrupt from the keyboard the Runs are those of the
-    batches finished, up to the first that was not. Raises KeyboardInterrupt if none was.
+    Parameters
+    ----------
+    follow : Follow
+        As ``make_follower`` returns it.
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        In which parts begin.
+    times : (N,) float [s]
+        When they begin: the phase of the drive.
+    jobs : int, optional
+        Cores; the outcome does not depend on it.
+    progress : callable, optional
+        Told after every batch how many parts are done.
+
+    Returns
+    -------
+    Runs
+        After an interrupt from the keyboard those of the batches finished, up to the first that was not.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
     """
     follow(states[:0], times[:0])  # compiled here, if need be
 
@@ -152,18 +186,46 @@ def ride(
 
 
 def join_runs(rides: Sequence[Runs]) -> Runs:
-    """Return the Runs of several parts at one station as one."""
+    """Return the Runs of several parts at one station as one.
+
+    Parameters
+    ----------
+    rides : sequence of Runs
+        All with as many places; one at least.
+
+    Returns
+    -------
+    Runs
+        In their order, not partial.
+    """
     columns = {name: np.concatenate([getattr(ride, name) for ride in rides]) for name in RUN_COLUMNS}
     return Runs(**{name: check.frozen(value) for name, value in columns.items()}, partial=False)
 
 
 def is_compiled() -> bool:
-    """Say whether the kernel of the trial is on disk already."""
+    """Tell whether the kernel of the trial is on disk already.
+
+    Returns
+    -------
+    bool
+    """
     return on_disk(travel.ride)
 
 
 def make_plain_follower(part_in_bowl: BowlOfPart, station: Stage, limits: RideLimits) -> Follow:
-    """Return the function that follows parts past one station, one after the other; no sensor looks."""
+    """Return the function that follows parts past one station, one after the other; no sensor looks.
+
+    Parameters
+    ----------
+    part_in_bowl : BowlOfPart
+    station : Stage
+    limits : RideLimits
+
+    Returns
+    -------
+    Follow
+        From states (N, 13) and times (N,) [s] to Runs.
+    """
     length, unit, width = part_in_bowl.length, part_in_bowl.unit, station.width / part_in_bowl.length
     surface = surface_of(part_in_bowl, station)
     bounds = Limits(
@@ -202,7 +264,18 @@ def make_plain_follower(part_in_bowl: BowlOfPart, station: Stage, limits: RideLi
 
 
 def surface_of(part_in_bowl: BowlOfPart, station: Stage) -> Surface:
-    """Return a station as the kernel takes it."""
+    """Return a station without dimensions, as the kernel takes it.
+
+    Parameters
+    ----------
+    part_in_bowl : BowlOfPart
+    station : Stage
+
+    Returns
+    -------
+    Surface
+        Its jets are its own: a sensor sets them off in place.
+    """
     length = part_in_bowl.length
     plates, borders = station.plates.copy(), station.borders.copy()
     box = ("least_x", "most_x", "least_y", "most_y")
@@ -237,7 +310,20 @@ def surface_of(part_in_bowl: BowlOfPart, station: Stage) -> Surface:
 
 
 def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
-    """Return arrays for so many parts, which the kernel works in [L, sqrt(g L), 1, sqrt(g/L)]."""
+    """Return the arrays in which the kernel works, empty.
+
+    Parameters
+    ----------
+    solid : TrueSolid
+    surface : Surface
+    count : int
+        Of parts.
+
+    Returns
+    -------
+    Workspace
+        In [L, sqrt(g L), 1, sqrt(g/L)].
+    """
     corners, edges, plates = len(solid.corners), len(solid.edges), len(surface.plates)
     circles, borders = len(solid.circles), len(surface.borders)
     pairs = 2 * MAX_PAIR_CONTACTS if count > 1 else 0
@@ -308,12 +394,30 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
 
 
 def forget(work: Workspace, n: int | slice) -> None:
-    """Let no list of part n hold, and no impulse or jet be known of it."""
+    """Let no list of a part hold, and no impulse or jet be known of it.
+
+    Parameters
+    ----------
+    work : Workspace
+        Changed in place.
+    n : int or slice
+        The part, or some.
+    """
     work.list_states["reach"][n] = work.last_steps[n] = work.jets_until[n] = -1.0
 
 
 def move_crowd(part_in_bowl: BowlOfPart, surface: Surface, work: Workspace, crowd: QueueSteps) -> None:
-    """Move a crowd on, all of it at once; fills ``work.strains`` and the journal of ``crowd``."""
+    """Move a crowd on, all of it at once.
+
+    Parameters
+    ----------
+    part_in_bowl : BowlOfPart
+    surface : Surface
+    work : Workspace
+        Its states move; ``strains`` are filled.
+    crowd : QueueSteps
+        Which parts, from when on and how many steps; its journal is filled.
+    """
     work.strains[:] = 0.0
     travel.ride(surface, part_in_bowl.solid, part_in_bowl.floor, work, NO_PARTS_SENT, crowd)
 
@@ -323,6 +427,18 @@ def make_follower(part_in_bowl: BowlOfPart, station: Stage, limits: RideLimits) 
 
     As its centre of mass comes to the sensor a part is looked at; if it differs, jets blow as it comes to
     them at its mean speed, as long as their pulse is. Without a sensor the station is one ride.
+
+    Parameters
+    ----------
+    part_in_bowl : BowlOfPart
+    station : Stage
+        Of its sensors the first looks.
+    limits : RideLimits
+
+    Returns
+    -------
+    Follow
+        From states (N, 13) and times (N,) [s] to Runs. With a sensor it takes one part at a time, or none.
     """
     if not station.air.watches:
         return make_plain_follower(part_in_bowl, station, limits)
@@ -361,10 +477,20 @@ def make_follower(part_in_bowl: BowlOfPart, station: Stage, limits: RideLimits) 
 
 
 def blows_off(sensor: Sensor, part_in_bowl: BowlOfPart, states: States, level: float = 0.0) -> bool:
-    """Return whether a sensor sees parts differ from all that it wants by more than its play.
+    """Tell whether a sensor sees parts differ from all that it wants by more than its play.
 
-    The states are of the part before it and of others that it cannot tell from that one; ``level`` [m] is of
-    the track there.
+    Parameters
+    ----------
+    sensor : Sensor
+    part_in_bowl : BowlOfPart
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        Of the part before the sensor, and of others that it cannot tell from that one.
+    level : float [m], optional
+        Of the track there.
+
+    Returns
+    -------
+    bool
     """
     fine, solid = sensor.resolution, part_in_bowl.solid
     # corners (V, 3) [m] of each, as seen at the place of the first one: along the wall, inwards, up

@@ -32,10 +32,25 @@ SAME_AXIS_COSINE = 1.0 - 1e-6  # [1] cosine between axes that are one
 
 
 def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
-    """Return a part's surface without dimensions, its unit of length [m] and its principal axes (3, 3) [1].
+    """Return a part's surface without dimensions, its unit of length and its principal axes.
 
-    The unit is the cube root of the hull's volume; the axes are columns, in the file's axes. Raises
-    FeederError if the part has no surface, or one of very many facets.
+    Parameters
+    ----------
+    part : Part
+
+    Returns
+    -------
+    solid : TrueSolid
+        About the centre of mass, along the principal axes.
+    length : float [m]
+        The unit of length: the cube root of the hull's volume.
+    principal : (3, 3) float [1]
+        Principal axes as columns, in the file's axes.
+
+    Raises
+    ------
+    FeederError
+        If the part has no surface, or one of more than ``MAX_FACETS`` facets.
     """
     if part.vertices is None or part.faces is None:
         raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
@@ -101,14 +116,22 @@ def _singles(corners: Points, on_circle: Bools) -> dict[str, Any]:
 
 
 def _on_hull(corners: Points) -> Bools:
-    """Which corners (C, 3) are corners of their hull, (C,) bool."""
+    """Return which corners (C, 3) are corners of their hull, (C,) bool."""
     return np.isin(np.arange(len(corners)), ConvexHull(corners).vertices)
 
 
 def order_in_blocks(points: Points) -> Ints:
-    """Return an order (N,) of points (N, 3) [L] in which those of each block lie together.
+    """Return an order of points in which those of each block of ``BLOCK`` lie together.
 
     They are halved across where they lie furthest apart, by whole blocks, over and over.
+
+    Parameters
+    ----------
+    points : (N, 3) float [L]
+
+    Returns
+    -------
+    (N,) int
     """
     groups, waiting = [], [np.arange(len(points))]
     while waiting:
@@ -154,9 +177,20 @@ def _convex_edges(corners: Points, faces: Ints, normals: Floats) -> tuple[Ints, 
 def round_circles(solid: TrueSolid, axes: Sequence[Floats]) -> TrueSolid:
     """Return a part whose circles touch surfaces as circles, not with facets.
 
-    ``axes`` (3,) [1] are those about which it rolls, in its own; circles about its principal axes are looked
-    for, too, of nearer corners. It has points between corners of circles that are far apart; the chords
-    between the corners stay as edges: they lie inside the circles.
+    It has points between corners of circles that are far apart; the chords between the corners stay as edges:
+    they lie inside the circles.
+
+    Parameters
+    ----------
+    solid : TrueSolid
+    axes : sequence of (3,) float [1]
+        Those about which it rolls, in its own. Circles about its principal axes are looked for, too, of
+        nearer corners.
+
+    Returns
+    -------
+    TrueSolid
+        The one given, where it has no circles.
     """
     searches = [(axis, COARSE_CORNERS_ANGLE) for axis in axes]
     for principal in np.eye(3):
@@ -216,12 +250,23 @@ def find_circles(
     gap: float = COARSE_CORNERS_ANGLE,
     joins: set[tuple[int, int]] | None = None,
 ) -> list[Circle]:
-    """Return the circles through corners about an axis (3,) [1] through the origin.
+    """Return the circles through corners about an axis through the origin.
 
-    Neighbouring corners further apart than ``gap`` [rad] are of a polygon. Between the tips of teeth, or at
-    the sides of a slot, nothing is round: where no edge of the surface joins two neighbours (``joins``
-    has pairs of corners; without it all count as joined), a circle has no points, and what would bulge there
-    by more than MAX_BULGE is no circle.
+    Between the tips of teeth, or at the sides of a slot, nothing is round: where no edge of the surface joins
+    two neighbours, a circle has no points, and what would bulge there by more than MAX_BULGE is no circle.
+
+    Parameters
+    ----------
+    corners : (C, 3) float [L]
+    axis : (3,) float [1]
+    gap : float [rad], optional
+        Neighbouring corners further apart are of a polygon.
+    joins : set of (int, int), optional
+        Pairs of corners that an edge joins; without it all count as joined.
+
+    Returns
+    -------
+    list of Circle
     """
     across = vectors.unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     aside = np.cross(axis, across)

@@ -62,11 +62,28 @@ class Pulses:
         self.log: list[tuple[float, float]] = []  # (begin, end) of all
 
     def set_off(self, begin: float, seconds: float) -> None:
-        """Let the jets blow from a time on, for so long."""
+        """Let the jets blow from a time on, for so long.
+
+        Parameters
+        ----------
+        begin, seconds : float [s]
+            Any unit of time, the same in all calls.
+        """
         self.log.append((begin, begin + seconds))
 
     def next(self, now: float) -> tuple[float, float]:
-        """Return when the jets next blow, from and to; what overlaps is one pulse, and (inf, inf) none."""
+        """Return when the jets next blow, or blow now; pulses that overlap are one.
+
+        Parameters
+        ----------
+        now : float [s]
+            In the unit of ``set_off``.
+
+        Returns
+        -------
+        begin, end : float [s]
+            Infinite, both, where no pulse is left.
+        """
         spans = sorted(span for span in self.log if span[1] > now)
         if not spans:
             return np.inf, np.inf
@@ -79,7 +96,7 @@ class Pulses:
 
 @dataclass(frozen=True, eq=False)
 class Air:
-    """What blows and leans along a stretch of track."""
+    """Jets, sensors and slopes along a stretch of track."""
 
     jets: Rows  # (J,) `trial.kernel.workspace.JET` [m], [1], [m/s2], [s]
     watches: tuple[Watch, ...]
@@ -108,7 +125,18 @@ class Stage:
 
 
 def size_of(orientations: Sequence[Orientation]) -> float:
-    """Return the greatest length [m] of orientations, in the plane of the track or across it."""
+    """Return the greatest length of orientations, in the plane of the track or across it.
+
+    It is the diagonal of an orientation's length and the greater of its width and height.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    float [m]
+    """
     return max(np.hypot(own.length, max(own.width, own.height)) for own in orientations)
 
 
@@ -122,9 +150,23 @@ def stage_device(
 ) -> Stage:
     """Return one device with enough track before and behind it; a measured yield is bare track.
 
-    The longest of the part's orientations sets how long a device is that goes on along the track; it begins
-    at ``start`` [m]. ``slopes`` of the devices before it go on, and so does a ``slot`` between the rails
-    before it, two distances [m] from the wall: what hangs there goes on hanging up to other rails.
+    Parameters
+    ----------
+    device : Device
+    track : Track
+    orientations : sequence of Orientation
+        The longest sets how long a device is that goes on along the track.
+    start : float [m], optional
+        Where the device begins, along the wall.
+    slopes : sequence of Slope, optional
+        Of the devices before it: they go on.
+    slot : tuple of float [m], optional
+        Of the rails before it: two distances from the wall. What hangs there goes on hanging up to other
+        rails.
+
+    Returns
+    -------
+    Stage
     """
     standing, size = device.standing(track, orientations), size_of(orientations)
     blows = place_air([(standing, start, 0.0)], track, orientations)
@@ -149,7 +191,22 @@ def stage_device(
 def stage_bare_track(
     track: Track, orientations: Sequence[Orientation], length: float, slopes: Sequence[Slope] = ()
 ) -> Stage:
-    """Return a stretch of the bare track, from 0 to ``length`` [m]; slopes as for ``stage_device``."""
+    """Return a stretch of the bare track, from the place 0 on.
+
+    Parameters
+    ----------
+    track : Track
+    orientations : sequence of Orientation
+        The longest sets how much track is drawn before and behind.
+    length : float [m]
+        Of the stretch.
+    slopes : sequence of Slope, optional
+        As for ``stage_device``.
+
+    Returns
+    -------
+    Stage
+    """
     size = size_of(orientations)
     bare = build_track((), track, size, (-DRAWN_BEFORE * size, length + DRAWN_AFTER * size))
     blows = replace(STILL_AIR, slopes=slopes_before(slopes))
@@ -159,19 +216,55 @@ def stage_bare_track(
 def entry_slopes(
     devices: Sequence[Device], track: Track, orientations: Sequence[Orientation]
 ) -> tuple[Slope, ...]:
-    """Return the slopes of the devices that come first and lean the track: they begin at its entry."""
+    """Return the slopes of the devices that come first and lean the track: they begin at its entry.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    track : Track
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    tuple of Slope
+    """
     return tuple(
         slope for device in leading_devices(devices) for slope in device.standing(track, orientations).slopes
     )
 
 
 def slopes_before(slopes: Sequence[Slope]) -> tuple[PlacedSlope, ...]:
-    """Return slopes as they are where they began before what is drawn."""
+    """Return slopes placed far before what is drawn, where they began.
+
+    Parameters
+    ----------
+    slopes : sequence of Slope
+
+    Returns
+    -------
+    tuple of PlacedSlope
+        Place [m], climb, bank and lean of the wall [rad], None where a slope leaves one as it was.
+    """
     return tuple((-BEYOND_OPENINGS_M, slope.climb, slope.bank, slope.wall) for slope in slopes)
 
 
 def exit_place(standing: Standing, start: float, size: float) -> float:
-    """Return where [m] along the wall a centre of mass has passed a device that begins at ``start``."""
+    """Return the place along the wall at which a centre of mass has passed a device.
+
+    Parameters
+    ----------
+    standing : Standing
+        The device, as it stands on the track.
+    start : float [m]
+        Where it begins.
+    size : float [m]
+        Of the part, as ``size_of`` returns it.
+
+    Returns
+    -------
+    float [m]
+    """
     return start + standing.length + (standing.settles + 0.5 + SPARE_WAY) * size
 
 
@@ -182,11 +275,26 @@ def build_track(
     ends: tuple[float, float],
     slot: tuple[float, ...] = (),
 ) -> tuple[Rows, Rows]:
-    """Return plates (P,) and borders (B,) of a stretch of track between two ``ends`` [m] along the wall.
+    """Return plates and borders of a stretch of track with its devices.
 
-    ``placements`` has its devices in the order parts meet them: where each begins [m], and where the track
-    above its drop ends [m]. ``size`` [m] is of the part; a ``slot`` between rails before them is two
-    distances [m] from the wall.
+    Parameters
+    ----------
+    placements : sequence of (Standing, float, float) [m]
+        The devices in the order parts meet them: where each begins, and where the track above its drop ends.
+    track : Track
+    size : float [m]
+        Of the part, as ``size_of`` returns it.
+    ends : (float, float) [m]
+        The stretch, along the wall.
+    slot : tuple of float [m], optional
+        Of rails before the devices: two distances from the wall.
+
+    Returns
+    -------
+    plates : (P,) record
+        ``trial.kernel.workspace.PLATE_RECORD`` [m], [1].
+    borders : (B,) record
+        ``trial.kernel.workspace.BORDER`` [m], [1].
     """
     level, first, holes = 0.0, ends[0], []
     plates: list[Plate] = []
@@ -261,7 +369,7 @@ def _floor(
     near = 1e-6 * radius
 
     def ends_drawing(a: Floats, b: Floats) -> bool:
-        """Whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
+        """Tell whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
         off = [np.hypot(x, radius - y) for x, y in (a, b)]
         place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
         return bool(min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near)
@@ -324,7 +432,21 @@ def _borders(area: Any, is_end: Callable[..., bool]) -> Floats:
 def place_air(
     placements: Sequence[tuple[Standing, float, float]], track: Track, orientations: Sequence[Orientation]
 ) -> Air:
-    """Return what blows and leans along a track; ``placements``: where each device begins, its level [m]."""
+    """Return the jets, sensors and slopes of devices along a track, in the bowl's frame.
+
+    Parameters
+    ----------
+    placements : sequence of (Standing, float, float) [m]
+        The devices, where each begins along the wall, and the level of the track there.
+    track : Track
+    orientations : sequence of Orientation
+        Of one part: its mass makes an acceleration of a jet's thrust.
+
+    Returns
+    -------
+    Air
+        Jets that a sensor sets off do not blow yet.
+    """
     rows: list[list[float]] = []
     watches: list[Watch] = []
     slopes: list[PlacedSlope] = []
@@ -349,7 +471,21 @@ def place_air(
 
 
 def scale_jets(rows: Rows, length: float, unit: float) -> Rows:
-    """Return jets (J,) without dimensions; ``length`` [m] and ``unit`` [s] are 1."""
+    """Return jets without dimensions.
+
+    Parameters
+    ----------
+    rows : (J,) record
+        ``trial.kernel.workspace.JET`` [m], [1], [m/s2], [s].
+    length : float [m]
+        The unit of length.
+    unit : float [s]
+        The unit of time.
+
+    Returns
+    -------
+    (J,) record
+    """
     out = rows.copy()
     for name in ("mouth_x", "mouth_y", "mouth_z", "radius", "reach"):
         out[name] /= length
@@ -362,10 +498,25 @@ def scale_jets(rows: Rows, length: float, unit: float) -> Rows:
 def tabulate_leans(
     slopes: Sequence[PlacedSlope], climb: float, bank: float, size: float, length: float
 ) -> Floats:
-    """Return how gravity, the bowl's axis and the wall lie in the track's frame along the wall, (K, 8).
+    """Return how gravity, the bowl's axis and the wall lie in the track's frame, along the wall.
 
-    ``climb`` and ``bank`` [rad] are before the slopes; ``size`` [m] is of the part, over a share of which one
-    lean becomes the next; ``length`` [m] of the unit.
+    Parameters
+    ----------
+    slopes : sequence of PlacedSlope
+        In any order.
+    climb, bank : float [rad]
+        Before the slopes.
+    size : float [m]
+        Of the part: over a share of it one lean becomes the next, ``BLEND``, or ``OPENS`` where the wall
+        leans.
+    length : float [m]
+        The unit of length L.
+
+    Returns
+    -------
+    (K, 8) float [L] and [1]
+        Place; gravity along, inwards and up; the bowl's axis and the wall's upright, each inwards and up.
+        Between places it is linear.
     """
     here: Any = (climb, bank, 0.0)
     rows = [] if slopes else [(0.0, *here)]

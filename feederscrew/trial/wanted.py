@@ -11,16 +11,25 @@ from feederscrew.tooling.orientations import Hanging, Orientation
 
 
 def wanted_states(orientations: stream.Orientations, rows: Sequence[int] | Ints) -> tuple[int, ...]:
-    """Return the states in which some rows leave, the first one first.
+    """Return the states in which some rows leave.
 
-    The wanted row comes first; of others that count as it, those that are returned add no state.
+    Parameters
+    ----------
+    orientations : Orientations
+    rows : sequence of int
+        The wanted row first, then others that count as it; of these, what is returned adds no state.
+
+    Returns
+    -------
+    tuple of int
+        Rows of ``orientations.states``, each once, that of the wanted row first.
     """
     further = [k for k in rows[1:] if orientations.leaving[k].max() > 0.5]
     return tuple(dict.fromkeys(int(orientations.leaves_as[k]) for k in (rows[0], *further)))
 
 
 def leaves_hanging(orientations: stream.Orientations, states: Sequence[int]) -> bool:
-    """Return whether the wanted parts leave hanging between rails: then trials say which rows do.
+    """Tell whether the wanted parts leave hanging between rails: then trials say which rows do.
 
     Parameters
     ----------
@@ -36,7 +45,18 @@ def leaves_hanging(orientations: stream.Orientations, states: Sequence[int]) -> 
 
 
 def wanted_rows(orientations: stream.Orientations, states: Sequence[int]) -> list[int]:
-    """Return the rows that leave in one of some states as the static rule says."""
+    """Return the rows of which more than half leave in one of some states, as the static rule says.
+
+    Parameters
+    ----------
+    orientations : Orientations
+    states : sequence of int
+        Rows of ``orientations.states``.
+
+    Returns
+    -------
+    list of int
+    """
     return [k for k in range(len(orientations.lying)) if orientations.leaving[k, list(states)].sum() > 0.5]
 
 
@@ -45,8 +65,23 @@ def aspects_at_any_heading(
 ) -> tuple[str, ...]:
     """Return the aspects on which a part counts as a wanted row however it is turned.
 
-    Those of ``up``, the option `--up`, and the wanted row's own where it is round in plan and takes any
-    heading, unless one heading was asked for.
+    They are those of ``up``, and the wanted row's own where it is round in plan and takes any heading, unless
+    one heading was asked for.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    row : int
+        The wanted one.
+    up : sequence of str
+        Names of aspects, the option `--up`; their case does not matter.
+    heading_given : bool, optional
+        Whether one heading was asked for.
+
+    Returns
+    -------
+    tuple of str
+        As the orientations name them, each once.
     """
     names, wanted = {name.strip().casefold() for name in up}, orientations[row]
     aspects = [other.aspect for other in orientations if other.aspect.casefold() in names]
@@ -60,7 +95,18 @@ def find_poses(
 ) -> tuple[Orientation, ...]:
     """Return the poses, one a state, in which parts may be found.
 
-    At any heading of an aspect that counts beside another: those of the further ``states``, and those named.
+    Parameters
+    ----------
+    orientations : Orientations
+    states : sequence of int
+        Rows of ``orientations.states``, the wanted one first.
+    any_heading : sequence of str, optional
+        Names of aspects.
+
+    Returns
+    -------
+    tuple of Orientation
+        At any heading where the aspect is that of a further state, or named.
     """
     own = [orientations.states[k] for k in states[1:]]
     names = {pose.aspect for pose in own if not isinstance(pose, Hanging)} | set(any_heading)
@@ -68,7 +114,20 @@ def find_poses(
 
 
 def equivalent_rows(orientations: Sequence[Orientation], row: int, up: Iterable[str]) -> tuple[int, ...]:
-    """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
+    """Return the rows beside a wanted one that count as it: those of aspects that may be up too.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    row : int
+        The wanted one.
+    up : iterable of str
+        Names of aspects; their case does not matter.
+
+    Returns
+    -------
+    tuple of int
+    """
     named = {name.strip().casefold() for name in up}
     return tuple(k for k, one in enumerate(orientations) if k != row and one.aspect.casefold() in named)
 
@@ -76,7 +135,7 @@ def equivalent_rows(orientations: Sequence[Orientation], row: int, up: Iterable[
 def states_of_name(
     orientations: stream.Orientations, shares: Floats, name: str, up: Sequence[str] = ()
 ) -> tuple[tuple[int, ...], tuple[str, ...]]:
-    """Return what counts as wanted by the name that a bowl file gives it.
+    """Return the states that count as wanted by the name that a bowl file gives them.
 
     Parameters
     ----------
