@@ -262,7 +262,7 @@ def place_devices(
     ``must`` says of each device which orientations (M,) bool it has to return; what leaves less of a foot
     returns them by no more than ``least`` [m]: the wanted one has the rest. Values are whole multiples of
     ``step`` [m]; ``same`` as for ``candidates``.
-    Source: own; docs/tooling.md, "5. Where it ends".
+    Source: own; docs/tooling.md, "6. Where it ends".
     """
     cuts = []
     for device, some in zip(devices, must):
