@@ -16,12 +16,14 @@ from feederscrew.value_forms import UNITLESS, quantity
 
 SCHEMA_FILE = "feeder.schema.json"  # what the JSON Schema is called beside a bowl file
 EDITORS = f"# yaml-language-server: $schema={SCHEMA_FILE}"  # the line by which editors find it
-WHY = """\
+SLOWEST, FASTEST = (BY_NAME[f"sizing.{name}"].default.partition(" ")[0] for name in ("slowest", "fastest"))
+WHY = f"""\
 The defaults are a typical bowl: steel on a dry steel track that climbs 3 deg, driven at the 50 Hz of a
 half-wave supply with 0.42 mm from end to end. Parts travel at 25 mm/s, the speed behind the handbook's
-estimate of 1500 parts a minute over the part's length in mm; bowls run 20 to 120 mm/s. The part slides
-without hopping, whether its friction is a fifth lower or half as high again, so that its forces on floor
-and track can be followed; drives that throw it run faster (100 Hz, 0.15 mm and 20 deg: 56 mm/s).
+estimate of 1500 parts a minute over the part's length in mm; bowls run {SLOWEST} to {FASTEST} mm/s.
+The part slides without hopping, whether its friction is a fifth lower or half as high again, so that its
+forces on floor and track can be followed; drives that throw it run faster (100 Hz, 0.15 mm and 20 deg:
+56 mm/s).
 Measure your own: tilt the track until the part slides, and write the tangent of that angle as static
 friction; there are no tables of friction on coatings to rely on.
 """

@@ -128,16 +128,16 @@ def drive_at(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> B
 
     Of the drives that the machine can make it is the one of the lowest hop, and of these the one of the least
     stroke, that is as fast as asked for, and at the worst friction ``LEAST_VELOCITY_KEPT`` times that; else,
-    or where the velocity is infinite, the fastest. Through tooling it is no slower than
-    ``LEAST_VELOCITY_M_S``. ``hops`` says that there is no tooling: a part may then creep. What the user gave
-    of the drive is kept.
+    or where the velocity is infinite, the fastest. It keeps to the usual speeds, ``sizing.slowest`` to
+    ``sizing.fastest``. Through tooling it is no slower than ``LEAST_VELOCITY_M_S``. ``hops`` says that there
+    is no tooling. What the user gave of the drive is kept.
 
     The hop is the lower the higher the frequency, by its square (``conveying.hop``): twice the mains
     frequency comes first where it is fast enough. Below the throw number of 1 a leaf-spring drive carries
     slowly; from 2.2 to 3 it is three to six times as fast, and friction hardly matters. Source: A. H.
     Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967; docs/design.md.
     """
-    velocity = velocity if hops else max(velocity, LEAST_VELOCITY_M_S)
+    velocity = max(velocity, plain_bowl.bowl.sizing.slowest if hops else LEAST_VELOCITY_M_S)
     levels = _levels(plain_bowl, hops)
     chosen = _calmest(plain_bowl, levels, velocity, _can_build)
     if chosen is None:
@@ -219,11 +219,19 @@ def _levels(plain_bowl: PlainBowl, hops: bool) -> list[list[Bowl]]:
         two_axis = is_two_axis(plain_bowl.bowl.drive)
         drive = DriveKind.TWO_AXIS if two_axis else DriveKind.LEAF_SPRING
     if drive in (DriveKind.LEAF_SPRING, DriveKind.ANY):
-        order = sorted(set(_leaf_spring_drives(plain_bowl)), key=_calmness)
+        order = sorted(_usual(plain_bowl, set(_leaf_spring_drives(plain_bowl))), key=_calmness)
         levels += [list(group) for _, group in itertools.groupby(order, key=lambda bowl: _calmness(bowl)[0])]
     if drive in (DriveKind.TWO_AXIS, DriveKind.ANY):
-        levels += [[bowl] for bowl in dict.fromkeys(_two_axis_drives(plain_bowl, hops))]
+        levels += [[bowl] for bowl in _usual(plain_bowl, dict.fromkeys(_two_axis_drives(plain_bowl, hops)))]
     return levels
+
+
+def _usual(plain_bowl: PlainBowl, bowls: Collection[Bowl]) -> list[Bowl]:
+    """Those of some bowls that are no faster than ``sizing.fastest``; the slowest one where all are."""
+    if plain_bowl.has_stroke:
+        return list(bowls)
+    most = plain_bowl.bowl.sizing.fastest
+    return [bowl for bowl in bowls if speed(bowl) <= most] or [min(bowls, key=speed)]
 
 
 def _calmness(bowl: Bowl) -> tuple[float, float]:

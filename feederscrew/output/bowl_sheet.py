@@ -1,7 +1,8 @@
 """The drawing sheets of a bowl: A3, to scale, with dimensions that are measured on the solid.
 
-Sheet 1 has the bowl, its springs and what belongs to it; sheet 2 the devices on the unrolled track; sheet 3
-the stretches of the track and their development in sheet metal.
+Sheet 1 has the bowl, its springs, what belongs to it, and the part as it leaves; sheet 2 the devices on the
+unrolled track; sheet 3 the poses that each device lets pass and returns; the last sheet the stretches of the
+track and their development in sheet metal.
 """
 
 import itertools
@@ -17,8 +18,8 @@ from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import Verified
 from feederscrew.output import machine_sheet as sheets
+from feederscrew.output import pose_sheet, tooling_drawing
 from feederscrew.output import solidbowl_views as views
-from feederscrew.output import tooling_drawing
 from feederscrew.output.drafting import FRAME, Drawing, scale_words
 from feederscrew.output.marking import SheetFields, of_trial
 from feederscrew.output.tooling_drawing import EDGES, View
@@ -38,6 +39,14 @@ GENERAL = "ISO 2768-m"
 NARROW_LETTERS = 38  # letters of a line in the left column of the title block
 PIECE_ANGLE = np.pi  # [rad] of one piece of the track's development, at most
 DEVELOPED_PLACES = 61  # along a piece at which it is developed
+OUTLET_BOX = 335.0, 136.0, 408.0, 206.0  # [mm] left, low, right, high: the part as it leaves
+POSE_BOX = 356.0, 62.5, 409.0, 77.0  # [mm] the same as a small picture, in the title block
+DATUM_CLEAR_RAD = np.radians(35.0)  # from the ray of the datum to that of the track's width, from above
+POSE_ROWS = 6  # devices on one sheet of poses
+POSE_LETTERS = 72  # of a line of the pose in the title block
+POSES_HEAD = (
+    "what each device lets pass and what it returns, seen from inside the bowl; arrow: the way parts travel"
+)
 CONDITION_LETTERS, CONDITION_LINE_MM = 240, 2.8  # of a line of the condition; from line to line
 
 
@@ -57,18 +66,29 @@ def draw_sheets(
     wide, deep, high = (float(x) for x in np.ptp(solid.vertices, axis=0))
     sizes = replace(measures(whole), extent=(wide, deep, high))
     scale = min(_scale(max(wide, deep) / MM, VIEW_ROOM[0]), _scale(sizes.height / MM, VIEW_ROOM[1]))
-    count = 3 if solid.plan.stretch is not None else 2
+    poses = pose_sheet.find_outlet_poses(study, trial)
+    rows = [] if poses is None else list(enumerate(poses.devices, start=1))
+    of_poses = [rows[k : k + POSE_ROWS] for k in range(0, len(rows), POSE_ROWS)]
+    count = 2 + (solid.plan.stretch is not None) + len(of_poses)
     drawing.box(*FRAME)
     _draw_from_above(drawing, solid, sizes, scale)
     _draw_side_views(drawing, solid, sizes, scale)
     _draw_springs(drawing, study.bowl, whole.plan.turned)
     _draw_list(drawing, study, whole, (246.0, 134.0))
-    _draw_title_block(drawing, study, order, whole, sizes, scale, trial, fields, f"1 of {count}")
+    if poses is not None:
+        pose_sheet.draw_outlet_views(drawing, poses.leaving, OUTLET_BOX)
+    _draw_title_block(drawing, study, order, whole, sizes, scale, trial, fields, f"1 of {count}", poses)
     drawing.mark(of_trial(trial, mark))
     if trial is not None and trial.condition:
         _draw_condition(drawing, trial)
     if solid.plan.stretch is not None:
         _draw_devices(drawing, whole.plan, solid.plan.stretch, order.part.name, fields, f"2 of {count}")
+        drawing.mark(of_trial(trial, mark))
+    for k, group in enumerate(of_poses, start=3 if solid.plan.stretch is not None else 2):
+        drawing.new_sheet()
+        _draw_title(drawing, order.part.name, None, fields, f"{k} of {count}")
+        _draw_head(drawing, 25.0, 281.0, POSES_HEAD, None)
+        pose_sheet.draw_device_poses(drawing, group, 25.0, 276.0)
         drawing.mark(of_trial(trial, mark))
     _draw_track(drawing, whole.plan, order.part.name, fields, f"{count} of {count}")
     drawing.mark(of_trial(trial, mark))
@@ -114,7 +134,15 @@ def _draw_from_above(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale:
         drawing.round_size(at, r, plan.turned / DEG, scale, text="<> at the outlet", decimals=1)
         lowest = float(plan.path.wall_radius(0.0)) / MM
         drawing.text(25.0, 268.0, f"R{lowest:.4g} of the wall where the track begins", 2.2)
-    outward = _ray(plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi)
+    # the track's width on a ray of its own, away from that of the datum
+    sense = 1.0 if plan.left else -1.0
+    across = plan.turned + sense * 0.5 * np.pi
+    datum = np.nan
+    if plan.stretch is not None:
+        datum = plan.turned - sense * float(plan.path.angle(plan.first))
+        if np.cos(across - datum) > np.cos(DATUM_CLEAR_RAD):
+            across += DATUM_CLEAR_RAD if np.sin(across - datum) >= 0.0 else -DATUM_CLEAR_RAD
+    outward = _ray(across)
     wide = sizes.track_width * np.cos(float(plan.path.bank_at(plan.path.at(-0.5 * np.pi)))) / MM * scale
     drawing.lines([[at + outward * (r - wide - 7.0), at + outward * r]], "DIMENSION")
     x, y = at + outward * (r - wide - 9.5)
@@ -125,10 +153,10 @@ def _draw_from_above(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale:
     if plan.stretch is not None:
         start = _angle_from_outlet(plan, 0.0)
         drawing.text(25.0, 272.5, f"tooling begins at the datum D, {start:.4g}° before the outlet", 2.2)
-        angle = float(plan.path.angle(plan.first))
-        ray = plan.turned + (-angle if plan.left else angle)
-        drawing.lines([[at + (r - wide - 2.0) * _ray(ray), at + (r + 5.0) * _ray(ray)]], "NOTE")
-        x, y = at + (r + 7.5) * _ray(ray)
+        drawing.lines([[at + (r - wide - 2.0) * _ray(datum), at + (r + 5.0) * _ray(datum)]], "NOTE")
+        x, y = at + (r + 7.5) * _ray(datum)
+        if abs(x - at[0]) < 12.0 and y < at[1]:  # not on the number of the diameter
+            x, y = at + (r - wide - 5.0) * _ray(datum)
         drawing.text(x, y - 1.2, "D", 3.0, "center", bold=True)
     drawing.lines([[at - [r + 6, 0], at + [r + 6, 0]]], "CENTRE")
     for side in (-1, 1):
@@ -192,8 +220,8 @@ def _draw_side_views(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale:
     # and as it stands
     pieces = views.lines(solid.vertices, solid.faces, views.camera(np.degrees(plan.turned) - 125.0, 42.0))
     least, most = pieces.reshape(-1, 2).min(axis=0), pieces.reshape(-1, 2).max(axis=0)
-    size = min(72.0 / (most - least)[0], 80.0 / (most - least)[1])
-    _draw_view(drawing, (pieces - 0.5 * (least + most)) * size + [371.0, 235.0])
+    size = min(72.0 / (most - least)[0], 66.0 / (most - least)[1])
+    _draw_view(drawing, (pieces - 0.5 * (least + most)) * size + [371.0, 244.0])
     drawing.text(335.0, 281.0, "not to scale", 2.2)
 
 
@@ -293,7 +321,7 @@ def _draw_list(drawing: Drawing, study: MachineSheet, solid: BowlSolid, corner: 
 
 def _draw_title_block(
     drawing: Drawing, study: MachineSheet, order: Order, solid: BowlSolid, sizes: Measures, scale: float,
-    trial: Verified | None, fields: SheetFields | None, sheet: str,
+    trial: Verified | None, fields: SheetFields | None, sheet: str, poses: pose_sheet.OutletPoses | None,
 ) -> None:  # fmt: skip
     """The title block in the lower right corner; of a bowl that was tried as it was tried."""
     left, low, right, high = 246.0, 10.0, 410.0, 78.0
@@ -340,19 +368,26 @@ def _draw_title_block(
         ("drawn by", "feeder bowl" if trial is None else "feeder design, feeder bowl"),
         *_sheet_fields(fields, scale, sheet),
     ]
+    if poses is not None:  # the pose that leaves, in words and as a picture
+        pose_sheet.draw_pose(drawing, poses.leaving, POSE_BOX)
+        for k, line in enumerate(textwrap.wrap(f"leaves {poses.words}", POSE_LETTERS)[:2]):
+            drawing.text(left + 2.0, high - 9.5 - 3.2 * k, line, 2.0, bold=k == 0)
     half = (len(pairs) + 1) // 2
     for k, (name, value) in enumerate(pairs):
-        x, y = left + 2.0 + 82.0 * (k // half), high - 11.0 - 4.5 * (k % half)
+        x, y = left + 2.0 + 82.0 * (k // half), high - 19.0 - 4.0 * (k % half)
         drawing.text(x, y, name, 1.9, layer="EDGE")
         drawing.text(x + 27.0, y, value, 2.0)
 
 
-def _sheet_fields(fields: SheetFields | None, scale: float, sheet: str) -> list[tuple[str, str]]:
-    scales = ("scale, sheet", f"{scale_words(scale)}, A3, {sheet}, sizes in mm")
+def _sheet_fields(fields: SheetFields | None, scale: float | None, sheet: str) -> list[tuple[str, str]]:
+    words = "not to scale" if scale is None else scale_words(scale)
+    scales = ("scale, sheet", f"{words}, A3, {sheet}, sizes in mm")
     return [scales, *tooling_drawing.title_fields(fields)]
 
 
-def _draw_title(drawing: Drawing, part: str, scale: float, fields: SheetFields | None, sheet: str) -> None:
+def _draw_title(
+    drawing: Drawing, part: str, scale: float | None, fields: SheetFields | None, sheet: str
+) -> None:
     left, low, right, _ = FRAME
     drawing.box(*FRAME)
     drawing.box(left, low, right, low + 8.0)

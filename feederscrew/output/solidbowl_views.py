@@ -97,21 +97,28 @@ def camera(azimuth: float, elevation: float) -> Camera:
 
 
 def lines(vertices: Points, faces: Triangles, view: Camera) -> Floats:
-    """Return the visible edges (N, 2, 2) of a closed surface (V, 3), (F, 3), across and up the view."""
+    """Return the visible edges (N, 2, 2) of a surface (V, 3), (F, 3), across and up the view.
+
+    Drawn are sharp edges, those of the outline, and those at which not exactly two facets meet, as where a
+    file leaves a crack.
+    """
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)
-    # the edges that are drawn: sharp ones, and those of the outline
     corners = rays.points[faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.maximum(np.sqrt((normal**2).sum(axis=1, keepdims=True)), 1e-30)
-    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    order, owner = np.lexsort(np.sort(sides, axis=1).T), np.tile(np.arange(len(faces)), 3)
-    left, right = owner[order[0::2]], owner[order[1::2]]
+    sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    order, owner = np.lexsort(sides.T), np.tile(np.arange(len(faces)), 3)
+    is_first = np.append(True, (sides[order][1:] != sides[order][:-1]).any(axis=1))
+    starts = np.flatnonzero(is_first)
+    counts = np.diff(np.append(starts, len(order)))
+    left, right = owner[order[starts]], owner[order[starts + (counts == 2)]]  # of a lone one the same
     facing = (normal * view.towards_viewer).sum(axis=1)
     drawn = (normal[left] * normal[right]).sum(axis=1) < DRAWN_EDGE_COSINE
     drawn |= (facing[left] > 1e-6) != (facing[right] > 1e-6)
+    drawn |= counts != 2
     drawn &= (facing[left] > -1e-6) | (facing[right] > -1e-6)
-    pair = sides[order[0::2]][drawn]
+    pair = sides[order[starts]][drawn]
     a, b, push = rays.points[pair[:, 0]], rays.points[pair[:, 1]], (normal[left] + normal[right])[drawn]
     # pieces of them that are seen
     count = np.maximum(1, np.ceil(np.sqrt(((b - a) ** 2).sum(axis=1)) / 0.006)).astype(int)

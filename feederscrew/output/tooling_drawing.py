@@ -22,6 +22,7 @@ from feederscrew.units import DEG, MM
 
 VIEW_GAP_MM = 20.0  # [mm] between the views
 DRAWN_WALL_M = 2e-3  # [m] thickness the wall is drawn with
+LETTER_ROOM_MM = 1.9  # [mm] of a digit of a dimension, along its line
 EDGES = f"edges broken at most {CUT_BORDER_RADIUS_M / MM:.3g} mm"  # as they are tried
 SHOP = f"values ±0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
 DEVICE_PENS = {  # of the layers of devices
@@ -211,7 +212,9 @@ def _dimension_cut(drawing: Drawing, hole: Floats, view: View, width: float) -> 
                 low_end, high_end = view.placed([[middle, low], [middle, high]])
                 drawing.length(low_end, high_end, (0.001, 0.0), view.scale)
         ends = view.placed([[start, width], [stop, width]])
-        row = 3.8 if ends[1][0] - ends[0][0] < 8.0 else 0.0  # no room for its number between others
+        number = f"{(stop - start) / MM:.2f}".rstrip("0").rstrip(".")
+        room = min(8.0, LETTER_ROOM_MM * (len(number) + 1))
+        row = 3.8 if ends[1][0] - ends[0][0] < room else 0.0  # no room for its number between others
         drawing.length(ends[0], ends[1], (0.0, above + row - ends[0][1]), view.scale)
 
 

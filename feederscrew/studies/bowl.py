@@ -59,6 +59,7 @@ class Order(ReadableRecord):
     shape: sizing.SizedShape  # one part on the track, to draw
     climb_for_devices: bool = False  # whether a device that leads the track down asks for the climb
     static_drive: str = ""  # what the static rule takes, where the drive is that of a trial; '' elsewhere
+    on_track: stream.Orientations | None = None  # every way the part comes along track and devices, to draw
 
 
 @dataclass(frozen=True)
@@ -292,6 +293,7 @@ def size_machine(
         shape=sizing.size_shape(part, aspects, track, wanted),
         climb_for_devices=least is not None,
         static_drive=note,
+        on_track=orientations_at(driven),
     )
     return replace(_sheet(driven, settings, size.depth, (search.bulk, PART), order), solid=body)
 

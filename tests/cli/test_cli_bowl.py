@@ -231,7 +231,7 @@ def test_what_was_measured_is_set_beside_what_should_be(run_json):
 
 
 def test_a_speed_that_bowls_do_not_run_is_told(run):
-    line = "mm/s is slower than bowls run (20 to 120 mm/s): check stroke, angle and friction"
+    line = "mm/s is slower than bowls run (20 to 240 mm/s): check stroke, angle and friction"
     for command in (("convey",), ("rate", BRACKET, "--aspect", "A")):
         assert line in run(*command, "--set", "drive.amplitude=0.15 mm").stderr
         assert run(*command).stderr == ""

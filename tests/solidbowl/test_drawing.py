@@ -4,21 +4,26 @@ import io
 import itertools
 import re
 import zlib
+from dataclasses import replace
 from types import SimpleNamespace
 
 import ezdxf
 import numpy as np
 import pytest
+import shapes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
-from solids import STEEP, STEPPED, TRACK, built, planned
+from solids import STEEP, STEPPED, TRACK, built, device, planned
 
 from feederscrew import bowl as bowls
-from feederscrew.output import bowl_sheet
+from feederscrew.output import bowl_sheet, pose_sheet
 from feederscrew.output.drafting import FRAME
 from feederscrew.output.marking import SheetFields
+from feederscrew.rates import stream
+from feederscrew.resting.aspects import find
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions
+from feederscrew.tooling.pose_words import describe_pose
 
 CASES = {
     "cylinder": ("narrowed and rails", TRACK, SolidOptions()),
@@ -30,11 +35,44 @@ CASES = {
 def study(solid):
     part = SimpleNamespace(name="pin", source="parts/pin.stl", material="steel")
     return SimpleNamespace(
-        order=SimpleNamespace(part=part, target=1.0, wanted=None, hopper=0.01),
+        order=SimpleNamespace(part=part, target=1.0, wanted=None, hopper=0.01, on_track=None),
         bowl=bowls.default(), solid=solid, force=100.0, fill=SimpleNamespace(mass=1.0),
         stroke=SimpleNamespace(frequency=100.0, peak_to_peak=4e-4),
         springs=SimpleNamespace(natural_frequency=105.0), mismatch=None, turns=1.8,
     )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def posed():
+    """A sheet of a bowl with a part on its track: a wiper returns what stands, a gap what is short."""
+    part = shapes.part(shapes.box(20.0, 12.0, 5.0), "block")
+    devices = (device("wiper", limit=8e-3), device("gap", limit=7e-3))
+    on_track = stream.follow_orientations(part, find(part), TRACK, devices)
+    sheet = study(body(planned(devices, turns=1.8)))
+    sheet.bowl = replace(sheet.bowl, devices=devices, track=TRACK)
+    sheet.order.part, sheet.order.on_track, sheet.order.rule = part, on_track, "hops"
+    return sheet
+
+
+def test_the_part_stands_at_the_outlet_as_it_leaves_and_beside_each_device(posed):
+    drawing, coming = bowl_sheet.draw_sheets(posed), posed.order.on_track
+    leaves = coming.lying[int(np.argmax(coming.rules["hops"] * coming.through))]
+    first, of_poses = drawing.texts(0), drawing.texts(2)
+    assert any(text.startswith("part at the outlet") for text in first)
+    assert " ".join(first).count(f"leaves {leaves.name}: {describe_pose(leaves).partition(',')[0]}") == 1
+    assert {shortest(leaves.length), shortest(leaves.height)} <= {text.removesuffix(".0") for text in first}
+    passed = {text.split(" ")[1].strip(",") for text in of_poses if text.startswith("passes ")}
+    gone = {text.split(" ")[1].strip(",") for text in of_poses if re.match("(returns|stops) ", text)}
+    assert leaves.name in passed - gone
+    fates = dict(zip((one.name for one in coming.lying), coming.through))
+    assert gone and all(fates[name] < 0.5 for name in gone)
+    for number, sheet in enumerate(drawing.sheets):
+        assert not overlapping(drawing.figure(number)) and sheet
+    assert f"A3, 3 of {len(drawing.sheets)}" in " ".join(of_poses)
+    # what a trial has counted goes before what leaves most often
+    other = next(one for one in coming.lying if one.name != leaves.name and not one.returned)
+    posed_as = pose_sheet.find_outlet_poses(posed, SimpleNamespace(wanted=f"{other.name} or X@1"))
+    assert posed_as.leaving is other
 
 
 def shortest(length):
@@ -108,9 +146,9 @@ def test_the_rails_are_read_back_from_dxf_and_pdf_as_the_bowl_file_has_them(tmp_
 def pdf_words(data):
     """The texts of a PDF of matplotlib, in its order."""
     words = []
-    for stream in re.findall(rb"stream\r?\n(.*?)\r?\nendstream", data, re.S):
+    for packed in re.findall(rb"stream\r?\n(.*?)\r?\nendstream", data, re.S):
         try:
-            content = zlib.decompress(stream)
+            content = zlib.decompress(packed)
         except zlib.error:
             continue
         for written in re.findall(rb"BT\n(.*?)ET", content, re.S):
