@@ -63,7 +63,17 @@ def hop(bowl: Bowl) -> Hop:
 
 
 def remark(bowl: Bowl) -> tuple[str, ...]:
-    """Return a sentence if a bowl's drive throws parts higher than ``HOP_MARGIN_M``."""
+    """Return a sentence if a bowl's drive throws parts higher than ``HOP_MARGIN_M``.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    tuple of str
+        Empty where it does not.
+    """
     own = hop(bowl)
     text = (
         f"parts hop {own.text}: an edge, rail or blade that a part passes by less, and a hole that is "

@@ -441,9 +441,19 @@ def steps_of(floor: Floor, coarse: float = 1.0) -> Steps:
 
 
 def throw_number(bowl: Bowl) -> float:
-    """Return the level floor's greatest downward acceleration over gravity [1], as of a track.
+    """Return the level floor's greatest downward acceleration over gravity, as of a track.
 
-    Source: the normal force of eq. [4.14] at the upper reversal; docs/conveying.md, "The model".
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [1]
+
+    References
+    ----------
+    The normal force of eq. [4.14] at the upper reversal; docs/conveying.md, "The model".
     """
     if bowl.drive.amplitude == 0.0:
         return 0.0
@@ -543,9 +553,21 @@ def occupancy(
 
 
 def lasting(faces: Ints) -> Ints:
-    """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first.
+    """Return the face that each part lies on or lay on last.
 
-    Source: docs/resting.md, "On the vibrating plate".
+    Parameters
+    ----------
+    faces : (N, K) int
+        Of N parts at K times, UNSETTLED between faces.
+
+    Returns
+    -------
+    (N, K) int [index]
+        UNSETTLED before the first.
+
+    References
+    ----------
+    docs/resting.md, "On the vibrating plate".
     """
     at = np.where(faces == UNSETTLED, 0, np.arange(faces.shape[1]))
     return np.take_along_axis(faces, np.maximum.accumulate(at, axis=1), axis=1)

@@ -500,7 +500,17 @@ def amplitude_for(
 
 
 def steepest_climb(bowl: Bowl) -> float:
-    """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none."""
+    """Return the climb up to which a part travels, the springs left as they are.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [rad]
+        NaN where it does not travel on the level.
+    """
     upright = bowl.drive.vibration_angle + bowl.track.climb
 
     def travels(climb: float) -> bool:

@@ -131,7 +131,12 @@ def _with_images(there: Points, turn: float) -> Floats:
 
 @functools.lru_cache(maxsize=1)
 def directions() -> Floats:
-    """Return unit vectors (N, 3) [1] spread over the sphere."""
+    """Return unit vectors spread over the sphere, in which parts are compared.
+
+    Returns
+    -------
+    (LOOK_DIRECTIONS, 3) float [1]
+    """
     return vectors.spiral(LOOK_DIRECTIONS)
 
 

@@ -393,9 +393,22 @@ def tipping(
 
 
 def landing_energy(bowl: Bowl) -> float:
-    """Return the energy of the hardest landing of a part, as a height [m]; 0 where it never leaves the track.
+    """Return the energy of the hardest landing of a part, as a height: u^2 / (2 g).
 
-    Source: u^2 / (2 g), u the velocity of a point mass towards the track as it lands.
+    u is the velocity of a point mass towards the track as it lands.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [m]
+        0 where it never leaves the track.
+
+    References
+    ----------
+    The kinetic energy of a point mass.
     """
     if travel_speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
         return 0.0

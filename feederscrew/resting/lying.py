@@ -108,10 +108,20 @@ def touching_area(part: Part, normal: Vector, height: float, noise: float = 0.0)
 
 
 def is_on_end(hull: Hull, normal: Vector) -> bool:
-    """Return whether the longest side of a part is upright where a normal (3,) [1] of its hull is down.
+    """Tell whether the longest side of a part is upright.
 
     The sides are those of the smallest upright box around the part; of sides of one length none is the
     longest.
+
+    Parameters
+    ----------
+    hull : Hull
+    normal : (3,) float [1]
+        Of the hull, that is down.
+
+    Returns
+    -------
+    bool
     """
     across = vectors.plane_axes(normal)
     plan = outline(np.column_stack([vectors.product(hull.vertices, axis) for axis in across]))

@@ -153,7 +153,18 @@ def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
 def along_radius(bowl: Bowl) -> ConveyCurve:
     """Study a bowl along its radius, inwards, where its angle is steeper.
 
-    Raises ConfigError if the drive is elliptical.
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    ConveyCurve
+
+    Raises
+    ------
+    ConfigError
+        If the drive is elliptical.
     """
     there = answer.inwards(bowl)
     axes = (
@@ -167,7 +178,18 @@ def along_radius(bowl: Bowl) -> ConveyCurve:
 def best_phase(bowl: Bowl) -> ConveyPhase:
     """Study a bowl over the phase of its drive.
 
-    Raises ConfigError if the bowl cannot convey, or has no steady velocity at any phase.
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    ConveyPhase
+
+    Raises
+    ------
+    ConfigError
+        If the bowl cannot convey, or has no steady velocity at any phase.
     """
     return ConveyPhase(bowl, answer.best_phase(bowl))
 
