@@ -42,7 +42,7 @@ AMONG = " or "  # between the names of what counts as one
 
 
 class Status(enum.StrEnum):
-    """What a design or its trial comes to; files print the word."""
+    """Status of a design or of its trial; files print the word."""
 
     HOLDS = "holds"
     HOLDS_SINGLE = "holds if parts arrive single"  # two of them hook, and do not part by themselves
@@ -68,7 +68,7 @@ class VoidTrial:
 
 @dataclass(frozen=True)
 class Verified:
-    """What was tried of a bowl, and what came of it."""
+    """Trial of a bowl, as its file records it, and the outcome."""
 
     status: str  # one of HELD, or 'falls short'
     wanted: str  # 'A@2', 'hanging'

@@ -57,7 +57,7 @@ class UnsteadyMotion(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Answer(ReadableRecord):
-    """How a part travels at one operating point."""
+    """Motion of a part at one operating point."""
 
     setting: OperatingPoint
     speed: float  # [m/s] A w, of the first harmonic

@@ -1,4 +1,4 @@
-"""How high a part hops over the track in a period of the drive, and how far it flies."""
+"""Hop of a part over the track in a period of the drive: its height and its flight."""
 
 import functools
 from dataclasses import dataclass, replace

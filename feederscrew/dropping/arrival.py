@@ -1,4 +1,4 @@
-"""What lies at the track's entry: parts fed from a hopper onto the moving floor of a bowl.
+"""Mix of aspects that enters the track: parts fed from a hopper onto the moving floor of a bowl.
 
 Source: own; docs/resting.md, "What arrives from the bowl's floor".
 """

@@ -30,7 +30,7 @@ NUMERICAL_SHARE_ERROR = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Drops:
-    """What became of N drops, in the order of their seeds."""
+    """Outcomes of N drops, in the order of their seeds."""
 
     faces: Ints  # (N,) face each rests on, UNSETTLED for none
     times: Floats  # (N,) in units of sqrt(L / g)
@@ -100,7 +100,7 @@ class Tally(ReadableRecord):
 
 @dataclass(frozen=True, eq=False)
 class Aim:
-    """How narrow the 95 % intervals of all classes shall become."""
+    """Width that the 95 % intervals of all classes shall come below."""
 
     width: float  # [1] to either side
     rows: Ints  # (F,) class of each face

@@ -65,7 +65,7 @@ SHARE_SUM_ROUNDING = 1e-9  # [1] by which shares may add up to more than 1
 
 @dataclass(frozen=True, eq=False)
 class Rides:
-    """Where each of N parts lay at each of K looks."""
+    """Faces on which each of N parts lay, at each of K looks."""
 
     faces: Ints  # (N, K) face it lies on, UNSETTLED while it may be tipping over
     places: Floats  # (N, K, 2) of its centre of mass, in units of L
@@ -75,7 +75,7 @@ class Rides:
 
 @dataclass(frozen=True)
 class PlatePace:
-    """How finely and how long a part is followed before it counts, and how many are."""
+    """Steps and times by which a part is followed before it counts, and the number of parts."""
 
     seconds: float = 5.0  # [s] each part is followed once it counts
     coarse: float = 1.0  # [1] by how much steps are longer than those that velocities need
@@ -93,7 +93,7 @@ EXACT_PACE = PlatePace(scatters=True)
 
 @dataclass(frozen=True, eq=False)
 class Occupancy:
-    """What N parts did on a plate; A classes. Intervals are of 95 %, over the parts."""
+    """Aspects of N parts on a plate; A classes. Intervals are of 95 %, over the parts."""
 
     start: Floats  # (A,) [1] share of the parts by what they lay on at the first look that shows it
     plate: Floats  # (A,) [1] share of the time, in the second half
@@ -116,7 +116,7 @@ class Occupancy:
 
 @dataclass(frozen=True, eq=False)
 class PlateResult(ReadableRecord):
-    """What parts did on one plate."""
+    """Outcome of the parts on one plate."""
 
     bowl: Bowl
     launch: dict  # name and ranges sampled, in the units of the shop

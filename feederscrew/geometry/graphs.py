@@ -1,4 +1,4 @@
-"""Which nodes of a graph hang together; groups of unlike lengths in one array."""
+"""Components of a graph: nodes that hang together; groups of unlike lengths in one array."""
 
 import itertools
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What a designer must not overlook in a machine: each line says where, what and what to change."""
+"""Remarks that a designer of a machine must not overlook: each says where, what and what to change."""
 
 from collections.abc import Iterator
 from typing import Any

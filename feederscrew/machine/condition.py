@@ -1,4 +1,4 @@
-"""What was measured at a machine beside what it should do, and what makes the difference."""
+"""Measurements at a machine beside what it should do, and what makes the difference."""
 
 import math
 from dataclasses import dataclass, replace

@@ -378,7 +378,7 @@ MAX_CLIMB_RAD = np.radians(45.0)
 
 @dataclass(frozen=True)
 class Flow:
-    """What leaves the bowl, for one metre of track."""
+    """Parts that leave the bowl, for one metre of track."""
 
     parts: float  # [1/m] counted parts on a length of track
     share: float  # [1] of all parts that climb the track, those that are counted

@@ -205,7 +205,7 @@ POISSON = 0.3  # [1] of steel; the twist of a leaf depends on it through G / E =
 
 @dataclass(frozen=True)
 class Springs:
-    """What the leaves make of bowl and base."""
+    """Stiffness, moving mass and natural frequencies of bowl and base on their leaves."""
 
     leaf_stiffness: float  # [N/m] of one leaf, both ends guided
     stiffness: float  # [N/m] of all leaves, their twist included
@@ -650,7 +650,7 @@ RADII = 6  # in it, besides the springs'
 
 @dataclass(frozen=True)
 class Stroke:
-    """How a bowl moves, and what is read on it where its track runs."""
+    """Motion of a bowl, and what is read on it where its track runs."""
 
     frequency: float  # [Hz]
     peak_to_peak: float  # [m] along the motion: what a sticker shows

@@ -1,4 +1,4 @@
-"""Whether a part looks the same from another heading: judged by its surfaces, not by corners of its mesh.
+"""Likeness of a part from other headings: judged by its surfaces, not by corners of its mesh.
 
 Two ways of lying are one where a turn carries the convex hull onto itself, seen by its support function in
 directions all around, and carries the solid onto itself, seen by its moments, which also know of holes.

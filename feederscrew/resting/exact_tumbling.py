@@ -117,7 +117,7 @@ class Ground:
 
 @dataclass(frozen=True, eq=False)
 class Exact:
-    """What exact tumbling adds to the aspects, A rows; NaN where the part does not rest."""
+    """Exact tumbling of the aspects, A rows; NaN where the part does not rest."""
 
     probabilities: dict[str, Floats]  # (A,) [1] by every rule that weighs faces
     barriers: Floats  # (A,) [m] lowest lift that tips the part; NaN where nothing does

@@ -1,4 +1,4 @@
-"""How a part lies on an aspect, in one word: by what of it touches the floor."""
+"""Way in which a part lies on an aspect, in one word: by what of it touches the floor."""
 
 import enum
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ NOISE_DEPTHS = 8.0  # of a file's noise: material so deep off a plane is still o
 
 
 class Lies(enum.StrEnum):
-    """How a part lies; tables, pictures, reports and documents print the word."""
+    """Way in which a part lies; tables, pictures, reports and documents print the word."""
 
     LARGEST_FACE = "on its largest face"
     FACE = "on a face"

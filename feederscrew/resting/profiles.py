@@ -33,7 +33,7 @@ COUNTS_EXAMPLE = "give a header 'aspect,counts' and one row an aspect"
 
 @dataclass(frozen=True)
 class Head:
-    """What the lines '# key: value' of a file of counts say; empty where they are silent."""
+    """Lines '# key: value' at the head of a file of counts; empty where they are silent."""
 
     part: str = ""  # path of the part file, from the folder of the counts
     mesh: str = ""  # sha256 of the part file, or how it begins

@@ -274,7 +274,7 @@ def trial(
 
 @dataclass(frozen=True)
 class _FillPlan:
-    """What is asked of a queue at a fill."""
+    """Plan of a queue at a fill."""
 
     level: FillLevel
     parts: int | None
