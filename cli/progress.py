@@ -1,4 +1,4 @@
-"""What is said to a person who must wait: for the compiler, and how far a long run is."""
+"""Progress for a person who must wait: for the compiler, and how far a long run is."""
 
 import contextlib
 import importlib

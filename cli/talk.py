@@ -1,4 +1,4 @@
-"""What goes where: data to stdout, talk to stderr, files to the folder of ``-o``."""
+"""Output of a call: data to stdout, talk to stderr, files to the folder of ``-o``."""
 
 import contextlib
 import re

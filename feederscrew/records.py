@@ -1,4 +1,4 @@
-"""What a person sees of a record: a short text, a table, a picture; made outside of the room it is from.
+"""Views of a record: a short text, a table, a picture; made outside of the room it is from.
 
 Tables and pictures are views: `output.record_views` makes them, and is imported when one is asked for. No
 room but the output knows what they are made of.

@@ -1,4 +1,4 @@
-"""How a run of the library goes on: from which seed, on how many cores, and who is told of it."""
+"""Settings of a run of the library: its seed, its cores, and who is told of its progress."""
 
 import os
 from collections.abc import Callable

@@ -217,7 +217,7 @@ def _lock(folder: Path) -> int | None:
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """What a finished batch has to say."""
+    """Results of a finished batch."""
 
     rows: tuple[dict[str, Any], ...]  # one a part, in the order asked for
     reused: int  # parts whose results were there already

@@ -1,4 +1,4 @@
-"""What is imported once, by the process that those of a batch are forked from."""
+"""Imports made once, by the process that those of a batch are forked from."""
 
 import gc
 

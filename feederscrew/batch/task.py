@@ -1,4 +1,4 @@
-"""What is asked of one part, and what came of it."""
+"""Task of a batch for one part, and its outcome."""
 
 import dataclasses
 import hashlib
@@ -35,7 +35,7 @@ class Conditions:
 
 @dataclass(frozen=True)
 class Choices:
-    """What is computed of every part."""
+    """Settings of a batch that are the same for every part."""
 
     rule: str = "recommended"  # whose probabilities the rate takes
     drops: int = 0  # simulated drops of each part
@@ -90,7 +90,7 @@ class Task:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What came of one part; its files are ready to be put in place."""
+    """Outcome of one part; its files are ready to be put in place."""
 
     name: str  # of the folder
     key: str  # '' where another try may do better

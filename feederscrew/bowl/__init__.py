@@ -73,15 +73,41 @@ def read(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ())
 
 
 def default() -> Bowl:
-    """Return the Bowl of the documented defaults."""
+    """Return the bowl of the documented defaults.
+
+    Returns
+    -------
+    Bowl
+    """
     return record(effective({}))
 
 
 def name(path: str | PathLike[str] | None = None) -> str:
-    """Return what a bowl's results are filed under: its file's stem, or 'defaults'."""
+    """Return what a bowl's results are filed under.
+
+    Parameters
+    ----------
+    path : str or path, optional
+        Of its file.
+
+    Returns
+    -------
+    str
+        The file's stem; 'defaults' without one.
+    """
     return "defaults" if path is None else Path(path).stem
 
 
 def identity(path: str | PathLike[str] | None = None) -> dict[str, str]:
-    """Return the sha256 of a bowl file by its path; empty for the defaults."""
+    """Return the sha256 of a bowl file by its path.
+
+    Parameters
+    ----------
+    path : str or path, optional
+
+    Returns
+    -------
+    dict of str to str
+        Empty for the defaults.
+    """
     return {} if path is None else {str(path): hashlib.sha256(Path(path).read_bytes()).hexdigest()}

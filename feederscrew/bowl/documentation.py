@@ -30,7 +30,12 @@ friction; there are no tables of friction on coatings to rely on.
 
 
 def template() -> str:
-    """Return a bowl file of all defaults, commented: what ``feeder config init`` writes."""
+    """Return a bowl file of all defaults, commented: what ``feeder config init`` writes.
+
+    Returns
+    -------
+    str
+    """
     lines = [
         EDITORS,
         "# A bowl feeder: its drive, its surface and its track. Write a unit after every dimensional value.",
@@ -110,6 +115,10 @@ def json_schema() -> dict[str, Any]:
 
     A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units`` and
     ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
+
+    Returns
+    -------
+    dict of str to object
     """
     properties = {key.name: _value(key) for key in BOWL_KEYS if not key.section}
     for section in BOWL_SECTIONS:
@@ -155,9 +164,22 @@ def schema_text() -> str:
 
 
 def write_beside(path: str | PathLike[str]) -> Path:
-    """Write the schema beside a bowl file of ``path``, in place of an older one of ours.
+    """Write the schema beside a bowl file, in place of an older one of ours.
 
-    Raises FeederError if another file has that name, or it cannot be written.
+    Parameters
+    ----------
+    path : str or path
+        Of the bowl file.
+
+    Returns
+    -------
+    Path
+        Of the schema.
+
+    Raises
+    ------
+    FeederError
+        If another file has that name, or it cannot be written.
     """
     place = Path(path).parent / SCHEMA_FILE
     ours = place.is_file() and f'"title": "{TITLE}"' in place.read_text(encoding="utf-8", errors="replace")

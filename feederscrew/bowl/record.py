@@ -1,4 +1,4 @@
-"""What a bowl is, in SI units, and the direction in which leaf springs move it over its radius.
+"""Bowl in SI units, and the direction in which leaf springs move it over its radius.
 
 Source: a rigid bowl on inclined leaf springs; docs/method/bowl.md.
 """
@@ -76,7 +76,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Unbalance:
-    """What of a bowl's mass does not lie evenly about its axis; Z from the upper ends of the leaves."""
+    """Mass of a bowl that does not lie evenly about its axis; Z from the upper ends of the leaves."""
 
     moment: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [kg m] mass times the place of its centre
     upright: tuple[float, float] = (0.0, 0.0)  # [kg m2] inertia about X and Y there
@@ -89,7 +89,7 @@ UNBALANCE_UNKNOWN = Unbalance()  # nothing of it is known
 
 @dataclass(frozen=True)
 class Machine:
-    """What is under the bowl: two masses on inclined leaf springs."""
+    """Machine under the bowl: two masses on inclined leaf springs."""
 
     bowl_mass: float  # [kg] of everything above the springs, tooling included, parts not
     bowl_inertia: float  # [kg m2] of the same, about the bowl's axis

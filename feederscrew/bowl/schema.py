@@ -46,7 +46,21 @@ class Key:
         return " or ".join(self.choices) if self.choices else f"{self.lowest} to {self.highest}"
 
     def value(self, text: str) -> float | str:
-        """Return a value as typed: in SI units, or the word; QuantityError where it is neither."""
+        """Return a value as typed: in SI units, or the word.
+
+        Parameters
+        ----------
+        text : str
+
+        Returns
+        -------
+        float [SI] or str
+
+        Raises
+        ------
+        QuantityError
+            If it is neither.
+        """
         if not self.choices:
             return units.quantity(text, self.dimension, suggest=self.unit)
         words = {_plainly(choice): choice for choice in self.choices}
@@ -681,5 +695,14 @@ BOWL_SECTIONS = tuple(dict.fromkeys(key.section for key in BOWL_KEYS if key.sect
 
 
 def rival(key: Key) -> Key | None:
-    """Return the other key of the same field, or None."""
+    """Return the other key of the same field.
+
+    Parameters
+    ----------
+    key : Key
+
+    Returns
+    -------
+    Key or None
+    """
     return next((other for other in BOWL_KEYS if other.field == key.field and other is not key), None)

@@ -42,7 +42,7 @@ AMONG = " or "  # between the names of what counts as one
 
 
 class Status(enum.StrEnum):
-    """What a design or its trial comes to; files print the word."""
+    """Status of a design or of its trial; files print the word."""
 
     HOLDS = "holds"
     HOLDS_SINGLE = "holds if parts arrive single"  # two of them hook, and do not part by themselves
@@ -68,7 +68,7 @@ class VoidTrial:
 
 @dataclass(frozen=True)
 class Verified:
-    """What was tried of a bowl, and what came of it."""
+    """Trial of a bowl, as its file records it, and the outcome."""
 
     status: str  # one of HELD, or 'falls short'
     wanted: str  # 'A@2', 'hanging'
@@ -92,10 +92,20 @@ class Verified:
     purity_low: float | None = None  # [1] lower bound of the purity (one-sided, 95 %); None where not said
 
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
-        """Say what is other than was tried, a sentence each; nothing where the block holds.
+        """Yield what is other than was tried, a sentence each; nothing where the block holds.
 
-        ``version`` is that of this program; ``wanted`` the aspect, 'A', or the orientation, 'A@2', that is
-        counted now.
+        Parameters
+        ----------
+        part : Part or None
+        bowl : Bowl
+        version : str
+            Of this program.
+        wanted : str, optional
+            The aspect, 'A', or the orientation, 'A@2', that is counted now.
+
+        Yields
+        ------
+        str
         """
         if part is not None and part.sha256[: len(self.part)] != self.part:
             yield "the part is another one than was tried"
@@ -115,7 +125,17 @@ class Verified:
             yield f"version {self.version} tried it, this is {version}"
 
     def counts(self, wanted: str) -> bool:
-        """Return whether an aspect, 'A', or an orientation, 'A@2', is what the trial counted."""
+        """Tell whether an aspect or an orientation is what the trial counted.
+
+        Parameters
+        ----------
+        wanted : str
+            'A' or 'A@2'.
+
+        Returns
+        -------
+        bool
+        """
         first, *more = (name.casefold() for name in self.wanted.split(AMONG))
         up = {*more, *(name.strip().casefold() for name in self.up.split(",") if name.strip())}
         name = wanted.casefold()
@@ -142,9 +162,16 @@ LATER_KEYS = ("second_harmonic_angle",)  # since version 0.2.0
 
 
 def fingerprint(bowl: Bowl) -> str:
-    """Return a short text, of sixteen digits, that another drive, friction, track or device changes.
+    """Return a short text that another drive, friction, track or device changes.
 
-    The last digits of numbers do not count.
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    str
+        Of sixteen digits; the last digits of numbers do not count.
     """
     listed = []
     for record in (bowl.drive, bowl.friction, bowl.track):
@@ -175,7 +202,14 @@ def _own(value: object) -> str:
 def body_fingerprint(part: Part) -> str:
     """Return a short text that other units, density, centre of mass or names of a part change.
 
-    It has sixteen digits; the last digits of numbers do not count.
+    Parameters
+    ----------
+    part : Part
+
+    Returns
+    -------
+    str
+        Of sixteen digits; the last digits of numbers do not count.
     """
     size = 1.0 if part.vertices is None else float(np.ptp(part.vertices, axis=0).max())
     centre = " ".join(f"{round(float(place) / size, 3) + 0.0:.3f}" for place in part.centre_of_mass)
@@ -187,7 +221,14 @@ def body_fingerprint(part: Part) -> str:
 def verified(path: str | PathLike[str] | None) -> Verified | VoidTrial | None:
     """Return the ``verified`` block of a bowl file.
 
-    Returns None where the file has no such block; a VoidTrial where what it says cannot be of a trial.
+    Parameters
+    ----------
+    path : str or path or None
+
+    Returns
+    -------
+    Verified, VoidTrial or None
+        None where the file has no such block; a VoidTrial where what it says cannot be of a trial.
     """
     if path is None or str(path) == "-":
         return None

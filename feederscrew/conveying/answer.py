@@ -57,7 +57,7 @@ class UnsteadyMotion(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Answer(ReadableRecord):
-    """How a part travels at one operating point."""
+    """Motion of a part at one operating point."""
 
     setting: OperatingPoint
     speed: float  # [m/s] A w, of the first harmonic
@@ -150,7 +150,23 @@ def _surveyed(setting: OperatingPoint) -> Floats:
 
 
 def conveying(bowl: Bowl) -> Bowl:
-    """Return the bowl itself if it can convey; raise ConfigError otherwise."""
+    """Return the bowl itself if it can convey.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its fields may be arrays.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    ConfigError
+        If gravity is not above 0, the drive does not point along the track, nothing moves, or kinetic
+        friction is above static friction.
+    """
     if not np.all(bowl.gravity > 0.0):
         raise ConfigError("gravity", "is not above 0", "give m/s2, 9.81 on earth")
     if np.any(bowl.drive.direction != 0.0):
@@ -167,10 +183,22 @@ def conveying(bowl: Bowl) -> Bowl:
 
 
 def settings(bowl: Bowl) -> Floats:
-    """Return the ``OperatingPoint`` (..., 12) [1 and rad] of a bowl, its fields along the last axis.
+    """Return the ``OperatingPoint`` of a bowl, its fields along the last axis.
 
-    The bowl's fields may be arrays that broadcast together. The bank is reckoned as friction
-    (``limits.level``). A bowl at rest gets the acceleration ratio ``LEAST_ACCELERATION_RATIO``. Source:
+    The bank is reckoned as friction (``limits.level``). A bowl at rest gets the acceleration ratio
+    ``LEAST_ACCELERATION_RATIO``.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its fields may be arrays that broadcast together.
+
+    Returns
+    -------
+    (..., 12) float [1 and rad]
+
+    References
+    ----------
     docs/conveying.md, "The model".
     """
     here = limits.level(bowl)
@@ -193,12 +221,24 @@ def settings(bowl: Bowl) -> Floats:
 
 
 def limits_of_slip(setting: OperatingPoint) -> tuple[float, float]:
-    """Return the least static friction [1] against slip up and down the track, whatever the setting's own.
+    """Return the least static friction against slip up and down the track, whatever the setting's own.
 
-    Zero or less where the part slips on no surface; NaN past the hop, where it slips on every one. Under an
-    elliptical drive pull and normal force are greatest at different phases. Then the ratio of both is taken
-    where their difference is greatest, that ratio is the next guess, and so on until it does not change.
-    Source: W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7), 492-498, 1967.
+    Under an elliptical drive pull and normal force are greatest at different phases. Then the ratio of both
+    is taken where their difference is greatest, that ratio is the next guess, and so on until it does not
+    change.
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+
+    Returns
+    -------
+    up, down : float [1]
+        Zero or less where the part slips on no surface; NaN past the hop, where it slips on every one.
+
+    References
+    ----------
+    W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7), 492-498, 1967.
     """
     if setting.lead == 0.0 and setting.second == 0.0:
         where = (setting.ratio, setting.angle, 0.0, setting.climb)
@@ -219,25 +259,58 @@ def limits_of_slip(setting: OperatingPoint) -> tuple[float, float]:
 
 
 def throw_number(bowl: Bowl) -> float:
-    """Return the plate's greatest downward acceleration over gravity, along the normal [1]; one setting."""
+    """Return the plate's greatest downward acceleration over gravity, along the normal.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Of one setting.
+
+    Returns
+    -------
+    float [1]
+    """
     return operating_point.throw_number(operating_point.law(OperatingPoint(*settings(bowl).tolist())))
 
 
 def throw_of_flight(periods: float) -> float:
-    """Return the throw number [1] at which a part that does not rebound flies for a time [periods], above 0.
+    """Return the throw number at which a part that does not rebound flies for a time.
 
         k = sqrt(1 + q^2),   q = (x^2 / 2 - 1 + cos x) / (x - sin x),   x = 2 pi times the periods
 
-    Source: Sloot and Kruyt 1996, by the parabola between two impacts: sqrt(1 + pi^2) for one period.
+    Parameters
+    ----------
+    periods : float [periods]
+        Of the flight, above 0.
+
+    Returns
+    -------
+    float [1]
+        sqrt(1 + pi^2) for one period.
+
+    References
+    ----------
+    Sloot and Kruyt 1996, by the parabola between two impacts.
     """
     turn = 2.0 * math.pi * check.positive("periods", periods)
     return math.hypot(1.0, (0.5 * turn * turn - 1.0 + math.cos(turn)) / (turn - math.sin(turn)))
 
 
 def greatest_speed(bowl: Bowl) -> float:
-    """Return A w [m/s], of the first harmonic.
+    """Return the greatest speed of the plate: A w, of the first harmonic.
 
-    Source: the derivative of the motion A sin(w t).
+    Parameters
+    ----------
+    bowl : Bowl
+        Its fields may be arrays.
+
+    Returns
+    -------
+    float or array of float [m/s]
+
+    References
+    ----------
+    The derivative of the motion A sin(w t).
     """
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
@@ -265,11 +338,24 @@ def validity(run: Answer, bowl: Bowl) -> str:
 
 
 def cells(bowl: Bowl) -> dict[str, Array]:
-    """Return how a part travels over a map: the bowl's fields are arrays that broadcast together.
+    """Return how a part travels over a map.
 
-    The columns are velocity, low, high [m/s] over the starts; several, whether these differ by more than
-    ``COEXISTING_VELOCITY_GAP``; regime, a place in ``SWEEP_REGIMES``; throw_number [1]; status, a place in
-    ``steady.STATUSES``. Raises ConfigError as ``answer`` does.
+    Parameters
+    ----------
+    bowl : Bowl
+        Its fields are arrays that broadcast together.
+
+    Returns
+    -------
+    dict of str to array
+        velocity, low and high [m/s] over the starts; several, whether these differ by more than
+        ``COEXISTING_VELOCITY_GAP``; regime, a place in ``SWEEP_REGIMES``; throw_number [1]; status, a place
+        in ``steady.STATUSES``.
+
+    Raises
+    ------
+    ConfigError
+        As ``answer``.
     """
     rows = settings(conveying(bowl))
     out = sweep(rows.reshape(-1, rows.shape[-1])).reshape(*rows.shape[:-1], steady.COLUMNS)
@@ -325,7 +411,12 @@ def sweep(rows: Floats, workers: int | None = None) -> Floats:
 
 
 def sweep_compiled() -> bool:
-    """Return whether the compiled functions are already on disk, or numba is set not to compile."""
+    """Tell whether the compiled functions are already on disk, or numba is set not to compile.
+
+    Returns
+    -------
+    bool
+    """
     return on_disk(_compiled_loop())
 
 
@@ -395,12 +486,35 @@ class Neighbours:
     more: float  # [m/s]
 
     def elasticity(self, velocity: float, change: float = SENSITIVITY_CHANGE) -> float:
-        """Return per cent of velocity for one per cent of the quantity; NaN where the part stands."""
+        """Return per cent of velocity for one per cent of the quantity: (more - less) / (2 change velocity).
+
+        Parameters
+        ----------
+        velocity : float [m/s]
+            Between both.
+        change : float [1], optional
+            By which the quantity is lower and higher.
+
+        Returns
+        -------
+        float [1]
+            NaN where the part stands.
+        """
         return (self.more - self.less) / (2.0 * change * velocity) if velocity else math.nan
 
 
 def sensitivity(bowl: Bowl) -> dict[str, Neighbours]:
-    """Return velocities with 'amplitude', 'friction' (all of it) and 'angle' a tenth lower and higher."""
+    """Return the velocities with a quantity a tenth lower and higher.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    dict of str to Neighbours
+        Of 'amplitude', 'friction' (all of it) and 'angle'.
+    """
     ends = 1.0 - SENSITIVITY_CHANGE, 1.0 + SENSITIVITY_CHANGE
     return {
         name: Neighbours(*(answer(scaled(bowl, **{name: factor})).velocity for factor in ends))
@@ -409,12 +523,30 @@ def sensitivity(bowl: Bowl) -> dict[str, Neighbours]:
 
 
 def friction_doubt(bowl: Bowl) -> Neighbours:
-    """Return neighbours for friction a fifth lower and higher."""
+    """Return the velocities for friction a fifth lower and higher.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    Neighbours
+    """
     return Neighbours(*(answer(there).velocity for there in surfaces(bowl, hops=False)[1:]))
 
 
 def restitution_doubt(bowl: Bowl) -> Neighbours:
-    """Return neighbours for both ends of the spread of restitution."""
+    """Return the velocities for both ends of the spread of restitution.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    Neighbours
+    """
     return Neighbours(*(answer(replace(bowl, restitution=end)).velocity for end in rebounds(bowl)))
 
 
@@ -444,22 +576,53 @@ def surfaces(bowl: Bowl, hops: bool) -> list[Bowl]:
 
 
 def rebounds(bowl: Bowl) -> tuple[float, ...]:
-    """Return both ends of the spread of a bowl's restitution [1], not above ``MAX_RESTITUTION``."""
+    """Return both ends of the spread of a bowl's restitution.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    tuple of float [1]
+        Not above ``MAX_RESTITUTION``.
+    """
     return tuple(min(end, MAX_RESTITUTION) for end in even_range(bowl.restitution))
 
 
 def even_range(restitution: float) -> tuple[float, float]:
-    """Return both ends of the even range round a restitution [1] with ``RESTITUTION_DOUBT`` as deviation.
+    """Return both ends of the even range round a restitution with ``RESTITUTION_DOUBT`` as deviation.
 
     The half width of a uniform range is sqrt(3) times its standard deviation. The range ends at 0 and 1.
-    Source: a uniform range has 1 / sqrt(12) of its width as its standard deviation.
+
+    Parameters
+    ----------
+    restitution : float [1]
+
+    Returns
+    -------
+    low, high : float [1]
+
+    References
+    ----------
+    A uniform range has 1 / sqrt(12) of its width as its standard deviation.
     """
     half = min(math.sqrt(3.0) * RESTITUTION_DOUBT * restitution, 1.0 - restitution)
     return restitution - half, restitution + half
 
 
 def inwards(bowl: Bowl) -> Bowl:
-    """Return the bowl at radii [m] from half the track's to the track's own, evenly spaced."""
+    """Return the bowl at radii from ``INNER_RADIUS_SHARE`` of the track's to its own, evenly spaced.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    Bowl
+        Its fields are arrays over the radii.
+    """
     return at_radius(bowl, bowl.track.radius * np.linspace(INNER_RADIUS_SHARE, 1.0, RADIUS_STEPS))
 
 
@@ -517,10 +680,21 @@ class BestPhase:
 
 
 def best_phase(bowl: Bowl) -> BestPhase:
-    """Find the phase of the drive at which a part travels fastest up the track; its own does not matter.
+    """Find the phase of the drive at which a part travels fastest up the track.
 
-    Raises ConfigError if nothing moves, the drive does not point along the track, or no phase has a steady
-    velocity.
+    Parameters
+    ----------
+    bowl : Bowl
+        Its own phase does not matter.
+
+    Returns
+    -------
+    BestPhase
+
+    Raises
+    ------
+    ConfigError
+        If nothing moves, the drive does not point along the track, or no phase has a steady velocity.
     """
     phases = -np.pi + PHASE_STEP_RAD * np.arange(round(2.0 * np.pi / PHASE_STEP_RAD))
     around = cells(with_phase(bowl, phases))

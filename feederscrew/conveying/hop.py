@@ -1,4 +1,4 @@
-"""How high a part hops over the track in a period of the drive, and how far it flies."""
+"""Hop of a part over the track in a period of the drive: its height and its flight."""
 
 import functools
 from dataclasses import dataclass, replace
@@ -63,7 +63,17 @@ def hop(bowl: Bowl) -> Hop:
 
 
 def remark(bowl: Bowl) -> tuple[str, ...]:
-    """Return a sentence if a bowl's drive throws parts higher than ``HOP_MARGIN_M``."""
+    """Return a sentence if a bowl's drive throws parts higher than ``HOP_MARGIN_M``.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    tuple of str
+        Empty where it does not.
+    """
     own = hop(bowl)
     text = (
         f"parts hop {own.text}: an edge, rail or blade that a part passes by less, and a hole that is "

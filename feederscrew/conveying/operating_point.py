@@ -70,7 +70,22 @@ def plain(
 
 
 def checked(setting: OperatingPoint) -> OperatingPoint:
-    """Return the setting itself, its fields maybe arrays, if it is a track; else raise ValueError."""
+    """Return the setting itself, if it is a track.
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+        Its fields may be arrays.
+
+    Returns
+    -------
+    OperatingPoint
+
+    Raises
+    ------
+    ValueError
+        If a field is out of its range or not finite, or kinetic friction is above static friction.
+    """
     angle, kinetic = setting.angle, np.minimum(setting.kinetic, setting.kinetic_back)
     reasons = (
         (np.isfinite(np.stack(np.broadcast_arrays(*setting))), "an entry of the setting is not finite"),
@@ -102,7 +117,16 @@ class Law(NamedTuple):
 
 
 def law(setting: OperatingPoint) -> Law:
-    """Return the equations of motion of an OperatingPoint."""
+    """Return the equations of motion of a setting: lift and pull as waves, with their zeros.
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+
+    Returns
+    -------
+    Law
+    """
     return Law(
         harmonic(lift_wave(setting)),
         harmonic(pull_wave(setting, 1.0, 0.0)),
@@ -117,9 +141,21 @@ def law(setting: OperatingPoint) -> Law:
 
 
 def lift_wave(setting: OperatingPoint) -> Wave:
-    """Return the acceleration [A w2] along the normal of a part in flight, relative to the plate.
+    """Return the acceleration along the normal of a part in flight, relative to the plate.
 
-    While it is negative the part is pressed on. Source: docs/conveying.md, "The model".
+    While it is negative the part is pressed on.
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+
+    Returns
+    -------
+    Wave [A w2]
+
+    References
+    ----------
+    docs/conveying.md, "The model".
     """
     weight = math.cos(setting.climb) / setting.ratio
     normal, phase = math.sin(setting.angle), setting.second_phase
@@ -167,9 +203,19 @@ def pull_wave(setting: OperatingPoint, direction: float, friction: float) -> Wav
 
 
 def throw_number(rules: Law) -> float:
-    """Return the plate's greatest downward acceleration over a part's own [1]; the part hops above 1.
+    """Return the plate's greatest downward acceleration over a part's own; the part hops above 1.
 
-    Source: docs/conveying.md, "The model".
+    Parameters
+    ----------
+    rules : Law
+
+    Returns
+    -------
+    float [1]
+
+    References
+    ----------
+    docs/conveying.md, "The model".
     """
     return 1.0 - peak(rules.lift) / rules.lift.level
 
@@ -210,7 +256,17 @@ class Numbers(NamedTuple):
 
 
 def numbers(setting: OperatingPoint) -> Numbers:
-    """Return the five numbers of a setting: harmonic, with one coefficient of friction above 0."""
+    """Return the five numbers of a setting.
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+        Harmonic, with one coefficient of friction above 0.
+
+    Returns
+    -------
+    Numbers
+    """
     throw = setting.ratio * math.sin(setting.angle) / math.cos(setting.climb)
     coupling, steepness = setting.static * math.tan(setting.angle), math.tan(setting.climb) / setting.static
     return Numbers(coupling, steepness, throw, setting.restitution, -setting.lead)

@@ -30,7 +30,7 @@ from feederscrew.mechanics import limits
 
 
 class MotionStatus(enum.StrEnum):
-    """How well a motion is known; files print the word."""
+    """Degree to which a motion is known; files print the word."""
 
     PERIODIC = "periodic"
     AVERAGED = "averaged"  # it does not repeat: an average

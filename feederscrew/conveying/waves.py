@@ -70,17 +70,38 @@ def size(a: float, b: float) -> float:
 
 
 def slope(wave: Wave) -> Wave:
-    """Return the derivative of a wave, a wave again, in its own unit over [rad]."""
+    """Return the derivative of a wave, a wave again.
+
+    Parameters
+    ----------
+    wave : Wave [any]
+
+    Returns
+    -------
+    Wave [any/rad]
+    """
     return Wave(0.0, -wave.cosine, wave.sine, -2.0 * wave.cosine_2, 2.0 * wave.sine_2)
 
 
 def find_bends(wave: Wave) -> Zeros:
-    """Find where a wave turns: angles [rad] from 0 to 2 pi, ascending, then inf.
+    """Find where a wave turns.
 
     With S and T the harmonics of the slope, its own slope at a zero has |cos| <= T/S of the first harmonic,
     so S^2 > 5 T^2 keeps its sign: one zero between the extremes of the first. Otherwise two derivatives
     later the second is 4 T / S > 1 of the first: one zero between the extremes of the second.
-    Source: own; docs/conveying.md, "How it is computed".
+
+    Parameters
+    ----------
+    wave : Wave [any]
+
+    Returns
+    -------
+    Zeros [rad]
+        From 0 to 2 pi, ascending, then inf.
+
+    References
+    ----------
+    docs/conveying.md, "How it is computed".
     """
     rate = slope(wave)
     if size(rate.sine, rate.cosine) > OUTWEIGHS * size(rate.sine_2, rate.cosine_2):
@@ -102,7 +123,17 @@ def _knots(first: float, spacing: float, count: int) -> Zeros:
 
 
 def crest(wave: Wave) -> float:
-    """Return the angle [rad] of the greatest value of a wave that has a harmonic."""
+    """Return the angle of the greatest value of a wave.
+
+    Parameters
+    ----------
+    wave : Wave [any]
+        With a harmonic.
+
+    Returns
+    -------
+    float [rad]
+    """
     best, angle, angles = -math.inf, 0.0, find_bends(wave)
     for k in range(MAX_ZEROS):
         if angles[k] < math.inf and height(wave, angles[k]) > best:
@@ -182,7 +213,16 @@ class Harmonic(NamedTuple):
 
 
 def harmonic(wave: Wave) -> Harmonic:
-    """Return a wave by its amplitudes and phases, with its zeros."""
+    """Return a wave by its amplitudes and phases, with its zeros.
+
+    Parameters
+    ----------
+    wave : Wave [any]
+
+    Returns
+    -------
+    Harmonic [any]
+    """
     level = wave.level
     swing, phase = size(wave.sine, wave.cosine), math.atan2(wave.cosine, wave.sine)
     second, twice = size(wave.sine_2, wave.cosine_2), math.atan2(wave.cosine_2, wave.sine_2)
@@ -198,9 +238,19 @@ def harmonic(wave: Wave) -> Harmonic:
 
 
 def peak(a: Harmonic) -> float:
-    """Return the greatest value of a harmonic [A w2].
+    """Return the greatest value of a harmonic.
 
-    Source: own; docs/conveying.md, "Elliptical drives".
+    Parameters
+    ----------
+    a : Harmonic [A w2]
+
+    Returns
+    -------
+    float [A w2]
+
+    References
+    ----------
+    docs/conveying.md, "Elliptical drives".
     """
     if a.second == 0.0:
         return a.level + a.swing

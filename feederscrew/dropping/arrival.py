@@ -1,4 +1,4 @@
-"""What lies at the track's entry: parts fed from a hopper onto the moving floor of a bowl.
+"""Mix of aspects that enters the track: parts fed from a hopper onto the moving floor of a bowl.
 
 Source: own; docs/resting.md, "What arrives from the bowl's floor".
 """
@@ -148,6 +148,14 @@ def judge(shaken: plate_test.PlateResult) -> Arrival:
     Shares are settled where none still changes. They also have to come within ``ARRIVED_SHARE_GAP`` of where
     the rates lead, once two things are known: so many transitions were seen that they tell where that is, and
     more than ``ARRIVAL_HALF_WIDTH`` of the parts change in the longer time.
+
+    Parameters
+    ----------
+    shaken : PlateResult
+
+    Returns
+    -------
+    Arrival
     """
     occupancy = shaken.occupancy
     lying = occupancy.plate.sum()

@@ -30,7 +30,7 @@ NUMERICAL_SHARE_ERROR = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Drops:
-    """What became of N drops, in the order of their seeds."""
+    """Outcomes of N drops, in the order of their seeds."""
 
     faces: Ints  # (N,) face each rests on, UNSETTLED for none
     times: Floats  # (N,) in units of sqrt(L / g)
@@ -84,26 +84,59 @@ class Tally(ReadableRecord):
     restitution: Floats  # (A,) [1] half the 95 % interval that the spread of restitution makes by itself
 
     def answer(self, launch: str) -> Recommended:
-        """Return the answer of the drop test for its launch, a key of ``launch_conditions.PRESETS``."""
+        """Return the answer of the drop test for its launch.
+
+        Parameters
+        ----------
+        launch : str
+            A key of ``launch_conditions.PRESETS``.
+
+        Returns
+        -------
+        Recommended
+        """
         return Recommended(f"drop test, launch {launch}", launch, self.p, self.low, self.high)
 
 
 @dataclass(frozen=True, eq=False)
 class Aim:
-    """How narrow the 95 % intervals of all classes shall become."""
+    """Width that the 95 % intervals of all classes shall come below."""
 
     width: float  # [1] to either side
     rows: Ints  # (F,) class of each face
     count: int  # classes
 
     def widest(self, faces: Ints) -> float:
-        """Return half the longest interval after drops on (N,) ``faces``."""
+        """Return half the longest interval after drops.
+
+        Parameters
+        ----------
+        faces : (N,) int
+            On which they came to lie.
+
+        Returns
+        -------
+        float [1]
+        """
         counts = _count_classes(faces, self.rows, self.count)
         low, high = wilson(counts, counts.sum())
         return float(0.5 * (high - low).max())
 
     def needed(self, done: int, widest: float) -> int:
-        """Return how many drops it takes: ``done``, or an estimate; intervals narrow with 1 / sqrt(N)."""
+        """Return how many drops it takes: intervals narrow with 1 / sqrt(N).
+
+        Parameters
+        ----------
+        done : int
+            So far.
+        widest : float [1]
+            Half the longest interval after these.
+
+        Returns
+        -------
+        int
+            ``done`` where that is enough, else an estimate.
+        """
         excess = (widest / self.width) ** 2
         return done if excess <= 1.0 else DROPS_A_LOOK * int(np.ceil(excess * done / DROPS_A_LOOK))
 

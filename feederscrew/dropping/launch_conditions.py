@@ -1,4 +1,4 @@
-"""How parts arrive on the plane: presets, from which a drop draws, and conditions as a user gives them."""
+"""Launches of parts onto the plane: presets, from which a drop draws, and conditions of a user."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -65,7 +65,7 @@ SHARE_SUM_ROUNDING = 1e-9  # [1] by which shares may add up to more than 1
 
 @dataclass(frozen=True, eq=False)
 class Rides:
-    """Where each of N parts lay at each of K looks."""
+    """Faces on which each of N parts lay, at each of K looks."""
 
     faces: Ints  # (N, K) face it lies on, UNSETTLED while it may be tipping over
     places: Floats  # (N, K, 2) of its centre of mass, in units of L
@@ -75,7 +75,7 @@ class Rides:
 
 @dataclass(frozen=True)
 class PlatePace:
-    """How finely and how long a part is followed before it counts, and how many are."""
+    """Steps and times by which a part is followed before it counts, and the number of parts."""
 
     seconds: float = 5.0  # [s] each part is followed once it counts
     coarse: float = 1.0  # [1] by how much steps are longer than those that velocities need
@@ -93,7 +93,7 @@ EXACT_PACE = PlatePace(scatters=True)
 
 @dataclass(frozen=True, eq=False)
 class Occupancy:
-    """What N parts did on a plate; A classes. Intervals are of 95 %, over the parts."""
+    """Aspects of N parts on a plate; A classes. Intervals are of 95 %, over the parts."""
 
     start: Floats  # (A,) [1] share of the parts by what they lay on at the first look that shows it
     plate: Floats  # (A,) [1] share of the time, in the second half
@@ -116,7 +116,7 @@ class Occupancy:
 
 @dataclass(frozen=True, eq=False)
 class PlateResult(ReadableRecord):
-    """What parts did on one plate."""
+    """Outcome of the parts on one plate."""
 
     bowl: Bowl
     launch: dict  # name and ranges sampled, in the units of the shop
@@ -441,9 +441,19 @@ def steps_of(floor: Floor, coarse: float = 1.0) -> Steps:
 
 
 def throw_number(bowl: Bowl) -> float:
-    """Return the level floor's greatest downward acceleration over gravity [1], as of a track.
+    """Return the level floor's greatest downward acceleration over gravity, as of a track.
 
-    Source: the normal force of eq. [4.14] at the upper reversal; docs/conveying.md, "The model".
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [1]
+
+    References
+    ----------
+    The normal force of eq. [4.14] at the upper reversal; docs/conveying.md, "The model".
     """
     if bowl.drive.amplitude == 0.0:
         return 0.0
@@ -543,9 +553,21 @@ def occupancy(
 
 
 def lasting(faces: Ints) -> Ints:
-    """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first.
+    """Return the face that each part lies on or lay on last.
 
-    Source: docs/resting.md, "On the vibrating plate".
+    Parameters
+    ----------
+    faces : (N, K) int
+        Of N parts at K times, UNSETTLED between faces.
+
+    Returns
+    -------
+    (N, K) int [index]
+        UNSETTLED before the first.
+
+    References
+    ----------
+    docs/resting.md, "On the vibrating plate".
     """
     at = np.where(faces == UNSETTLED, 0, np.arange(faces.shape[1]))
     return np.take_along_axis(faces, np.maximum.accumulate(at, axis=1), axis=1)

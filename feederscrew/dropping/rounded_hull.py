@@ -1,4 +1,4 @@
-"""What the drop kernel needs of a part, without dimensions: its hull, and the round rims of it.
+"""Part as the drop kernel takes it, without dimensions: its hull, and the round rims of it.
 
 Rims are the circles and arcs that corners stand for. Source: Newton and Euler for a rigid body;
 docs/resting.md, "The drop test".
@@ -270,7 +270,7 @@ class RoundedHull(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """What the drop kernel knows of a part, in units of its own length; F faces, M facets."""
+    """Shape of a part as the drop kernel takes it, in units of its own length; F faces, M facets."""
 
     solid: RoundedHull
     edges: Edges

@@ -167,7 +167,7 @@ class SurfaceRanges:
 
 @dataclass(frozen=True, eq=False)
 class Tosses:
-    """Where N tosses lead, each over K runs; the first run of each has the values as given."""
+    """Outcomes of N tosses, each over K runs; the first run of each has the values as given."""
 
     runs: int
     shares: Floats  # (N, 6) [1] of the settled runs that end with each of FACE_NAMES up

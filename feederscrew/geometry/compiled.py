@@ -1,4 +1,4 @@
-"""How the event loops are compiled: on first need, kept on disk as object code, free of the interpreter lock.
+"""Compilation of the event loops: on first need, kept on disk as object code, free of the interpreter lock.
 
 A kernel is a C function of one block of words: numbers, and of each array its address and shape. What
 `kernel_compiler` and LLVM make of it is kept. Later processes load that by llvmlite alone, in a thirtieth

@@ -1,4 +1,4 @@
-"""Which nodes of a graph hang together; groups of unlike lengths in one array."""
+"""Components of a graph: nodes that hang together; groups of unlike lengths in one array."""
 
 import itertools
 from collections.abc import Sequence
@@ -63,7 +63,19 @@ def component_of(pairs: Ints, count: int) -> Ints:
 
 
 def join_groups(groups: Sequence[Ints]) -> tuple[Ints, Ints]:
-    """Return the members (N,) of groups of int in one array, and the owner (N,) of each, ascending."""
+    """Return the members of groups in one array, and the owner of each.
+
+    Parameters
+    ----------
+    groups : sequence of (K,) int
+        One at least.
+
+    Returns
+    -------
+    members : (N,) int
+    owners : (N,) int
+        Places of the groups, ascending.
+    """
     counts = np.fromiter(map(len, groups), int, len(groups))
     return np.concatenate(groups), np.repeat(np.arange(len(groups)), counts)
 

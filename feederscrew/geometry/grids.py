@@ -51,7 +51,16 @@ class Grid:
         return {name: float(count / self.codes.size) for name, count in zip(self.names, counts)}
 
     def unanswered(self, column: str) -> int:
-        """Return the number of cells without a value."""
+        """Return the number of cells without a value.
+
+        Parameters
+        ----------
+        column : str
+
+        Returns
+        -------
+        int
+        """
         return int(np.isnan(self.values[column]).sum())
 
 

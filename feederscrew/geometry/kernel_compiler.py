@@ -1,4 +1,4 @@
-"""How a kernel is compiled: by numba into code of LLVM, with what numba documents for its users alone.
+"""Compiler of kernels: by numba into code of LLVM, with what numba documents for its users alone.
 
 numba itself hands on a named tuple as every number behind it, some hundred for a workspace, at each call, and
 spells all of their types in the name of each function. Here it is one address, behind which its fields lie as

@@ -24,16 +24,44 @@ class Cells:
     inside: Floats  # (I, J, K) from its middle to the nearest one outside; 0 outside
 
     def middles(self, chosen: Bools) -> Points:
-        """Return the middles (N, 3) of chosen cells, (I, J, K) bool."""
+        """Return the middles of chosen cells.
+
+        Parameters
+        ----------
+        chosen : (I, J, K) bool
+
+        Returns
+        -------
+        (N, 3) float [any length]
+        """
         return self.origin + self.size * np.argwhere(chosen)
 
     def places(self, points: Points) -> Ints:
-        """Return in which cells points (..., 3) lie, (..., 3) int; those beside the lattice in its rim."""
+        """Return in which cells points lie.
+
+        Parameters
+        ----------
+        points : (..., 3) float [any length]
+
+        Returns
+        -------
+        (..., 3) int
+            Those beside the lattice are in its rim.
+        """
         places = np.rint((points - self.origin) / self.size).astype(int)
         return np.clip(places, 0, np.array(self.solid.shape) - 1)
 
     def at(self, points: Points) -> tuple[Ints, ...]:
-        """Return the cells of points (N, 3) as an index of its arrays."""
+        """Return the cells of points as an index of the lattice's arrays.
+
+        Parameters
+        ----------
+        points : (N, 3) float [any length]
+
+        Returns
+        -------
+        tuple of three (N,) int
+        """
         return tuple(self.places(points).T)
 
     @property
@@ -142,9 +170,18 @@ def _crossed_columns(triangles: Floats, shape: Ints) -> tuple[Ints, Floats, Ints
 
 
 def handles(some: Bools) -> int:
-    """Return how many handles less how many hollows cells (I, J, K) bool have, one body of them.
+    """Return how many handles less how many hollows a body of cells has.
 
     By Euler's characteristic of the cells as closed cubes: corners less edges plus faces less cubes.
+
+    Parameters
+    ----------
+    some : (I, J, K) bool
+        The cells, of one body.
+
+    Returns
+    -------
+    int
     """
     full = np.pad(some, 1)
     total = 0

@@ -11,9 +11,17 @@ BARRIER_RIPPLE_SHARE = 2e-3  # of its size: a lower barrier is one of a round si
 
 
 def outline(points: Points) -> Points:
-    """Return the convex outline (J, 2) of points (V, 2) in a plane [m], counter-clockwise.
+    """Return the convex outline of points in a plane, without corners in the middle of a straight side.
 
-    It has no corners in the middle of a straight side. At least three points, not all on one line.
+    Parameters
+    ----------
+    points : (V, 2) float [m]
+        Three at least, not all on one line.
+
+    Returns
+    -------
+    (J, 2) float [m]
+        Counter-clockwise.
     """
     from scipy.spatial import ConvexHull
 
@@ -31,7 +39,17 @@ def outline(points: Points) -> Points:
 
 
 def centroid(polygon: Points) -> Any:
-    """Return the centroid (2,) of the area of a polygon (K, 2) [m]; of its corners where it has no area."""
+    """Return the centroid of the area of a polygon.
+
+    Parameters
+    ----------
+    polygon : (K, 2) float [m]
+
+    Returns
+    -------
+    (2,) float [m]
+        Of its corners where it has no area.
+    """
     start = polygon[0]
     a, b = polygon - start, np.roll(polygon, -1, axis=0) - start
     twice = cross(a, b)
@@ -41,7 +59,16 @@ def centroid(polygon: Points) -> Any:
 
 
 def sides(polygon: Points) -> Points:
-    """Return vectors from each corner to the next, (K, 2)."""
+    """Return the vectors from each corner of a polygon to the next.
+
+    Parameters
+    ----------
+    polygon : (K, 2) float [any length]
+
+    Returns
+    -------
+    (K, 2) float [any length]
+    """
     return np.roll(polygon, -1, axis=0) - polygon
 
 
@@ -70,7 +97,17 @@ def inset(polygon: Points, points: Points) -> Any:
 
 
 def surrounds(points: Points) -> bool:
-    """Return whether the origin lies inside the convex hull of points (V, 2); not on its border."""
+    """Tell whether the origin lies inside the convex hull of points.
+
+    Parameters
+    ----------
+    points : (V, 2) float [any length]
+
+    Returns
+    -------
+    bool
+        False on its border.
+    """
     if len(points) == 0:
         return False
     angles = np.sort(np.arctan2(points[:, 1], points[:, 0]))
@@ -113,10 +150,20 @@ def cross(u: Floats, v: Floats) -> Any:
 
 
 def barrier(points: Points) -> tuple[float, float]:
-    """Return the angle [rad] by which a part that is turned in a plane first stands over a corner.
+    """Return the angle by which a part that is turned in a plane first stands over a corner.
 
-    And the height [m] of its centre of mass then; ripples of a round side count for nothing. Points (V, 2)
-    [m] are its corners about the centre of mass: towards the side it turns to, and down.
+    Ripples of a round side count for nothing.
+
+    Parameters
+    ----------
+    points : (V, 2) float [m]
+        Its corners about the centre of mass: towards the side it turns to, and down.
+
+    Returns
+    -------
+    angle : float [rad]
+    height : float [m]
+        Of its centre of mass then.
     """
     ring = outline(points)
     turn, far = np.arctan2(*ring.T), np.hypot(*ring.T)
@@ -131,7 +178,17 @@ def barrier(points: Points) -> tuple[float, float]:
 
 
 def convex(points: Points) -> Ints:
-    """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
+    """Return the corners of a convex hull.
+
+    Parameters
+    ----------
+    points : (V, 2) float [any length]
+
+    Returns
+    -------
+    (H,) int
+        Counter-clockwise; fewer than 3 where all points lie on a line.
+    """
 
     def is_right(a: Vector, b: Vector, c: Vector) -> bool:
         """Return whether the way from a over b to c does not turn left."""

@@ -81,22 +81,49 @@ def cross(u: ArrayLike, v: ArrayLike) -> Any:
 
 
 def length(vectors: ArrayLike) -> Any:
-    """Return the lengths (...,) of vectors (..., K), in their unit."""
+    """Return the lengths of vectors.
+
+    Parameters
+    ----------
+    vectors : (..., K) float [any]
+
+    Returns
+    -------
+    (...) float [any]
+    """
     vectors = np.asarray(vectors, float)
     return np.sqrt(dot(vectors, vectors))
 
 
 def norm(vectors: Array) -> Any:
-    """Return the lengths (...,) of vectors (..., 3), in their unit.
+    """Return the lengths of vectors in space.
 
     The digits are those of ``numpy.linalg.norm`` along the last axis, which takes seven times as long.
+
+    Parameters
+    ----------
+    vectors : (..., 3) float [any]
+
+    Returns
+    -------
+    (...) float [any]
     """
     x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
     return np.sqrt(x * x + y * y + z * z)
 
 
 def unit(vectors: ArrayLike) -> Any:
-    """Return vectors (..., K) divided by their lengths; none may be zero."""
+    """Return vectors divided by their lengths.
+
+    Parameters
+    ----------
+    vectors : (..., K) float [any]
+        None may be zero.
+
+    Returns
+    -------
+    (..., K) float [1]
+    """
     return np.asarray(vectors, float) / length(vectors)[..., None]
 
 
@@ -119,7 +146,16 @@ def ratio(above: ArrayLike, below: ArrayLike, otherwise: ArrayLike = np.nan) -> 
 
 
 def determinant(matrix: ArrayLike) -> Any:
-    """Return the determinant of a (3, 3) matrix, or of a stack (..., 3, 3) of them."""
+    """Return the determinant of a matrix, or of a stack of them: a . (b x c) of its rows.
+
+    Parameters
+    ----------
+    matrix : (..., 3, 3) float [any]
+
+    Returns
+    -------
+    (...) float [any cubed]
+    """
     a, b, c = np.moveaxis(np.asarray(matrix, float), -2, 0)
     return dot(a, cross(b, c))
 
@@ -272,16 +308,36 @@ def misfit(columns: ArrayLike, right: ArrayLike) -> Floats:
 
 
 def plane_axes(normals: Floats) -> tuple[Floats, Floats]:
-    """Return unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
+    """Return two axes in the plane across each normal; with it they are right-handed.
+
+    Parameters
+    ----------
+    normals : (..., 3) float [1]
+        Unit vectors.
+
+    Returns
+    -------
+    first, second : (..., 3) float [1]
+    """
     first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
     u = unit(cross(normals, first))
     return u, cross(normals, u)
 
 
 def spiral(count: int) -> Floats:
-    """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral.
+    """Return unit vectors spread over the sphere, along a spiral.
 
-    Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
+    Parameters
+    ----------
+    count : int
+
+    Returns
+    -------
+    (count, 3) float [1]
+
+    References
+    ----------
+    R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
     Meteorol. Soc. 132(619), 1769-1793, 2006.
     """
     k = np.arange(count) + 0.5

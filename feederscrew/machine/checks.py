@@ -1,4 +1,4 @@
-"""What a designer must not overlook in a machine: each line says where, what and what to change."""
+"""Remarks that a designer of a machine must not overlook: each says where, what and what to change."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -63,12 +63,32 @@ def remarks(sheet: Any) -> tuple[str, ...]:
 
 
 def solid_remarks(sheet: Any) -> tuple[str, ...]:
-    """Return the remarks on a machine that its bowl as a solid alone gives, of a MachineSheet with one."""
+    """Return the remarks on a machine that its bowl as a solid alone gives.
+
+    Parameters
+    ----------
+    sheet : MachineSheet
+        With a solid.
+
+    Returns
+    -------
+    tuple of str
+    """
     return (*map(str, _rocking(sheet)), *sheet.solid.remarks)
 
 
 def find_drive_faults(sheet: Any) -> Iterator[FeederError]:
-    """Yield what keeps the springs of a MachineSheet from making its drive: one line, or none."""
+    """Yield what keeps the springs of a machine from making its drive.
+
+    Parameters
+    ----------
+    sheet : MachineSheet
+
+    Yields
+    ------
+    FeederError
+        One, or none.
+    """
     other = sheet.mismatch
     if other is not None and other.two_axis:
         yield FeederError("drive.phase", other.text, "set drive.phase to 0 deg for a leaf-spring drive")

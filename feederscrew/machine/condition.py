@@ -1,4 +1,4 @@
-"""What was measured at a machine beside what it should do, and what makes the difference."""
+"""Measurements at a machine beside what it should do, and what makes the difference."""
 
 import math
 from dataclasses import dataclass, replace
@@ -41,10 +41,22 @@ class MeasuredMachine:
 
 
 def read(text: str) -> dict[str, float]:
-    """Return what a user says was measured, {word: SI}.
+    """Return what a user says was measured.
 
-    ``text``: 'acceleration=64 m/s2, stroke=0.3 mm, fill=50 %', any of them. Raises ArgumentError if a word is
-    unknown, or a value is not one.
+    Parameters
+    ----------
+    text : str
+        'acceleration=64 m/s2, stroke=0.3 mm, fill=50 %', any of them.
+
+    Returns
+    -------
+    dict of str to float [SI]
+        By word.
+
+    Raises
+    ------
+    ArgumentError
+        If a word is unknown, or a value cannot be read.
     """
     values = {}
     for piece in text.split(","):

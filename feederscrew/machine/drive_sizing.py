@@ -250,15 +250,36 @@ class DriveMismatch:
 
 
 def is_two_axis(drive: Drive) -> bool:
-    """Return whether a drive is out of phase, which one set of leaf springs cannot make."""
+    """Tell whether a drive is out of phase, which one set of leaf springs cannot make.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    bool
+    """
     return bool(abs(drive.phase) > SAME_PHASE)
 
 
 def can_make(bowl: Bowl) -> DriveMismatch | None:
-    """Return what keeps the machine of a bowl from making the drive of that bowl; None where it makes it.
+    """Return what keeps the machine of a bowl from making the drive of that bowl.
 
     The machine's drive has the amplitude of the bowl's, as a sticker on the rim shows it.
-    Source: a rigid bowl on inclined leaves moves in one direction, that of its springs.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    DriveMismatch or None
+        None where it makes it.
+
+    References
+    ----------
+    A rigid bowl on inclined leaves moves in one direction, that of its springs.
     """
     drive, track, machine = bowl.drive, bowl.track, bowl.machine
     by_springs = float(vibration_angle(machine, track.radius, track.climb))
@@ -357,7 +378,14 @@ def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]
 def with_own_drive(search: DriveSearch) -> Bowl:
     """Return the bowl with the drive of its file as it stands, and the machine that is sized for it.
 
-    What the user gave of the machine is kept, as for ``bring_target``.
+    Parameters
+    ----------
+    search : DriveSearch
+        What the user gave of the machine is kept, as for ``bring_target``.
+
+    Returns
+    -------
+    Bowl
     """
     plain, settings = search.bowl, search.settings
     under = machine_for(plain, search.size, user_keys(settings, "machine"), exact=True)
@@ -514,7 +542,17 @@ def drive_shortfall(bowl: Bowl, user_words: frozenset[str]) -> str:
 
 
 def leaf_shortfall(bowl: Bowl) -> str:
-    """Return what keeps the leaves and the magnets of a machine from making its drive; '' for nothing."""
+    """Return what keeps the leaves and the magnets of a machine from making its drive.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    str
+        Detuning, stress or pull, with its number; '' for nothing.
+    """
     rules, machine, moved = bowl.sizing, bowl.machine, stroke(bowl)
     sprung = analyse_springs(machine)
     natural = sprung.natural_frequency
@@ -611,7 +649,13 @@ def _bowl(drive_unit: DriveUnit) -> Bowl:
 
 
 def lines() -> tuple[str, ...]:
-    """Return what ``feeder config init --machine list`` prints: a line for each drive unit."""
+    """Return what ``feeder config init --machine list`` prints.
+
+    Returns
+    -------
+    tuple of str
+        A line for each drive unit.
+    """
     rows = []
     for drive_unit in DRIVE_UNITS:
         bowl = _bowl(drive_unit)
@@ -626,7 +670,16 @@ def lines() -> tuple[str, ...]:
 
 
 def bowl_file(drive_unit: DriveUnit) -> str:
-    """Return a bowl file that describes a drive unit; the amplitude is left to the design."""
+    """Return a bowl file that describes a drive unit; the amplitude is left to the design.
+
+    Parameters
+    ----------
+    drive_unit : DriveUnit
+
+    Returns
+    -------
+    str
+    """
     bowl = _bowl(drive_unit)
     under = bowl.machine
     angle = np.degrees(bowl.drive.vibration_angle)

@@ -378,7 +378,7 @@ MAX_CLIMB_RAD = np.radians(45.0)
 
 @dataclass(frozen=True)
 class Flow:
-    """What leaves the bowl, for one metre of track."""
+    """Parts that leave the bowl, for one metre of track."""
 
     parts: float  # [1/m] counted parts on a length of track
     share: float  # [1] of all parts that climb the track, those that are counted
@@ -500,7 +500,17 @@ def amplitude_for(
 
 
 def steepest_climb(bowl: Bowl) -> float:
-    """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none."""
+    """Return the climb up to which a part travels, the springs left as they are.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [rad]
+        NaN where it does not travel on the level.
+    """
     upright = bowl.drive.vibration_angle + bowl.track.climb
 
     def travels(climb: float) -> bool:

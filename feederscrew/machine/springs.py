@@ -55,16 +55,36 @@ class _Body:
 
 
 def is_even(machine: Machine) -> bool:
-    """Return whether nothing is known of a bowl that would rock it."""
+    """Tell whether nothing is known of a bowl that would rock it.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    bool
+    """
     unbalance = machine.unbalance
     return not any((*unbalance.moment[:2], *unbalance.products))
 
 
 def unbalanced_effective_mass(machine: Machine) -> float:
-    """Return the mass [kg] that moves against the springs, of a bowl whose centre may be off its axis.
+    """Return the mass that moves against the springs, of a bowl whose centre may be off its axis.
 
-    Twice the energy of both bodies over the square of the speed between them along the springs.
-    Source: own; two bodies that move in a screw.
+    It is twice the energy of both bodies over the square of the speed between them along the springs.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    float [kg]
+
+    References
+    ----------
+    Two bodies that move in a screw; docs/method/bowl.md.
     """
     rise, turn = _screw(machine)
     along, around = _bowl(machine).momentum(*_bowl_motion(machine, _bowl(machine)))
@@ -185,7 +205,7 @@ POISSON = 0.3  # [1] of steel; the twist of a leaf depends on it through G / E =
 
 @dataclass(frozen=True)
 class Springs:
-    """What the leaves make of bowl and base."""
+    """Stiffness, moving mass and natural frequencies of bowl and base on their leaves."""
 
     leaf_stiffness: float  # [N/m] of one leaf, both ends guided
     stiffness: float  # [N/m] of all leaves, their twist included
@@ -201,7 +221,16 @@ class Springs:
 
 
 def analyse_springs(machine: Machine) -> Springs:
-    """Compute what the springs of a machine make of it."""
+    """Compute what the springs of a machine make of it: stiffness, moving mass, natural frequencies.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    Springs
+    """
     leaf = leaf_stiffness(machine)
     plain, twisted = machine.leaves * leaf, twist(machine)
     mass, held = effective_mass(machine), centred_mass(held_fast(machine))
@@ -222,9 +251,19 @@ def analyse_springs(machine: Machine) -> Springs:
 
 
 def leaf_stiffness(machine: Machine) -> float:
-    """Return the stiffness of one leaf with both ends guided, E b t^3 / L^3 [N/m].
+    """Return the stiffness of one leaf with both ends guided: E b t^3 / L^3.
 
-    Source: Euler and Bernoulli's beam.
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    float [N/m]
+
+    References
+    ----------
+    Euler and Bernoulli's beam.
     """
     ratio = machine.leaf_thickness / machine.leaf_length
     return machine.leaf_modulus * machine.leaf_width * ratio**3
@@ -302,15 +341,25 @@ def mean_pull(pull: float, frequency: float) -> float:
 
 
 def twist(machine: Machine) -> float:
-    """Return by how much the twist of its leaves stiffens a bank [1].
+    """Return by how much the twist of its leaves stiffens a bank.
 
     1 + (G / 3 E) (L / r_s)^2 cos^4 psi. A bowl that moves by d along the springs turns by d cos psi / r_s.
     The leaf leans by psi from the bowl's axis: the component of the turn along it, which twists it, is less
     by another cos psi. It enters the energy with its square. The component across the leaf bends it in its
     own plane: ``in_plane``.
 
-    Source: Saint-Venant's torsion of a thin strip, G b t^3 / 3. A space frame of beam elements with six
-    degrees of freedom a node gives the same (``tests/machine/test_springs.py``). What the strip leaves out:
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    float [1]
+
+    References
+    ----------
+    Saint-Venant's torsion of a thin strip, G b t^3 / 3. A space frame of beam elements with six degrees of
+    freedom a node gives the same (``tests/machine/test_springs.py``). What the strip leaves out:
     docs/method/bowl.md.
     """
     lever = machine.leaf_length / machine.spring_radius * np.cos(machine.spring_angle) ** 2
@@ -346,15 +395,35 @@ def in_plane(machine: Machine, offset: float = 0.0) -> float:
 
 
 def effective_mass(machine: Machine) -> float:
-    """Return the mass that moves against the springs [kg]; the centre of mass may lie off the axis."""
+    """Return the mass that moves against the springs; the centre of mass may lie off the axis.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    float [kg]
+    """
     return centred_mass(machine) if is_even(machine) else unbalanced_effective_mass(machine)
 
 
 def centred_mass(machine: Machine) -> float:
-    """Return the mass that moves against the springs [kg] where the centre of mass is on the axis.
+    """Return the mass that moves against the springs where the centre of mass is on the axis.
 
     m1 m2 / (m1 + m2) sin^2 psi + [I1 I2 / (I1 + I2)] / r_s^2 cos^2 psi.
-    Source: the kinetic energy of two free bodies.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    float [kg]
+
+    References
+    ----------
+    The kinetic energy of two free bodies.
     """
     rise, turn = shares(machine)
     along = machine.bowl_mass * rise * np.sin(machine.spring_angle) ** 2
@@ -363,7 +432,16 @@ def centred_mass(machine: Machine) -> float:
 
 
 def held_fast(machine: Machine) -> Machine:
-    """Return the machine on a base that does not move."""
+    """Return the machine on a base that does not move: one of 1e12 times the bowl's mass and inertia.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    Machine
+    """
     return replace(machine, base_mass=1e12 * machine.bowl_mass, base_inertia=1e12 * machine.bowl_inertia)
 
 
@@ -547,7 +625,18 @@ def tuned_leaf_sets(
 
 
 def fewest_leaves(sets: Iterable[LeafSet]) -> list[str]:
-    """Return the set of fewest leaves of each thickness, in the order of the sets: '4 of 2.5 mm'."""
+    """Return the set of fewest leaves of each thickness.
+
+    Parameters
+    ----------
+    sets : iterable of LeafSet
+        Of one thickness the first counts.
+
+    Returns
+    -------
+    list of str
+        In the order of the sets: '4 of 2.5 mm'.
+    """
     fewest: dict[float, str] = {}
     for own in sets:
         fewest.setdefault(own.thickness, f"{own.leaves} of {own.thickness / MM:g} mm")
@@ -561,7 +650,7 @@ RADII = 6  # in it, besides the springs'
 
 @dataclass(frozen=True)
 class Stroke:
-    """How a bowl moves, and what is read on it where its track runs."""
+    """Motion of a bowl, and what is read on it where its track runs."""
 
     frequency: float  # [Hz]
     peak_to_peak: float  # [m] along the motion: what a sticker shows

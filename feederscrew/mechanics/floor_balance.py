@@ -214,12 +214,31 @@ def over_cycle(
 
 
 def rolls(posture: Posture) -> bool:
-    """Return whether the part stands on a rolling aspect: about an axis, or as a ball about any."""
+    """Tell whether the part stands on a rolling aspect: about an axis, or as a ball about any.
+
+    Parameters
+    ----------
+    posture : Posture
+
+    Returns
+    -------
+    bool
+    """
     return posture.kind == "rolling" and (posture.axis is not None or posture.corners is not None)
 
 
 def regime(states: Ints) -> str:
-    """Return the state that names a whole cycle: contact lost, else tipping, else sliding, else sticking."""
+    """Return the state that names a whole cycle: contact lost, else tipping, else sliding, else sticking.
+
+    Parameters
+    ----------
+    states : (...) int
+        Codes of the states, HOP, TIP, SLIDE and STICK; one at least.
+
+    Returns
+    -------
+    str
+    """
     present = set(np.ravel(states).tolist())
     return next(MOTION_STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
 

@@ -1,4 +1,4 @@
-"""How a part lies along the bowl wall: its stable headings, how often each comes, whether it stays on.
+"""Stable headings of a part along the bowl wall, how often each comes, whether it stays on the track.
 
 Axes of the track: X ahead, Y from the wall towards the bowl's axis, Z up from the surface; the bowl climbs
 counter-clockwise seen from above. For a bowl that climbs clockwise take the mirror image of the part.

@@ -33,7 +33,7 @@ from feederscrew.errors import ConfigError
 
 
 class Regime(enum.StrEnum):
-    """What a part does within one cycle of the drive; files print the word."""
+    """Regime of a part within one cycle of the drive; files print the word."""
 
     STICK = "stick"
     FORWARD = "forward"

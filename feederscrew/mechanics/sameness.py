@@ -1,4 +1,4 @@
-"""Whether a part looks the same from another heading: judged by its surfaces, not by corners of its mesh.
+"""Likeness of a part from other headings: judged by its surfaces, not by corners of its mesh.
 
 Two ways of lying are one where a turn carries the convex hull onto itself, seen by its support function in
 directions all around, and carries the solid onto itself, seen by its moments, which also know of holes.
@@ -131,7 +131,12 @@ def _with_images(there: Points, turn: float) -> Floats:
 
 @functools.lru_cache(maxsize=1)
 def directions() -> Floats:
-    """Return unit vectors (N, 3) [1] spread over the sphere."""
+    """Return unit vectors spread over the sphere, in which parts are compared.
+
+    Returns
+    -------
+    (LOOK_DIRECTIONS, 3) float [1]
+    """
     return vectors.spiral(LOOK_DIRECTIONS)
 
 

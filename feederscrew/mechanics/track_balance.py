@@ -50,15 +50,34 @@ class Seat:
     contact: Floats  # (K, 2) [m] contact polygon in track axes; (0, 2) of a card
 
     def twist(self, bank: float) -> float:
-        """Return how far [rad] a bank turns the part about its lower wall contact.
+        """Return how far a bank turns the part about its lower wall contact.
 
         The higher contact leans beyond the lower one by its height times tan(bank).
+
+        Parameters
+        ----------
+        bank : float [rad]
+
+        Returns
+        -------
+        float [rad]
         """
         (x_1, _, z_1), (x_2, _, z_2) = self.walls
         return float(np.arctan2((z_1 - z_2) * np.tan(bank), x_2 - x_1))
 
     def inside(self, offset: Points) -> Floats:
-        """Return how far (...) [m] points (..., 2) [m] from the foot lie inside the contact polygon."""
+        """Return how far points lie inside the contact polygon.
+
+        Parameters
+        ----------
+        offset : (..., 2) float [m]
+            From the foot of the centre of mass.
+
+        Returns
+        -------
+        (...) float [m]
+            Negative outside.
+        """
         return inset(self.contact, offset)
 
 
@@ -268,9 +287,21 @@ def loads(
 
 
 def bank_without_radial_friction(seat: Seat) -> float:
-    """Return the bank [rad] at which R3 of eqs. [4.33], [4.35] is zero.
+    """Return the bank at which R3 of eqs. [4.33], [4.35] is zero.
 
-    The wall's reaction then passes through the centre of mass. Source: docs/mechanics.md, "The track".
+    The wall's reaction then passes through the centre of mass.
+
+    Parameters
+    ----------
+    seat : Seat
+
+    Returns
+    -------
+    float [rad]
+
+    References
+    ----------
+    docs/mechanics.md, "The track".
     """
     return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
 

@@ -1,4 +1,4 @@
-"""What readers of meshes share: formats by their bytes, numbers, facets of many corners, archives."""
+"""Tools that readers of meshes share: formats by their bytes, numbers, facets of many corners, archives."""
 
 import io
 import lzma
@@ -83,7 +83,7 @@ class Soup:
 
 
 class DamageError(ValueError):
-    """What is wrong with damaged bytes, in words for the user."""
+    """Damage of a file's bytes, in words for the user."""
 
 
 class TooManyFacetsError(ValueError):
@@ -100,7 +100,7 @@ class BombError(ValueError):
 
 @dataclass(frozen=True)
 class Format:
-    """What a format is called, and the unit its specification or its files state."""
+    """Name of a format, and the unit its specification or its files state."""
 
     title: str
     suffixes: tuple[str, ...]

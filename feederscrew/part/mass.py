@@ -17,7 +17,7 @@ EQUAL_MOMENTS_TOLERANCE = 1e-6  # [1] principal moments closer than this, by the
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """What the volume integrals of a surface give, for unit density."""
+    """Volume integrals of a surface, for unit density."""
 
     volume: float  # [m3] negative where the surface faces inwards
     centre: Floats  # (3,) [m] centroid
@@ -181,7 +181,7 @@ def _perpendicular_axes(axis: Floats) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True, eq=False)
 class MassBalance:
-    """How a part's mass and shape are spread; None where a part card is silent."""
+    """Spread of a part's mass and shape; None where a part card is silent."""
 
     inertia_at_origin: Floats  # (3, 3) [kg m2] along the file's axes
     moments: Floats  # (3,) [kg m2] principal, about the centre of mass, ascending
@@ -237,7 +237,7 @@ HALF_SPHERE_DIRECTIONS = 24  # spread over half the sphere
 
 
 class Moments:
-    """What a solid looks like from its centre of mass, blind to how its surface is cut into triangles.
+    """Moments of a solid about its centre of mass, blind to how its surface is cut into triangles.
 
     The d-th directional moment, the integral of (x . u)^d over the solid, is a polynomial in u. A rotation
     is a symmetry of the solid only if it leaves all of them alone; up to order six they tell any features

@@ -1,4 +1,4 @@
-"""What the gate mends: repeated facets, mixed winding, cracks, T-junctions, and holes with ``allow_open``.
+"""Repairs of the gate: repeated facets, mixed winding, cracks, T-junctions, holes with ``allow_open``.
 
 Lengths are in the unit of the file.
 """

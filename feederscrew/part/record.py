@@ -1,4 +1,4 @@
-"""What a part is, in SI units; sizes that need a word: many facets, dimensions as small as tolerances."""
+"""Part, in SI units; sizes that need a word: many facets, dimensions as small as tolerances."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

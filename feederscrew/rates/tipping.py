@@ -195,7 +195,7 @@ MAX_FORCE_OFFSET_HEIGHTS = 10.0  # heights of the centre of mass: no force of a 
 
 @dataclass(frozen=True, eq=False)
 class TrackTipping:
-    """What the drive does to M orientations that lie on the track."""
+    """Effect of the drive on M orientations that lie on the track."""
 
     tips: Bools  # (M,) bool, at some instant of the cycle
     tilt: Floats  # (M,) [rad] that one stroke brings at most; 0 where it does not tip
@@ -212,7 +212,7 @@ THROWN = "is thrown"
 
 @dataclass(frozen=True)
 class Stands:
-    """What the drive does to one orientation on the track: the verdict that the rate reckons with."""
+    """Effect of the drive on one orientation on the track: the verdict that the rate reckons with."""
 
     verdict: str  # STAYS, ROCKS, OVER, BACK or THROWN
     tilt: float = 0.0  # [rad] that one stroke brings at most
@@ -393,9 +393,22 @@ def tipping(
 
 
 def landing_energy(bowl: Bowl) -> float:
-    """Return the energy of the hardest landing of a part, as a height [m]; 0 where it never leaves the track.
+    """Return the energy of the hardest landing of a part, as a height: u^2 / (2 g).
 
-    Source: u^2 / (2 g), u the velocity of a point mass towards the track as it lands.
+    u is the velocity of a point mass towards the track as it lands.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [m]
+        0 where it never leaves the track.
+
+    References
+    ----------
+    The kinetic energy of a point mass.
     """
     if travel_speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
         return 0.0

@@ -1,4 +1,4 @@
-"""How far two probability profiles are apart."""
+"""Distances between two probability profiles."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -117,7 +117,7 @@ class Ground:
 
 @dataclass(frozen=True, eq=False)
 class Exact:
-    """What exact tumbling adds to the aspects, A rows; NaN where the part does not rest."""
+    """Exact tumbling of the aspects, A rows; NaN where the part does not rest."""
 
     probabilities: dict[str, Floats]  # (A,) [1] by every rule that weighs faces
     barriers: Floats  # (A,) [m] lowest lift that tips the part; NaN where nothing does
@@ -218,7 +218,17 @@ def tumble_classes(
 
 
 def transitions(ground: Ground) -> list[Transition]:
-    """Return the lowest way of each ordered pair of classes, by row; into an equal face as well."""
+    """Return the lowest way of each ordered pair of classes; into an equal face as well.
+
+    Parameters
+    ----------
+    ground : Ground
+
+    Returns
+    -------
+    list of Transition
+        By row.
+    """
     lifts = barriers.rises(ground.tips)
     lowest: dict[tuple[int, int], Transition] = {}
     for pair, lift, axis in zip(ground.rows[ground.tips.pairs], lifts, ground.tips.axes):

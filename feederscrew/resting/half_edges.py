@@ -50,7 +50,14 @@ class Edges(NamedTuple):
 def half_edges(hull: Hull) -> Edges:
     """Return half-edges of a hull, coplanar triangles merged into facets.
 
-    The centre of mass must lie strictly inside.
+    Parameters
+    ----------
+    hull : Hull
+        The centre of mass lies strictly inside.
+
+    Returns
+    -------
+    Edges
     """
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
@@ -124,22 +131,48 @@ def _one_way_out(slopes: Floats, sides: Floats, borders: "Borders") -> Floats:
 
 
 def sinks(edges: Edges) -> Ints:
-    """Return (S,) int [index] facets that hold the foot of the centre of mass: the part rests on them."""
+    """Return the facets that hold the foot of the centre of mass: the part rests on them.
+
+    Parameters
+    ----------
+    edges : Edges
+
+    Returns
+    -------
+    (S,) int [index]
+    """
     leaves = edges.borders & (edges.sides < 0.0)
     return np.setdiff1d(np.arange(len(edges.normals)), np.repeat(edges.facets, 3)[leaves])
 
 
 def saddles(edges: Edges) -> Ints:
-    """Return (E,) half-edges, one of each pair, over which the part can be balanced.
+    """Return the half-edges, one of each pair, over which the part can be balanced.
 
     The foot of the centre of mass lies between the two corners and neither facet rolls over the edge.
+
+    Parameters
+    ----------
+    edges : Edges
+
+    Returns
+    -------
+    (E,) int [index]
     """
     ahead = (edges.slopes <= 0.0) & (edges.sides >= 0.0) & edges.borders
     return np.flatnonzero(ahead & ahead[edges.twins] & (np.arange(len(ahead)) < edges.twins))
 
 
 def maxima(edges: Edges) -> Ints:
-    """Return (M,) int [index] corners on which the part can be balanced: no neighbour is further out."""
+    """Return the corners on which the part can be balanced: no neighbour is further out.
+
+    Parameters
+    ----------
+    edges : Edges
+
+    Returns
+    -------
+    (M,) int [index]
+    """
     origins = edges.origins[edges.borders]
     return np.setdiff1d(origins, origins[edges.slopes[edges.borders] > 0.0])
 

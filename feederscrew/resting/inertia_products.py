@@ -1,4 +1,4 @@
-"""What products of inertia do to the PMI rule: chapter 6.2 of the thesis recommends to study it.
+"""Effect of products of inertia on the PMI rule: chapter 6.2 of the thesis recommends to study it.
 
 The rule weighs an aspect by the moment of inertia about the vertical through the centre of mass. Where that
 is no principal axis, the part has products of inertia there: a part that turns about the vertical would also
@@ -20,7 +20,7 @@ EQUAL_MOMENTS = 1e-6  # [1] of the largest: principal moments nearer than this h
 
 @dataclass(frozen=True, eq=False)
 class InertiaProducts:
-    """Of each aspect, A rows."""
+    """Products of inertia of A aspects, and the PMI rule by the nearest principal moments."""
 
     products: Floats  # (A,) [kg m2] root of I_xz^2 + I_yz^2, with z the aspect's normal
     principal: Floats  # (A,) [kg m2] moment about the principal axis that is nearest to the normal

@@ -20,7 +20,17 @@ NAMELESS = -1  # a sink of no face
 
 
 def find_roots(forest: Ints) -> Ints:
-    """Return the root of every member of a forest (N,) of places in itself."""
+    """Return the root of every member of a forest.
+
+    Parameters
+    ----------
+    forest : (N,) int
+        The place of each member's parent in itself; a root's own place.
+
+    Returns
+    -------
+    (N,) int
+    """
     while not np.array_equal(further := forest[forest], forest):
         forest = further
     return forest
@@ -222,8 +232,19 @@ def landscape(hull: Hull) -> Landscape:
     A triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a flat face)
     belongs to the basin behind the ripple. A low barrier over a sharp edge, like the one around the end of a
     slender pin, is no ripple.
-    Source: H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification",
-    Discrete Comput. Geom. 28, 511-533, 2002.
+
+    Parameters
+    ----------
+    hull : Hull
+
+    Returns
+    -------
+    Landscape
+
+    References
+    ----------
+    H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification", Discrete
+    Comput. Geom. 28, 511-533, 2002.
     """
     # every edge once: the triangles on either side, and its corners
     first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()

@@ -1,4 +1,4 @@
-"""How a part lies on an aspect, in one word: by what of it touches the floor."""
+"""Way in which a part lies on an aspect, in one word: by what of it touches the floor."""
 
 import enum
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ NOISE_DEPTHS = 8.0  # of a file's noise: material so deep off a plane is still o
 
 
 class Lies(enum.StrEnum):
-    """How a part lies; tables, pictures, reports and documents print the word."""
+    """Way in which a part lies; tables, pictures, reports and documents print the word."""
 
     LARGEST_FACE = "on its largest face"
     FACE = "on a face"
@@ -108,10 +108,20 @@ def touching_area(part: Part, normal: Vector, height: float, noise: float = 0.0)
 
 
 def is_on_end(hull: Hull, normal: Vector) -> bool:
-    """Return whether the longest side of a part is upright where a normal (3,) [1] of its hull is down.
+    """Tell whether the longest side of a part is upright.
 
     The sides are those of the smallest upright box around the part; of sides of one length none is the
     longest.
+
+    Parameters
+    ----------
+    hull : Hull
+    normal : (3,) float [1]
+        Of the hull, that is down.
+
+    Returns
+    -------
+    bool
     """
     across = vectors.plane_axes(normal)
     plan = outline(np.column_stack([vectors.product(hull.vertices, axis) for axis in across]))

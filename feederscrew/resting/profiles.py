@@ -33,7 +33,7 @@ COUNTS_EXAMPLE = "give a header 'aspect,counts' and one row an aspect"
 
 @dataclass(frozen=True)
 class Head:
-    """What the lines '# key: value' of a file of counts say; empty where they are silent."""
+    """Lines '# key: value' at the head of a file of counts; empty where they are silent."""
 
     part: str = ""  # path of the part file, from the folder of the counts
     mesh: str = ""  # sha256 of the part file, or how it begins
@@ -97,7 +97,19 @@ class CountSheet:
 def read_count_text(path: str | PathLike[str]) -> tuple[str, str]:
     """Return the text of a file of counts and the sha256 of its bytes.
 
-    Raises FeederError, which repeats the path as typed, if it cannot be read, is too large or not UTF-8.
+    Parameters
+    ----------
+    path : str or path
+
+    Returns
+    -------
+    text : str
+    sha256 : str
+
+    Raises
+    ------
+    FeederError
+        Which repeats the path as typed, if it cannot be read, is too large or not UTF-8.
     """
     if documents.found_as(Path.is_dir, path):
         raise FeederError(path, "cannot be read (Is a directory)", "name a CSV file of counts in it")
@@ -278,7 +290,14 @@ def mesh_warnings(source: str, head: Head, part: Part) -> tuple[str, ...]:
 def rule_profiles(aspects: Aspects) -> tuple[AspectProfile, ...]:
     """Return the profile of every rule over the stable aspects, as the thesis names it: 'PMI', 'CSA'.
 
-    A rule for which a part card gives no data is left out.
+    Parameters
+    ----------
+    aspects : Aspects
+
+    Returns
+    -------
+    tuple of AspectProfile
+        Without rules for which a part card gives no data.
     """
     chosen = {rule: p[aspects.stable] for rule, p in aspects.probabilities.items()}
     return tuple(profile_of(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())

@@ -1,4 +1,4 @@
-"""What `feeder sample` writes: files by name, and parts of the families by their sizes.
+"""Files of `feeder sample`: by name, and parts of the families by their sizes.
 
 The files of ``parts/`` are data of the package: a wheel has them as ``feederscrew/samples/parts``.
 """

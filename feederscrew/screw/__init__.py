@@ -207,7 +207,17 @@ class Screw:
         return type(self)(self.resultant[index], self.moment[index], point)
 
     def at(self, point: Point) -> Self:
-        """Return the same screw with its moment about another point: s0(P) = s0(O) + s x OP."""
+        """Return the same screw with its moment about another point: s0(P) = s0(O) + s x OP.
+
+        Parameters
+        ----------
+        point : (..., 3) float [m]
+
+        Returns
+        -------
+        Screw
+            Of the same kind.
+        """
         moment = self.moment + np.cross(self.resultant, point - self.reference)
         return type(self)(self.resultant, moment, point)
 
@@ -249,13 +259,32 @@ class Screw:
             return type(self)(self.resultant / divisor, self.moment / divisor, self.reference)
 
     def dot(self, other: "Screw") -> Dual:
-        """Return the scalar product s1.s2 + eps (s1.s02 + s01.s2), a ``Dual``; any two kinds."""
+        """Return the scalar product s1.s2 + eps (s1.s02 + s01.s2).
+
+        Parameters
+        ----------
+        other : Screw
+            Of any kind.
+
+        Returns
+        -------
+        Dual
+        """
         other = other.at(self.reference)
         dual = dot(self.resultant, other.moment) + dot(self.moment, other.resultant)
         return Dual(dot(self.resultant, other.resultant), dual)
 
     def reciprocal(self, other: "Screw") -> Floats:
-        """Return the reciprocal product s1.s02 + s01.s2, (...,); of a twist and a wrench the power [W]."""
+        """Return the reciprocal product s1.s02 + s01.s2; of a twist and a wrench the power [W].
+
+        Parameters
+        ----------
+        other : Screw
+
+        Returns
+        -------
+        (...) float [product of both units]
+        """
         return self.dot(other).dual
 
     def cross(self, other: "Screw") -> "Screw":
@@ -263,6 +292,14 @@ class Screw:
 
         A twist crossed with a momentum screw is a ``Wrench``: the rate at which a momentum carried along by
         that twist changes. Other pairs give a plain ``Screw``.
+
+        Parameters
+        ----------
+        other : Screw
+
+        Returns
+        -------
+        Screw
         """
         other = other.at(self.reference)
         resultant = np.cross(self.resultant, other.resultant)

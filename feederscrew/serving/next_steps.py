@@ -1,4 +1,4 @@
-"""What to try where a design does not hold: a few orders that differ from it by one value each."""
+"""Orders to try where a design does not hold: a few that differ from it by one value each."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a page may ask of a design, and the call of ``feeder design`` that it is."""
+"""Orders that a page may give, and the call of ``feeder design`` that each is."""
 
 import shlex
 from collections.abc import Mapping

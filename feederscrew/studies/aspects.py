@@ -210,5 +210,14 @@ def inertia(part: Part) -> InertiaStudy:
     Parameters
     ----------
     part : Part
+
+    Returns
+    -------
+    InertiaStudy
+
+    Raises
+    ------
+    ArgumentError
+        If it is not a Part.
     """
     return InertiaStudy(arguments.a_part(part), mass_balance(part))

@@ -41,7 +41,7 @@ MAX_FILES = 500  # files of one comparison
 
 
 class _Counted(ReadableRecord):
-    """What was counted of a part, with its ``part``, ``aspects`` and ``measured``."""
+    """Counts of a part, with its ``part``, ``aspects`` and ``measured``."""
 
     part: Part
     aspects: Aspects
@@ -408,7 +408,7 @@ LEVEL = 0.95  # of the intervals
 
 @dataclass(frozen=True, eq=False)
 class BowlFit:
-    """What explains N measured velocities, and what remains of each."""
+    """Friction, restitution and stroke that explain N measured velocities, and what remains of each."""
 
     settings: tuple[str, ...]  # (N,) of the bowl's keys, as the file writes them
     measured: Vector  # (N,) [m/s]

@@ -62,7 +62,7 @@ class ConveyStudy(ReadableRecord):
 
 @dataclass(frozen=True, eq=False)
 class ConveyCurve(ReadableRecord):
-    """What a part does along one quantity of the bowl; N points."""
+    """Motion of a part along one quantity of the bowl; N points."""
 
     kind: str  # 'curve' over a key, or 'radius'
     over: str  # what varies: the key's name, or 'the radius'
@@ -83,7 +83,7 @@ class ConveyCurve(ReadableRecord):
 
 @dataclass(frozen=True, eq=False)
 class ConveyPhase(ReadableRecord):
-    """What the phase of an elliptical drive does for a bowl."""
+    """Effect of the phase of an elliptical drive in a bowl."""
 
     bowl: Bowl
     best: answer.BestPhase
@@ -97,7 +97,7 @@ class ConveyPhase(ReadableRecord):
 
 @dataclass(frozen=True, eq=False)
 class ConveyMap(ReadableRecord):
-    """What a part does over two keys of the bowl."""
+    """Motion of a part over two keys of the bowl."""
 
     ranges: tuple[KeyRange, KeyRange]
     grid: grids.Grid  # velocities [m/s], several, throw_number [1], status; the codes are the regimes
@@ -153,7 +153,18 @@ def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
 def along_radius(bowl: Bowl) -> ConveyCurve:
     """Study a bowl along its radius, inwards, where its angle is steeper.
 
-    Raises ConfigError if the drive is elliptical.
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    ConveyCurve
+
+    Raises
+    ------
+    ConfigError
+        If the drive is elliptical.
     """
     there = answer.inwards(bowl)
     axes = (
@@ -167,7 +178,18 @@ def along_radius(bowl: Bowl) -> ConveyCurve:
 def best_phase(bowl: Bowl) -> ConveyPhase:
     """Study a bowl over the phase of its drive.
 
-    Raises ConfigError if the bowl cannot convey, or has no steady velocity at any phase.
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    ConveyPhase
+
+    Raises
+    ------
+    ConfigError
+        If the bowl cannot convey, or has no steady velocity at any phase.
     """
     return ConveyPhase(bowl, answer.best_phase(bowl))
 

@@ -28,7 +28,7 @@ SURE_SHARE = 0.95  # [1] from here on an answer is called sure
 
 @dataclass(frozen=True, eq=False)
 class DropStudy(ReadableRecord):
-    """How often one part came to rest on each of its aspects."""
+    """Shares in which one part came to rest on each of its aspects."""
 
     part: Part
     aspects: Aspects
@@ -135,7 +135,7 @@ def _check_run(run: RunSettings) -> None:
 
 @dataclass(frozen=True, eq=False)
 class PlateStudy(ReadableRecord):
-    """How one part lay and travelled on the plates of one or several bowls."""
+    """Rest and travel of one part on the plates of one or several bowls."""
 
     part: Part
     aspects: Aspects
@@ -218,7 +218,7 @@ def shake(
 
 @dataclass(frozen=True, eq=False)
 class Agreement(ReadableRecord):
-    """What was computed of measured tosses, beside what happened."""
+    """Computed ends of measured tosses, beside what happened."""
 
     tosses: int  # with an answer
     right_share: float  # [1] share of them whose upper side was right
@@ -233,7 +233,7 @@ class Agreement(ReadableRecord):
 
 @dataclass(frozen=True, eq=False)
 class TossStudy(ReadableRecord):
-    """Where each launch of a file leads."""
+    """Outcomes of the launches of a file."""
 
     part: Part
     aspects: Aspects

@@ -42,10 +42,18 @@ Arrays = Mapping[str, Array]
 
 
 def read(key: Mapping[str, str]) -> dict[str, Array] | None:
-    """Return the arrays that are kept under a key, all that decides them.
+    """Return the arrays that are kept under a key.
 
-    Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is damaged, too
-    large, of another key, no regular file, or in a folder that others may write to.
+    Parameters
+    ----------
+    key : mapping of str to str
+        All that decides them.
+
+    Returns
+    -------
+    dict of str to array, or None
+        Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is damaged,
+        too large, of another key, no regular file, or in a folder that others may write to.
     """
     folder = caches.simulation_folder()
     if folder is None or refusal() is not None:
@@ -170,7 +178,12 @@ def _digest(value: object) -> str:
 
 @functools.cache
 def library_digest() -> str:
-    """Digest of the library's sources and of what they run on: what other code made is not taken."""
+    """Return the digest of the library's sources and of what they run on: results of other code do not count.
+
+    Returns
+    -------
+    str
+    """
     library = Path(__file__).parents[1]
     digest = hashlib.sha256(sys.version.encode())
     for name in MADE_WITH:

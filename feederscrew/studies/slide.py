@@ -32,7 +32,7 @@ RATIO_DECIMALS = 12  # decimals of a limit; cos(90 deg) leaves 6e-17
 
 @dataclass(frozen=True, eq=False)
 class SlideMap(ReadableRecord):
-    """What slips over (alpha - theta, G) at one vibration angle."""
+    """Slip over (alpha - theta, G) at one vibration angle."""
 
     beta: float  # [rad]
     grid: Grid

@@ -226,7 +226,7 @@ class ToolingStudy(ReadableRecord):
 
 @dataclass(frozen=True)
 class ToolingSearch:
-    """How cuts are looked for: what a workshop can make, and how long the search may take."""
+    """Limits of the search for cuts: what a workshop can make, and how long the search may take."""
 
     rule: str = RECOMMENDED_RULE  # whose probabilities are taken
     turn: bool = DesignConstraints.turn  # devices that turn parts over may be used

@@ -152,19 +152,21 @@ def trial(
         So many fall onto the moving track as well.
     queue : int or TrialQueue, optional
         So many at once, which push each other; or the queue of a design again.
-    poured : bool
+    poured : bool, optional
         Whether these fall onto the track in any attitude; in a row without it.
-    seconds : str or float [s]
+    seconds : str or float [s], optional
         For which the queue is followed.
-    rule : str
+    frames : int, optional
+        Poses of all parts of the queue that are noted for a film, evenly over the time.
+    rule : str, optional
         Whose probabilities say in which shares orientations come.
     aspect_shares : Shares, optional
         Of ``shares``.
     measured : CountFile, optional
         What left a bowl, beside the profile of the queue: ``at_outlet`` reads it.
-    seed : int
+    seed : int, optional
         Of play and phase.
-    jobs : int
+    jobs : int, optional
         Cores to use; nothing else depends on it.
     progress : callable, optional
         Called with how many parts are done, and of how many.
@@ -272,7 +274,7 @@ def trial(
 
 @dataclass(frozen=True)
 class _FillPlan:
-    """What is asked of a queue at a fill."""
+    """Plan of a queue at a fill."""
 
     level: FillLevel
     parts: int | None

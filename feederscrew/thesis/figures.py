@@ -176,13 +176,28 @@ def _profiles(number: str) -> Bars:
 
 
 def figure_5_1() -> Curves:
-    """Return limiting friction over G for alpha = theta, eq. [4.28]."""
+    """Return limiting friction over G for alpha = theta, eq. [4.28].
+
+    Returns
+    -------
+    Curves
+    """
     betas = {beta: limits.published_limit(DRIVE_RATIOS, np.radians(beta)) for beta in BETAS_OF_5_1}
     return Curves(DRIVE_RATIOS, betas)
 
 
 def limit_surface(number: str) -> FigureGrid:
-    """Return limiting friction over (alpha - theta [rad], G), eq. [4.27], of Figure '5-2' to '5-5'."""
+    """Return limiting friction over alpha - theta [rad] and G, eq. [4.27].
+
+    Parameters
+    ----------
+    number : str
+        Of the figure: '5-2' to '5-5'.
+
+    Returns
+    -------
+    FigureGrid
+    """
     beta, ratios = np.radians(BETA_OF[number]), DRIVE_RATIOS[:, None]
     values, throw = limits.published_limit(ratios, beta, HEADING_TURNS), limits.throw_number(ratios, beta)
     columns, axes = ("alpha_minus_theta_deg", "acceleration_ratio", "mu_limit"), (slide.ANGLE, slide.RATIO)

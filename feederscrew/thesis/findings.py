@@ -1,4 +1,4 @@
-"""What checking the thesis showed: its slips, its silences, and what explains its numbers.
+"""Findings of checking the thesis: its slips, its silences, and what explains its numbers.
 
 ``data/findings.csv`` says each in words. The numbers in these words are computed here, from the printed
 tables, the solids and the equations.

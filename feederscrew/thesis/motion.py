@@ -64,7 +64,7 @@ class PrintedTrack:
 
 @dataclass(frozen=True)
 class Levers:
-    """What the printed track equations use of a part."""
+    """Levers of a part that the printed track equations use."""
 
     mass: float  # [kg]
     height: float  # [m] h, of the centre of mass

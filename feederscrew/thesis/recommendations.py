@@ -1,4 +1,4 @@
-"""What chapter 6.2 of the thesis recommends for future work, where it is met here, and what is not."""
+"""Recommendations of chapter 6.2 of the thesis for future work, where each is met here, and which are not."""
 
 from dataclasses import dataclass
 

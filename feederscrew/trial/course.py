@@ -62,7 +62,7 @@ MAX_THROW_SHARE = 0.2  # of the bowl's circumference, to either side: further al
 
 @dataclass(frozen=True, eq=False)
 class SentParts:
-    """Which N parts are sent: laid down in some of M orientations, or on the track already."""
+    """N parts that are sent: laid down in some of M orientations, or on the track already."""
 
     rows: Sequence[int] = ()  # orientations in which they are laid down, in turn
     parts: int = 0  # N of them
@@ -73,7 +73,7 @@ class SentParts:
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """What became of N parts on their way past S stations, the bare track first; M orientations."""
+    """Fates of N parts on their way past S stations, the bare track first; M orientations."""
 
     entry_rows: Ints  # (N,) orientation each was laid down in
     orientations: Ints  # (S + 1, N) before each station and at the end; OTHER; -2 of one gone

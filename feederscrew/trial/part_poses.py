@@ -1,4 +1,4 @@
-"""Where parts are and how they begin: laid on the track or falling onto it, moved about the bowl's axis.
+"""Poses of parts and their starts: laid on the track or falling onto it, moved about the bowl's axis.
 
 A state (13,) is without dimensions: [L, sqrt(g L), 1, sqrt(g/L)].
 """

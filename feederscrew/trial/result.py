@@ -1,4 +1,4 @@
-"""What a trial in one bowl shows: by orientation, beside what the static rule says of each.
+"""Results of a trial in one bowl: by orientation, beside what the static rule says of each.
 
 And on which aspects parts leave a queue, beside what somebody measured at the outlet of a bowl.
 """

@@ -1,4 +1,4 @@
-"""Which orientations are wanted, or count as it, and in which poses they are found."""
+"""Orientations that are wanted, or count as it, and the poses in which they are found."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""How the floor moves: at rest, or vibrating in a straight line or an ellipse.
+"""Motion of the floor: at rest, or vibrating in a straight line or an ellipse.
 
 Everything is in the floor's frame: a floor that moves is a force on the body that changes with time. The
 floor moves along its x axis and along its normal z, each harmonically, with a second harmonic.

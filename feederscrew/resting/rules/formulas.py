@@ -191,17 +191,38 @@ ENERGY_LEVELS = 200  # of energy, between the part's highest way to stand and th
 
 
 def quasistatic(tips: Tipping) -> Floats:
-    """Return the share (F,) [1] of the attitudes from which a part let go without speed ends on each face.
+    """Return the share of the attitudes from which a part let go without speed ends on each face.
 
-    Source: docs/resting.md, "Exact tumbling".
+    Parameters
+    ----------
+    tips : Tipping
+
+    Returns
+    -------
+    (F,) float [1]
+
+    References
+    ----------
+    docs/resting.md, "Exact tumbling".
     """
     return tips.shares
 
 
 def critical(faces: Sequence[Face]) -> Floats:
-    """Return the critical solid angle of each face over its height (F,) [sr/m].
+    """Return the critical solid angle of each face over its height.
 
-    A rolling face counts by its lowest strip. Source: as in `critical_solid_angles`.
+    Parameters
+    ----------
+    faces : sequence of Face
+        A rolling one counts by its lowest strip.
+
+    Returns
+    -------
+    (F,) float [sr/m]
+
+    References
+    ----------
+    As of ``critical_solid_angles``.
     """
     heights, solid_angles = (
         np.array([getattr(face, name) for face in faces]) for name in ("height", "solid_angle")

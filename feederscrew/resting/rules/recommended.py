@@ -62,7 +62,22 @@ class Recommended(ReadableRecord):
 
 
 def launch_of_name(name: str) -> str:
-    """Return the launch of a name, or of a former one; raises ArgumentError if there is no such launch."""
+    """Return the launch of a name, or of a former one.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    str
+        One of ``LAUNCH_NAMES``.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such launch.
+    """
     launch = FORMER.get(name, name)
     if launch not in LAUNCH_NAMES:
         raise ArgumentError("launch", f"is {name!r:.30}", f"give one of {', '.join(LAUNCH_NAMES)}")
@@ -173,9 +188,20 @@ def widen_for_launch(p: Floats, low: Floats, high: Floats, possible: Bools) -> t
 
 
 def shape(p: Floats) -> Floats:
-    """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
+    """Return how wide intervals are at some shares, relative to a share of a half.
 
-    It falls as the scatter of a count does, 2 sqrt(p (1 - p)), but for WIDTH_FLOOR. Source: own;
+    It falls as the scatter of a count does, 2 sqrt(p (1 - p)), but for WIDTH_FLOOR.
+
+    Parameters
+    ----------
+    p : (A,) float [1]
+
+    Returns
+    -------
+    (A,) float [1]
+
+    References
+    ----------
     docs/resting.md, "The recommended answer".
     """
     return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + WIDTH_FLOOR) / (1.0 + WIDTH_FLOOR)

@@ -163,16 +163,32 @@ CHOICES = (*RULE_NAMES, CLOSED, RECOMMENDED_ANSWER)  # what a user may ask for
 
 
 def require_rule(rule: str) -> None:
-    """Raise an ArgumentError if a user asks for a rule that there is not; it names the nearest one."""
+    """Refuse a rule that there is not; the fault names the nearest one.
+
+    Parameters
+    ----------
+    rule : str
+
+    Raises
+    ------
+    ArgumentError
+    """
     if rule not in CHOICES:
         what, near = f"unknown rule {quantity_text(str(rule))}", nearest(str(rule), CHOICES)
         raise ArgumentError("rule", what, hint(str(rule), CHOICES), value=near)
 
 
 def weights(quantities: ClassQuantities | FaceQuantities) -> dict[str, Floats]:
-    """Return the weights (A,) or (F,) of every rule that weighs these quantities, by name in their order.
+    """Return the weights of every rule that weighs these quantities, not normalised.
 
-    They are not normalised; NaN where a quantity is not known.
+    Parameters
+    ----------
+    quantities : ClassQuantities or FaceQuantities
+
+    Returns
+    -------
+    dict of str to (A,) or (F,) float [any]
+        By the rules' names in their order; NaN where a quantity is not known.
     """
     rules = [rule for rule in RULES if isinstance(quantities, rule.of)]
     return {rule.name: rule.weights(*(getattr(quantities, name) for name in rule.needs)) for rule in rules}
