@@ -9,6 +9,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.arrays import Array, Bools, Floats
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Frame, quantities
 from feederscrew.conveying import answer, steady
 from feederscrew.conveying.answer import Neighbours, throw_of_flight
 from feederscrew.conveying.operating_point import PHASES
@@ -18,7 +19,7 @@ from feederscrew.heavy import heavy
 from feederscrew.mechanics.limits import Regime
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import PHASE_WORDS, Frame, regime_words, row_of
+from feederscrew.output.tables import PHASE_WORDS, regime_words, row_of
 from feederscrew.studies.convey import ConveyCurve, ConveyMap, ConveyPhase, ConveyStudy
 from feederscrew.units import MM_S, factor
 
@@ -106,7 +107,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
         ends = " / ".join(_number(spread[f"restitution_{end}"]) for end in ("low", "high"))
         speeds = " / ".join(_number(spread[f"velocity_{end}_mm_s"]) for end in ("less", "more"))
         rows.append((f"velocity for restitution {ends} [mm/s]", speeds))
-    return tables.quantities([*rows, ("validity", d["validity"])])
+    return quantities([*rows, ("validity", d["validity"])])
 
 
 def remarks(document: Mapping[str, Any]) -> list[str]:
@@ -149,13 +150,13 @@ def cells(study: ConveyMap) -> Frame:
     columns = _in_mm_s(study.grid.columns()) | {"status": study.statuses.ravel()}
     last = {name: columns.pop(name) for name in ("regime", "throw_number", "status")}
     del columns["several"]
-    return tables.frame(columns | last)
+    return Frame.of(columns | last)
 
 
 def points(study: ConveyCurve) -> Frame:
     """Return the points of a ConveyCurve as a frame."""
     columns = _in_mm_s(study.cells)
-    return tables.frame(
+    return Frame.of(
         {
             **{axis.column: axis.in_unit for axis in study.axes},
             **{column: columns[column] for column in VELOCITIES.values()},
@@ -212,7 +213,7 @@ def phase_summary(document: Mapping[str, Any]) -> Frame:
     for row in best["over_friction"]:
         name = f"at {row['friction']:g} times the friction, best / straight [mm/s]"
         rows.append((name, f"{_number(row['velocity_mm_s'])} / {_number(row['straight_mm_s'])}"))
-    return tables.quantities(rows)
+    return quantities(rows)
 
 
 def offers(study: ConveyStudy) -> list[offer.Offer]:

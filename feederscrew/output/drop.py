@@ -6,15 +6,16 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Floats, Ints, Points
+from feederscrew.columns import Frame
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
 from feederscrew.dropping.drop_test import DropTrace, chosen
 from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.heavy import heavy
-from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
+from feederscrew.output import part_facts, style
 from feederscrew.output.aspects import MARKS, PROBABILITIES
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output.tables import row_of
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.drop import DropStudy, TossStudy
@@ -34,7 +35,7 @@ def counts(study: DropStudy) -> Frame:
     columns |= row_of(tally, "count=counts p_drop=p p_drop_low=low p_drop_high=high")
     columns |= row_of(tally, "p_gentle=gentle p_violent=violent p_restitution=restitution")
     columns["unsettled_share"] = [tally.unsettled_share] * len(names)
-    return tables.frame(columns | ({"partial": [True] * len(names)} if study.result.drops.partial else {}))
+    return Frame.of(columns | ({"partial": [True] * len(names)} if study.result.drops.partial else {}))
 
 
 def document(study: DropStudy) -> dict[str, Any]:
@@ -100,7 +101,7 @@ def traces(study: DropStudy) -> Frame:
         rows.append(
             {"drop": np.full(count, trace.number), **moments, "event": event, "aspect": [aspect] * count}
         )
-    return tables.frame({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
+    return Frame.of({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
 
 
 def _counted_on(aspects: Aspects, trace: DropTrace) -> str:
@@ -325,7 +326,7 @@ def tosses(study: TossStudy) -> Frame:
         measured |= {"x_measured_mm": ends[:, 0], "y_measured_mm": ends[:, 1], "off_mm": study.off / MM}
     if launches.faces is not None:
         measured["face_up_measured"] = list(launches.faces[:count])
-    return tables.frame(
+    return Frame.of(
         {
             "toss": np.array([int(label) for label in labels]) if whole else labels,
             "aspect": [aspects[row] if row >= 0 else NONE for row in result.rows],
@@ -350,7 +351,7 @@ def toss_document(study: TossStudy) -> dict[str, Any]:
             "median_off_mm",
         )
     return {
-        **columns.part(study.part),
+        **part_facts.part(study.part),
         **row_of(study, "launches=launches.source runs=result.runs seed frame_s=launches.frame"),
         "restitution": list(study.surface.restitution),
         "friction": list(study.surface.friction),

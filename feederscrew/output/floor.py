@@ -9,6 +9,7 @@ import numpy as np
 from feederscrew.arrays import Array, Bools, Floats, Ints, Points, Vector
 from feederscrew.bowl import texts
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Frame, quantities
 from feederscrew.geometry.grids import Grid
 from feederscrew.geometry.polygons import centroid, turned
 from feederscrew.heavy import heavy
@@ -18,7 +19,7 @@ from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, FloorMotion
 from feederscrew.mechanics.track_balance import TrackMotion
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output.tables import row_of
 from feederscrew.resting.posture import Posture
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.studies.track import TrackStudy
@@ -136,7 +137,7 @@ def document(study: FloorStudy) -> dict[str, Any]:
 def printout(document: Mapping[str, Any], format: str, summary: Callable[..., Frame]) -> Frame:
     """Return what is printed: the cycle as CSV; for people its ``summary``, or what print leaves out."""
     if format == "csv":
-        return tables.frame(document["cycle"])
+        return Frame.of(document["cycle"])
     return document.get("difference", summary(document))
 
 
@@ -164,7 +165,7 @@ def people_table(rows: Mapping[str, Any]) -> Frame:
             return "yes" if value else "no"
         return value if isinstance(value, str) else "never" if np.isinf(value) else f"{value:.5g}"
 
-    return tables.quantities((name, words(value)) for name, value in rows.items())
+    return quantities((name, words(value)) for name, value in rows.items())
 
 
 def difference(published: Mapping[str, Any], complete: Mapping[str, Any], terms: Mapping[str, str]) -> Frame:
@@ -174,7 +175,7 @@ def difference(published: Mapping[str, Any], complete: Mapping[str, Any], terms:
     is_equal = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
     omitted = ["-" if same else term for same, term in zip(is_equal, terms.values())]
     columns = {"quantity": list(terms), "as_published": first, "complete": second}
-    return tables.frame(columns | {"difference": gap, "omitted_term": omitted})
+    return Frame.of(columns | {"difference": gap, "omitted_term": omitted})
 
 
 def remarks(study: FloorStudy) -> list[str]:

@@ -6,13 +6,14 @@ import numpy as np
 
 from feederscrew.bowl import texts
 from feederscrew.bowl.record import Track
+from feederscrew.columns import Frame
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.headings import Headings
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
+from feederscrew.output import style
 from feederscrew.output.floor import CONTACT, polygon
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output.tables import row_of
 from feederscrew.output.track import wall_and_edge
 from feederscrew.part.record import small_part_remarks
 from feederscrew.resting.posture import Posture
@@ -42,7 +43,7 @@ def frame(study: HeadingsStudy) -> Frame:
             "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
         }
         parts.append(columns | dict(zip(HIDDEN_HEADING_COLUMNS, stable.touching.reshape(-1, 4).T / MM)))
-    return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+    return Frame.of({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def document(study: HeadingsStudy) -> dict[str, Any]:

@@ -7,11 +7,12 @@ import numpy as np
 
 from feederscrew.arrays import Floats
 from feederscrew.bowl import Bowl
+from feederscrew.columns import Frame
 from feederscrew.dropping.plate_test import MIN_TRANSITIONS, Occupancy, PlateResult
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output import style
+from feederscrew.output.tables import row_of
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules import registry
 from feederscrew.studies.drop import PlateStudy
@@ -96,8 +97,8 @@ def document(study: PlateStudy) -> dict[str, Any]:
             "steady": not result.occupancy.changing.any(),
             "changing": _changing_aspects(study.aspects, result),
             **row_of(result, f"transitions_seen=transitions {VELOCITY}=occupancy.velocity"),
-            "aspects": tables.frame(_plate(study.aspects, result)),
-            "rates": tables.frame(_rates(study.aspects, result)),
+            "aspects": Frame.of(_plate(study.aspects, result)),
+            "rates": Frame.of(_rates(study.aspects, result)),
         }
         for result, name in zip(study.plates, study.names)
     ]
@@ -157,7 +158,7 @@ def _for_each_plate(study: PlateStudy, columns: Callable[[Aspects, PlateResult],
         count = max(map(len, own.values()))
         own = {key: values if len(values) == count else [*values] * count for key, values in own.items()}
         parts.append({key: [value] * count for key, value in head.items()} | own)
-    return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+    return Frame.of({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def _plate(aspects: Aspects, result: PlateResult) -> dict[str, Any]:

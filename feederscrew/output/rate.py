@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
+from feederscrew.columns import Frame, quantities
 from feederscrew.conveying.hop import hop
-from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output import part_facts
+from feederscrew.output.tables import row_of
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import remark
@@ -28,7 +29,7 @@ def document(study: RateStudy) -> dict[str, Any]:
     orientations, row = chain.orientations, chain.row
     warnings = (*study.aspects.warnings, *study.of_size, *_jam_remarks(study), *_spacing_remarks(study))
     return {
-        **columns.part(study.part, warnings),
+        **part_facts.part(study.part, warnings),
         **row_of(chain, "parts_per_minute..=parts"),
         "aspect": orientations.aspects[row],
         "heading_deg": orientations.headings[row] / DEG,
@@ -59,7 +60,7 @@ def _orientations(orientations: Orientations, rule: str) -> Frame:
     columns |= {f"p_{rule}": orientations.rules[rule], **row_of(orientations, "margin_mm fate=fates")}
     columns |= {"leaves_as": leaves, **dict(zip(orientations.names, orientations.passes.T))}
     columns["passes"] = orientations.through
-    return tables.frame(columns)
+    return Frame.of(columns)
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -91,7 +92,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
         rows.append(("jams an hour", f"{d['jams_per_hour']:.4g}"))
     if d["clearing_s"]:
         rows.append(("time a part swept off blocks the track [s]", f"{d['clearing_s']:.3g}"))
-    return tables.quantities(rows)
+    return quantities(rows)
 
 
 def remarks(study: RateStudy) -> list[str]:
@@ -191,7 +192,7 @@ TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
 
 def tune_document(study: TuneStudy) -> dict[str, Any]:
     """Return a TuneStudy as the JSON document."""
-    return columns.part(study.part, study.aspects.warnings) | {
+    return part_facts.part(study.part, study.aspects.warnings) | {
         "target_per_minute": study.target / PER_MINUTE,
         "target_met": TARGET_FRICTION[study.worst],
         "settings": _settings(study),
@@ -217,7 +218,7 @@ def _settings(study: TuneStudy) -> Frame:
                 "tips_over": " ".join(tuned.over) or None,
             }
         )
-    return tables.of_rows(rows)
+    return Frame.of_rows(rows)
 
 
 def tune_printed(study: TuneStudy, format: str) -> Frame:
@@ -238,7 +239,7 @@ def tune_printed(study: TuneStudy, format: str) -> Frame:
     for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop")):
         texts = ("-" if math.isnan(value) else f"{value:.2f}" for value in frame[f"margin_{name}"])
         table[f"to {short}"] = [text.rjust(len(f"to {short}")) for text in texts]  # right under its heading
-    return tables.frame(table)
+    return Frame.of(table)
 
 
 def tune_remarks(study: TuneStudy) -> list[str]:

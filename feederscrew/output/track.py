@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from feederscrew import bowl as bowls
 from feederscrew.arrays import Bools, Floats, Vector
 from feederscrew.bowl.record import Track
+from feederscrew.columns import Frame
 from feederscrew.geometry.grids import Grid
 from feederscrew.geometry.polygons import outline, turned
 from feederscrew.heavy import heavy
@@ -20,7 +21,7 @@ from feederscrew.mechanics.track_balance import TrackAxes, TrackMotion, frame
 from feederscrew.output import floor, style, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, drop_rounding, polygon
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output.tables import row_of
 from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
 
@@ -224,7 +225,7 @@ def remarks(study: TrackStudy) -> list[str]:
 def cells(grid: Grid) -> Frame:
     """Return every cell of a grid of ``TrackStudy.over``, as a frame."""
     columns = grid.columns().items()
-    return tables.frame({IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns})
+    return Frame.of({IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns})
 
 
 def map_remarks(grid: Grid) -> list[str]:
