@@ -296,7 +296,7 @@ class Output:
             click.echo(tables.json_text(document), nl=False)
             return
         for_people = self.format == "table"
-        printed = frame.without(hidden) if for_people else frame
+        printed = frame.for_people().without(hidden) if for_people else frame
         if for_people and spare is not None:
             printed, left_out = tables.to_page(printed, spare)
             if left_out:

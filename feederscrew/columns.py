@@ -19,11 +19,17 @@ from feederscrew.units import UNITS_BY_DIMENSION
 
 R = TypeVar("R")  # the record of a row, or one that holds an array for each column
 UnitName = Literal[
-    "", "share", "%", "mm", "um", "mm2", "mm3", "mm4", "l", "deg", "rad", "sr", "s", "Hz", "1/min",
+    "", "share", "%", "mm", "um", "mm2", "mm3", "mm4", "l", "deg", "rad", "sr", "s", "Hz", "1/s", "1/min",
     "mm/s", "m/s", "m/s2", "rad/s2", "g", "kg", "g/cm3", "kg/m3", "g mm2", "kg m2", "mJ", "uJ",
-    "N", "mN", "N mm", "N/mm", "MPa",
+    "1/h", "N", "mN", "N mm", "N/mm", "MPa",
 ]  # fmt: skip
-ENDINGS = {"%": "_percent", "1/min": "_per_minute", "N/mm": "_n_per_mm"}  # of names; of others the unit
+ENDINGS = {
+    "%": "_percent",
+    "1/s": "_per_s",
+    "1/min": "_per_minute",
+    "1/h": "_per_hour",
+    "N/mm": "_n_per_mm",
+}  # of names; of others the unit
 ENDS = ("low", "high")  # of an interval
 
 
@@ -48,13 +54,21 @@ def _units() -> dict[str, Unit]:
 UNITS = _units()
 
 
-class Head(NamedTuple):
+class ColumnHead(NamedTuple):
     """What people read above a column, and by how much its numbers in files are multiplied for them."""
 
     heading: str
     unit: str = ""  # '' of a word and of a plain number
     shown: float = 1.0
     is_mixed: bool = False  # rows with units of their own: none is rounding beside another
+
+    @classmethod
+    def of_name(cls, name: str, label: str, shown: float = 1.0) -> "ColumnHead":
+        """Return the words of a name without its unit, and that unit: 'height', 'mm' of 'height_mm'."""
+        ending = ENDINGS.get(label, "_" + label.replace(" ", "_").replace("/", "_"))
+        if label and shown == 1.0 and name.lower().endswith(ending.lower()) and name != ending:
+            name = name[: -len(ending)]
+        return cls(name.replace("_", " "), label, shown)
 
     @property
     def title(self) -> str:
@@ -91,13 +105,14 @@ class Column(Generic[R]):
     hidden: bool = False
 
     @property
-    def head(self) -> Head:
+    def head(self) -> ColumnHead:
         """Return what people read above the column."""
         unit = UNITS[self.unit]
-        return Head(self.heading or _words(self.name, unit), unit.label, unit.shown)
+        head = ColumnHead.of_name(self.name, unit.label, unit.shown)
+        return head._replace(heading=self.heading) if self.heading else head
 
     @property
-    def heads(self) -> dict[str, Head]:
+    def heads(self) -> dict[str, ColumnHead]:
         """Return the names in files, and what people read above each: three of an interval."""
         head = self.head
         if not self.interval:
@@ -112,13 +127,6 @@ class Column(Generic[R]):
             return {self.name: in_unit(value, self.unit)}
         ends = {f"{self.name}_{end}": in_unit(getattr(value, end), self.unit) for end in ENDS}
         return {self.name: in_unit(value.value, self.unit)} | ends
-
-
-def _words(name: str, unit: Unit) -> str:
-    ending = ENDINGS.get(unit.label, "_" + unit.label.replace(" ", "_").replace("/", "_"))
-    if unit.label and unit.shown == 1.0 and name.lower().endswith(ending.lower()) and name != ending:
-        name = name[: -len(ending)]
-    return name.replace("_", " ")
 
 
 def in_unit(value: Any, unit: UnitName) -> Any:
@@ -139,25 +147,25 @@ class Frame(dict[str, Any]):
     each column; of one that is not in it this is its name.
     """
 
-    heads: dict[str, Head]
+    heads: dict[str, ColumnHead]
     hidden: frozenset[str]  # columns that a table for people leaves out
 
     def __init__(
-        self, columns: Mapping[str, Any] | None = None, heads: Mapping[str, Head] | None = None,
+        self, columns: Mapping[str, Any] | None = None, heads: Mapping[str, ColumnHead] | None = None,
         hidden: Iterable[str] = (),
     ) -> None:  # fmt: skip
         super().__init__(columns or {})
         self.heads, self.hidden = dict(heads or {}), frozenset(hidden)
 
     @classmethod
-    def of(cls, columns: Mapping[str, Any], heads: Mapping[str, Head] | None = None) -> "Frame":
+    def of(cls, columns: Mapping[str, Any], heads: Mapping[str, ColumnHead] | None = None) -> "Frame":
         """Return a table of columns by name, in the order given; a name ends in its unit (``height_mm``).
 
         Parameters
         ----------
         columns : mapping of str to sequence
             Cells by column. NaN or None stands for an empty cell; None among numbers becomes NaN.
-        heads : mapping of str to Head, optional
+        heads : mapping of str to ColumnHead, optional
             What people read above each; without it those of ``columns`` if that is a Frame, else the names.
 
         Raises
@@ -205,13 +213,24 @@ class Frame(dict[str, Any]):
         left_out = set(names)
         return self.only(name for name in self if name not in left_out)
 
+    def at(self, rows: Sequence[int] | np.ndarray) -> "Frame":
+        """Return a table of these rows, in this order."""
+        return self.taking({name: [column[row] for row in rows] for name, column in self.items()})
+
     def for_people(self) -> "Frame":
         """Return a table of the columns that are not hidden."""
         return self.without(self.hidden)
 
-    def headed(self, heads: Mapping[str, Head]) -> "Frame":
+    def headed(self, heads: Mapping[str, ColumnHead]) -> "Frame":
         """Return the table with other words above some of its columns."""
         return Frame(self, self.heads | dict(heads), self.hidden)
+
+    def with_headings(self, headings: Mapping[str, str]) -> "Frame":
+        """Return the table with other words above some of its columns, in the units they have."""
+        heads = {
+            name: self.heads.get(name, ColumnHead(name))._replace(heading=t) for name, t in headings.items()
+        }
+        return self.headed(heads)
 
     def taking(self, columns: Mapping[str, Any]) -> "Frame":
         """Return the table with other cells in some of its columns, under the same headings."""
@@ -256,6 +275,8 @@ def of_records(columns: Sequence[Column[R]], records: Iterable[R]) -> Frame:
 def of_arrays(columns: Sequence[Column[R]], record: R) -> Frame:
     """Return a table of one record, whose columns are arrays or sequences of the same length.
 
+    A column that is a single value has it in every row.
+
     Parameters
     ----------
     columns : sequence of Column
@@ -265,7 +286,7 @@ def of_arrays(columns: Sequence[Column[R]], record: R) -> Frame:
     -------
     Frame
     """
-    return _declared(columns, values(columns, record))
+    return _declared(columns, _as_rows(values(columns, record)))
 
 
 def of_pieces(columns: Sequence[Column[R]], records: Iterable[R]) -> Frame:
@@ -281,8 +302,19 @@ def of_pieces(columns: Sequence[Column[R]], records: Iterable[R]) -> Frame:
     -------
     Frame
     """
-    pieces = [values(columns, record) for record in records]
+    pieces = [_as_rows(values(columns, record)) for record in records]
     return _declared(columns, {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})
+
+
+def _as_rows(cells: Mapping[str, Any]) -> dict[str, Any]:
+    """Return columns of one length: a single value stands in every row."""
+    lengths = [len(column) for column in cells.values() if _is_column(column)]
+    count = max(lengths, default=1)
+    return {name: cell if _is_column(cell) else [cell] * count for name, cell in cells.items()}
+
+
+def _is_column(cell: Any) -> bool:
+    return isinstance(cell, (list, tuple)) or (isinstance(cell, np.ndarray) and cell.ndim > 0)
 
 
 def _declared(columns: Sequence[Column[R]], cells: Mapping[str, Any]) -> Frame:
@@ -293,4 +325,4 @@ def _declared(columns: Sequence[Column[R]], cells: Mapping[str, Any]) -> Frame:
 
 def quantities(rows: Iterable[Sequence[Any]]) -> Frame:
     """Return pairs as a table for people: the columns ``quantity`` and ``value``."""
-    return Frame.of_cells(("quantity", "value"), rows).headed({"value": Head("value", is_mixed=True)})
+    return Frame.of_cells(("quantity", "value"), rows).headed({"value": ColumnHead("value", is_mixed=True)})

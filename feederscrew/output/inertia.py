@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Vector
-from feederscrew.columns import Column, Frame, Head, UnitName, of_records, quantities, values
+from feederscrew.columns import Column, ColumnHead, Frame, UnitName, of_records, quantities, values
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts
 from feederscrew.part.density import MATERIAL_COLUMNS, MATERIALS
@@ -72,7 +72,7 @@ def rows(study: InertiaStudy) -> Frame:
     """Return the numbers of a part, one a row: ``quantity`` and ``value``; NaN where a card is silent."""
     numbers = values(QUANTITIES, study)
     listed = {"quantity": list(numbers), "value": [np.nan if v is None else v for v in numbers.values()]}
-    return Frame.of(listed, {"value": Head("value", is_mixed=True)})
+    return Frame.of(listed, {"value": ColumnHead("value", is_mixed=True)})
 
 
 def facts(study: InertiaStudy, names: Sequence[str]) -> Frame:

@@ -16,7 +16,7 @@ from feederscrew import __version__
 from feederscrew import bowl as bowls
 from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Column, Frame, of_records
+from feederscrew.columns import Column, Frame, of_arrays
 from feederscrew.conveying.answer import UnsteadyMotion
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import HOP
@@ -68,7 +68,7 @@ from feederscrew.output.trial import tables as trial_tables
 from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.rates.well_oriented import Rate, fed
-from feederscrew.resting.aspects import Aspect
+from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
 from feederscrew.tooling.orientations import Orientation
@@ -81,11 +81,10 @@ PART_FACTS = (  # rows of the inertia that the chapter on the part shows
     "centre_of_mass_x_mm", "centre_of_mass_y_mm", "centre_of_mass_z_mm",
     "principal_moment_1_g_mm2", "principal_moment_2_g_mm2", "principal_moment_3_g_mm2",
 )  # fmt: skip
-HEADINGS = {  # columns of the table, and their names here
-    "aspect": "aspect", "heading_deg": "heading_deg", "share": "p_of this aspect",
-    "aspect_share": "p_of all drops", "length_mm": "length_mm", "width_mm": "width_mm",
-    "overhang_mm": "overhang_mm", "falls_off": "falls off",
-}  # fmt: skip
+HEADINGS = (  # columns of the table of headings
+    "aspect", "heading_deg", "share", "aspect_share", "length_mm", "width_mm", "overhang_mm", "falls_off",
+)  # fmt: skip
+SHARES = {"share": "of this aspect", "aspect_share": "of all drops"}  # words above two of them
 WORDS = tables.REGIME_WORDS | {Regime.STICK: "sticks, does not travel"}  # of a regime
 METHOD_LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
@@ -205,17 +204,12 @@ def quaternion(axes: Floats) -> list[float]:
     return [short(q) for q in Rotation.from_matrix(np.array(axes)).as_quat(canonical=True)]
 
 
-TIPPING_COLUMNS: tuple[Column[Aspect], ...] = (
-    Column("aspect", lambda aspect: aspect.name),
-    Column(
-        "p_quasistatic",
-        lambda a: a.probabilities["quasistatic"] if a.stable else np.nan,
-        "share",
-        "quasistatic",
-    ),
-    Column("lowest_lift_mm", lambda aspect: aspect.barrier, "mm"),
-    Column("energy_uJ", lambda aspect: aspect.barrier_energy, "uJ"),
-    Column("tilts_over_at_deg", lambda aspect: aspect.tip_angle, "deg"),
+TIPPING_COLUMNS: tuple[Column[Aspects], ...] = (
+    Column("aspect", lambda aspects: aspects.names),
+    Column("p_quasistatic", lambda aspects: aspects.probabilities["quasistatic"], "share", "quasistatic"),
+    Column("lowest_lift_mm", lambda aspects: np.asarray(aspects.barriers), "mm"),
+    Column("energy_uJ", lambda aspects: np.asarray(aspects.barrier_energies), "uJ"),
+    Column("tilts_over_at_deg", lambda aspects: np.asarray(aspects.tip_angles), "deg"),
 )
 
 
@@ -224,7 +218,7 @@ def tips(case: ReportStudy) -> Chapter:
     study, sides, ways = case.resting, case.resting.aspects, case.resting.transitions
     rows = np.flatnonzero(sides.stable)[: aspects_output.MOST_GRAPH_ASPECTS]
     shares = np.where(sides.stable, sides.probabilities["quasistatic"], np.nan)
-    table = of_records(TIPPING_COLUMNS, [sides[int(row)] for row in rows])
+    table = of_arrays(TIPPING_COLUMNS, sides).at(rows)
     lead = Text(
         "How firmly each aspect holds: the least height by which its centre of mass must be lifted "
         "before the part tips over an edge, into an equal face too, what energy that is, and the tilt "
@@ -242,12 +236,12 @@ def tips(case: ReportStudy) -> Chapter:
 def headings(case: ReportStudy) -> Chapter:
     """How the part lies along the wall."""
     study = case.headings
-    result = headings_output.frame(study)
+    result = study.table()
     lead = Text(
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."
     )
-    table = Table(Frame.of({title: result[name] for name, title in HEADINGS.items()}))
+    table = Table(result.only(HEADINGS).with_headings(SHARES))
     pictures = _pictures_of(headings_output.offers(study.only(case.aspect)), "headings")
     return Chapter((lead, table, *pictures), warnings=tuple(headings_output.remarks(study)))
 
@@ -292,11 +286,9 @@ def rate(case: ReportStudy) -> Chapter:
         "restitution where the part hops, and the interval of the shares. The second table has what the "
         "track and each device do with each orientation."
     )
-    # what each station lets pass as a share, which people read in percent; sizes stand in the chapter before
-    frame, stations = d["orientations"], study.rate.orientations.names
+    frame = d["orientations"]  # sizes stand in the chapter before
     empty = () if np.isfinite(frame["margin_mm"]).any() else ("margin_mm",)
-    frame = frame.without(("length_mm", "width_mm", *empty))
-    passing = Frame.of({f"p_{name}" if name in stations else name: frame[name] for name in frame})
+    passing = frame.without(("length_mm", "width_mm", *empty))
     what = f"{d['aspect']} at {d['heading_deg']:.3g} deg, {percent(d['p_orientation'])} % of drops"
     if d.get("verified") and d["verified"]["parts_per_minute"] == d["parts_per_minute"]:
         what = f"as its trial showed; the rule says {_short(d['parts_per_minute_static'])}; {what}"

@@ -8,12 +8,12 @@ import numpy as np
 
 from feederscrew.arrays import Floats
 from feederscrew.bowl import texts
-from feederscrew.bowl.reading import Setting
-from feederscrew.columns import Frame
+from feederscrew.bowl.reading import SETTING_COLUMNS, Setting
+from feederscrew.columns import Frame, of_records
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.limits import Regime
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
+from feederscrew.output import style
 from feederscrew.output.tables import regime_words
 from feederscrew.studies.slide import SlideMap, SlideStudy
 
@@ -129,8 +129,7 @@ def remarks(study: SlideStudy) -> list[str]:
 
 def settings(bowl_settings: Sequence[Setting]) -> Frame:
     """Return the bowl settings and where each came from, as a frame."""
-    fields = "key=key.name value=text from=origin lowest=key.lowest highest=key.highest meaning=key.meaning"
-    return tables.table_of(bowl_settings, fields)
+    return of_records(SETTING_COLUMNS, bowl_settings)
 
 
 def offers(study: SlideStudy) -> list[offer.Offer]:

@@ -14,8 +14,9 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.arrays import Array
+from feederscrew.columns import Column as DeclaredColumn
+from feederscrew.columns import ColumnHead
 from feederscrew.columns import Frame as Frame
-from feederscrew.columns import Head
 from feederscrew.columns import quantities as quantities
 from feederscrew.mechanics.limits import Regime
 
@@ -230,7 +231,7 @@ def _csv_cell(value: Any) -> Any:
     return units.printable(value) if isinstance(value, str) else "" if value is None else value
 
 
-def _align_cells(head: Head, values: Array | Sequence[Any]) -> list[str]:
+def _align_cells(head: ColumnHead, values: Array | Sequence[Any]) -> list[str]:
     """Heading, unit and cells of one column, all of one width; the points of numbers under each other."""
     numeric, texts = is_numeric(values), cells(head, values)
     if numeric and not np.issubdtype(np.asarray(values).dtype, np.integer):
@@ -242,7 +243,7 @@ def _align_cells(head: Head, values: Array | Sequence[Any]) -> list[str]:
 
 
 def cells(
-    head: Head, values: Array | Sequence[Any], share_digits: int = TABLE_DIGITS, nothing: str = "-"
+    head: ColumnHead, values: Array | Sequence[Any], share_digits: int = TABLE_DIGITS, nothing: str = "-"
 ) -> list[str]:
     """Return the cells of a column as people read them: shares in percent, rounding as 0."""
     if not isinstance(values, np.ndarray) or not is_numeric(values):
@@ -279,14 +280,14 @@ def _is_share(name: str) -> bool:
     return name in PASSED or whole.rpartition("_")[2] in SHARES
 
 
-def head_of(frame: Frame, name: str) -> Head:
+def head_of(frame: Frame, name: str) -> ColumnHead:
     """Return what people read above a column of a table: what is declared of it, else its name."""
     if name in frame.heads:
         return frame.heads[name]
     numeric = is_numeric(frame[name])
     words, unit = heading(name, numeric)
     shown = 100.0 if numeric and _is_share(name) else 1.0
-    return Head(words, unit.strip("[]"), shown, is_mixed=name == "value")
+    return ColumnHead(words, unit.strip("[]"), shown, is_mixed=name == "value")
 
 
 def heading(name: str, numeric: bool = True) -> tuple[str, str]:
@@ -313,6 +314,24 @@ def heading(name: str, numeric: bool = True) -> tuple[str, str]:
 def title(name: str) -> str:
     """Return a column's name and unit in one text: 'height [mm]'."""
     return " ".join(heading(name)).strip()
+
+
+def row_for_people(column: DeclaredColumn[Any], document: Mapping[str, Any]) -> tuple[str, str]:
+    """Return a column of a document as a row for people: its heading with the unit, and its value.
+
+    The ends of an interval follow the value in brackets. A share is in percent.
+    """
+    head, value = column.head, document[column.name]
+
+    def cell(name: str) -> str:
+        entry = document[name]
+        is_number = isinstance(entry, (int, float, np.number)) and not isinstance(entry, (bool, np.bool_))
+        return number(head.shown * float(entry)) if is_number else _word(entry, "-")
+
+    if isinstance(value, (list, tuple)):
+        return head.title, units.listed([str(entry) for entry in value]) or "-"
+    ends = f" ({cell(f'{column.name}_low')} to {cell(f'{column.name}_high')})" if column.interval else ""
+    return head.title, f"{cell(column.name)}{ends}"
 
 
 def file_bytes(content: str | bytes) -> bytes:
