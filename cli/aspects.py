@@ -96,7 +96,7 @@ def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chose
             out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")
         if out.format == "table" and (study.aspects.faces > 1).any():
             out.say(CLASS_COUNTS_ONCE if chosen["as_published"] else EACH_FACE_COUNTS)
-        frame, table = aspects_output.aspects(study), out.format == "table"
+        frame, table = study.table(), out.format == "table"
         printed = aspects_output.select_columns(frame, columns) if columns is not None or table else frame
         out.write(folder, aspects_output.offers(study, with_graph=graph))
         out.say(*aspects_output.remarks(study) if folder and out.pictures else ())

@@ -49,12 +49,12 @@ def convey(bowl: Values, spans: tuple[str, ...], curve: bool, best_phase: bool, 
             with out.step("map"):
                 study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
             out.say(*convey_output.cell_remarks(study.statuses, study.grid.values["several"]))
-            offered, frame = convey_output.map_offers(study), convey_output.cells(study)
+            offered, frame = convey_output.map_offers(study), study.table()
             document = {"cells": frame}
         elif ranges or curve:
             study = studies.curve(settings, *ranges) if ranges else studies.along_radius(record)
             out.say(*convey_output.cell_remarks(study.statuses, study.several))
-            offered, frame = convey_output.curve_offers(study), convey_output.points(study)
+            offered, frame = convey_output.curve_offers(study), study.table()
             document = {"cells": frame}
         elif best_phase:
             study = studies.best_phase(record)

@@ -128,8 +128,7 @@ def drop(
             out.warn(*drop_output.toss_remarks(study))
             out.say(*drop_output.toss_summary(study))
             out.write(folder, drop_output.toss_offers(study))
-        hidden = drop_output.HIDDEN_TOSS_COLUMNS
-        out.show(drop_output.tosses(study), drop_output.toss_document(study), hidden=hidden)
+        out.show(study.table(), drop_output.toss_document(study))
     elif is_plate:  # a plate for each stroke of each bowl
         out = replace(out, command="drop plate")
         driven: list[Any] = []
@@ -154,8 +153,8 @@ def drop(
             out.say(*plate_output.summary(study))
             out.warn(*plate_output.remarks(study))
             out.write(folder, plate_output.offers(study))
-        frame, hidden = plate_output.plates(study), plate_output.HIDDEN_PLATE_COLUMNS
-        out.show(frame, plate_output.document(study), hidden=hidden, spare=plate_output.spare(frame))
+        frame = study.table()
+        out.show(frame, plate_output.document(study), spare=plate_output.spare(frame))
     else:
         solid, run = out.part(part), conditions | test | before
         with out.folder_of(solid) as folder:
@@ -163,7 +162,7 @@ def drop(
                 study = studies.drop(solid, launch, traced=traced or 0, progress=bar.reach, **run)
             out.warn(*drop_output.remarks(study))
             out.write(folder, drop_output.offers(study))
-        out.show(drop_output.counts(study), drop_output.document(study))
+        out.show(study.table(), drop_output.document(study))
 
 
 def _check_call(

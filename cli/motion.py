@@ -142,9 +142,8 @@ def headings(part: Values, aspect: str | None, bowl: Values, out: Output) -> Non
         result = study(solid, record, aspect)
         out.say(headings_output.answer(result), *headings_output.remarks(result))
         out.write(folder, headings_output.offers(result))
-    hidden = headings_output.HIDDEN_HEADING_COLUMNS
-    frame, document = headings_output.frame(result), headings_output.document(result)
-    out.show(frame, document, hidden=hidden, spare=headings_output.SPARE_COLUMNS)
+    document = headings_output.document(result)
+    out.show(result.table(), document, spare=headings_output.SPARE_COLUMNS)
 
 
 @grouped.command(short_help="Map of when a part slips, and which way.")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from feederscrew.columns import Frame
 from feederscrew_cli import grouped, options
 from feederscrew_cli.options import Output
 
@@ -50,7 +51,7 @@ def sample(
 
     out = Output.of_call(format=format, quiet=quiet)
     if name is None and not everything:
-        frame = tables.frame(tables.table_of(catalogue.samples(), "call file meaning"))
+        frame = Frame.of(tables.table_of(catalogue.samples(), "call file meaning"))
         out.show(frame, {"samples": list(frame.rows())})
         out.say("Write one with its call: feeder sample washer_m6")
         return

@@ -22,9 +22,9 @@ from feederscrew_cli.interrupt import hold_interrupts
 if TYPE_CHECKING:
     from feederscrew.bowl import Bowl
     from feederscrew.bowl.reading import Setting
+    from feederscrew.columns import Frame
     from feederscrew.output.folder import ResultFolder
     from feederscrew.output.offers import Offer
-    from feederscrew.output.tables import Frame
     from feederscrew.part.record import Part
 
 MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within a sentence
@@ -296,7 +296,7 @@ class Output:
             click.echo(tables.json_text(document), nl=False)
             return
         for_people = self.format == "table"
-        printed = frame.without(hidden) if for_people else frame
+        printed = frame.for_people().without(hidden) if for_people else frame
         if for_people and spare is not None:
             printed, left_out = tables.to_page(printed, spare)
             if left_out:
@@ -394,7 +394,7 @@ class Output:
         context manager of ResultFolder or None
         """
         from feederscrew.bowl import texts
-        from feederscrew.output.columns import conditions
+        from feederscrew.output.part_facts import conditions
 
         identity = dict(item for each in (solid.inputs, *inputs) for item in each.items())
         return self.folder(solid.name, identity, conditions(solid) | texts(settings) | dict(values or {}))

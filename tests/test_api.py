@@ -12,6 +12,7 @@ import shapes
 from command_lines import BRACKET, ROOT
 
 import feederscrew as fs
+from feederscrew.columns import Frame
 from feederscrew.output import tables
 from feederscrew.studies import arguments
 from feederscrew_cli.main import feeder
@@ -94,7 +95,7 @@ def test_a_signature_that_is_shown_is_the_one_that_is_called():
 
 def test_answers_are_what_the_commands_say(run, run_json, bracket):
     printed = run("aspects", BRACKET, "--format", "csv", "-q").stdout
-    assert tables.text(tables.frame(dict(fs.aspects(bracket).to_frame())), "csv") == printed
+    assert tables.text(Frame.of(dict(fs.aspects(bracket).to_frame())), "csv") == printed
     said, bowl = run_json("rate", BRACKET, "--aspect", "A", "-q"), fs.read_bowl()
     rate = fs.rate(bracket, bowl, "A").parts.value
     assert rate * 60.0 == pytest.approx(said["parts_per_minute"], rel=1e-12)

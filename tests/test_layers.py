@@ -11,10 +11,10 @@ from feederscrew.tooling.devices.kinds import KINDS
 
 ROOT = Path(__file__).parent.parent
 ORDER = [
-    "version", "heavy", "arrays", "errors", "check", "units", "value_forms", "signatures", "records",
-    "running", "caches", "processes", "documents", "dxf", "geometry", "part", "resting", "tooling.devices",
-    "bowl", "screw", "mechanics", "conveying", "dropping", "tooling", "rates", "trial", "machine",
-    "solidbowl", "studies", "designing", "output", "thesis", "samples", "batch", "serving",
+    "version", "heavy", "arrays", "errors", "check", "units", "columns", "value_forms", "signatures",
+    "records", "running", "caches", "processes", "documents", "dxf", "geometry", "part", "resting",
+    "tooling.devices", "bowl", "screw", "mechanics", "conveying", "dropping", "tooling", "rates", "trial",
+    "machine", "solidbowl", "studies", "designing", "output", "thesis", "samples", "batch", "serving",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/documents.py"},

@@ -16,12 +16,11 @@ from feederscrew import bowl as bowls
 from feederscrew import documents, units
 from feederscrew.batch.task import FAILED as FAILED
 from feederscrew.batch.task import Conditions, Request
+from feederscrew.columns import Frame
 from feederscrew.conveying import answer
 from feederscrew.documents import found_as, raise_all
 from feederscrew.errors import ConfigError, Faults, FeederError
-from feederscrew.output import tables
 from feederscrew.output.folder import safe_name
-from feederscrew.output.tables import Frame
 from feederscrew.part.card import read_aspect_names
 from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.part.record import AspectNames
@@ -116,7 +115,7 @@ def order_row(order: DesignOrder, target: float, document: dict[str, Any]) -> di
 
 def order_table(rows: list[dict[str, Any]]) -> Frame:
     """Return what holds, a row a part."""
-    return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
+    return Frame.of({name: [row[name] for row in rows] for name in rows[0]})
 
 
 def _lines(path: str) -> Rows:

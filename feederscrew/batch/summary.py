@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import quote
 
 from feederscrew.batch.task import DONE, NOT_COMPUTED, PARTS, THUMBNAIL, Request
-from feederscrew.output import tables
+from feederscrew.columns import Frame
 from feederscrew.output.batch import ACROSS, DOWN
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture
 from feederscrew.units import counted
@@ -126,13 +126,13 @@ def _titles(sources: set[str]) -> dict[str, str]:
     return titles
 
 
-def frame(rows: Rows) -> tables.Frame:
+def frame(rows: Rows) -> Frame:
     """Return the rows as a table; a text that a spreadsheet would take for a formula is marked as text."""
 
     def marked(value: object) -> object:
         return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
-    return tables.frame({name: [marked(row[name]) for row in rows] for name in SUMMARY_COLUMNS})
+    return Frame.of({name: [marked(row[name]) for row in rows] for name in SUMMARY_COLUMNS})
 
 
 def sheets(store: Any, rows: Rows) -> Iterator[list[tuple[bytes | None, str, str]]]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from feederscrew.batch.task import DONE, THUMBNAIL, Conditions, Outcome, Task
 from feederscrew.errors import FeederError
-from feederscrew.output import aspects, batch, columns, offers, proof, tables
+from feederscrew.output import aspects, batch, offers, part_facts, proof, tables
 from feederscrew.output import convey as convey_output
 from feederscrew.output import drop as drop_output
 from feederscrew.output import rate as rate_output
@@ -82,7 +82,7 @@ def _results(task: Task) -> Outcome:
     row = own | rated | tested
     if choices.pictures and part.vertices is not None:
         files.write(THUMBNAIL, batch.thumbnail(part, results, row.get("aspect")))
-    effective = columns.conditions(part) | dict(request.conditions.texts)
+    effective = part_facts.conditions(part) | dict(request.conditions.texts)
     effective |= {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
     effective |= {"names": request.names.source} if request.names else {}
     warnings = (*part.warnings, *request.conditions.warnings, *results.warnings, *rate_warnings)

@@ -18,6 +18,7 @@ from feederscrew import check, documents, units
 from feederscrew.bowl import devices, schema, verified
 from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track, vibration_angle
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
+from feederscrew.columns import Column
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
 from feederscrew.geometry.grids import GridAxis
@@ -68,6 +69,16 @@ class Setting:
         if not self.is_own:
             return self.where
         return "--set" if self.overrides else self.where.rpartition(":")[0]
+
+
+SETTING_COLUMNS: tuple[Column[Setting], ...] = (
+    Column("key", lambda setting: setting.key.name),
+    Column("value", lambda setting: setting.text),
+    Column("from", lambda setting: setting.origin),
+    Column("lowest", lambda setting: setting.key.lowest),
+    Column("highest", lambda setting: setting.key.highest),
+    Column("meaning", lambda setting: setting.key.meaning),
+)
 
 
 def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
@@ -613,7 +624,7 @@ class KeyRange:
     def axis(self) -> GridAxis:
         """Its values as an axis of a grid."""
         unit = units.factor(self.key.unit, self.key.dimension)
-        return GridAxis(self.key.column, check.frozen(np.array(self.values)), unit)
+        return GridAxis(self.key.column, check.frozen(np.array(self.values)), unit, self.key.unit)
 
 
 def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:

@@ -19,6 +19,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.arrays import Array, Floats, Values
 from feederscrew.bowl.record import Bowl, Friction
+from feederscrew.columns import Column
 from feederscrew.conveying import operating_point, point_motion, steady, waves
 from feederscrew.conveying.operating_point import PHASES, OperatingPoint
 from feederscrew.conveying.steady import MotionStatus
@@ -86,6 +87,31 @@ class Answer(ReadableRecord):
             return None
         keeps = steady.keeps_speed(operating_point.law(self.setting))
         return UnsteadyMotion.KEEPS_SPEED if keeps else UnsteadyMotion.SLIDES_DOWN
+
+
+ANSWER_COLUMNS: tuple[Column[Answer], ...] = (
+    Column("status", lambda answer: answer.status),
+    Column("period", lambda answer: answer.period),
+    Column("velocity_mm_s", lambda answer: answer.velocity, "mm/s"),
+    Column("velocity_low_mm_s", lambda answer: answer.low, "mm/s"),
+    Column("velocity_high_mm_s", lambda answer: answer.high, "mm/s"),
+    Column("velocity_slowest_period_mm_s", lambda answer: answer.slowest, "mm/s"),
+    Column("velocity_fastest_period_mm_s", lambda answer: answer.fastest, "mm/s"),
+    Column("regime", lambda answer: answer.regime),
+    Column("runs_away", lambda answer: answer.runs_away),
+    Column("unsteady", lambda answer: answer.unsteady),
+    Column("acceleration_ratio", lambda answer: answer.setting.ratio),
+    Column("throw_number", lambda answer: answer.throw_number),
+    Column("mu_effective", lambda answer: answer.setting.static),
+    Column("mu_effective_kinetic", lambda answer: answer.setting.kinetic),
+    Column("mu_forward", lambda answer: answer.mu_forward),
+    Column("mu_backward", lambda answer: answer.mu_backward),
+    Column("margins", lambda answer: answer.margins),
+    Column("fractions", lambda answer: answer.fractions),
+    Column("longest_flight_periods", lambda answer: answer.longest_flight),
+    Column("hardest_impact_mm_s", lambda answer: answer.hardest_impact, "mm/s"),
+    Column("flights_per_period", lambda answer: answer.flights),
+)
 
 
 def answer(bowl: Bowl) -> Answer:
@@ -503,6 +529,12 @@ class Neighbours:
         return (self.more - self.less) / (2.0 * change * velocity) if velocity else math.nan
 
 
+NEIGHBOUR_COLUMNS: tuple[Column[Neighbours], ...] = (
+    Column("velocity_less_mm_s", lambda pair: pair.less, "mm/s"),
+    Column("velocity_more_mm_s", lambda pair: pair.more, "mm/s"),
+)
+
+
 def sensitivity(bowl: Bowl) -> dict[str, Neighbours]:
     """Return the velocities with a quantity a tenth lower and higher.
 
@@ -677,6 +709,21 @@ class BestPhase:
     frictions: Floats  # (K,) [1] friction tried, over the bowl's
     best_over_friction: Floats  # (K,) [m/s] at the best phase
     straight_over_friction: Floats  # (K,) [m/s]
+
+
+BEST_PHASE_COLUMNS: tuple[Column[BestPhase], ...] = (
+    Column("phase_deg", lambda best: best.phase, "deg"),
+    Column("velocity_mm_s", lambda best: best.velocity, "mm/s"),
+    Column("straight_mm_s", lambda best: best.straight, "mm/s"),
+    Column("gain", lambda best: best.velocity / best.straight if best.straight > 0.0 else np.nan),
+    Column("nine_tenths_from_deg", lambda best: best.lowest, "deg"),
+    Column("nine_tenths_to_deg", lambda best: best.highest, "deg"),
+)
+OVER_FRICTION_COLUMNS: tuple[Column[BestPhase], ...] = (  # a row a friction
+    Column("friction", lambda best: best.frictions),
+    Column("velocity_mm_s", lambda best: best.best_over_friction, "mm/s"),
+    Column("straight_mm_s", lambda best: best.straight_over_friction, "mm/s"),
+)
 
 
 def best_phase(bowl: Bowl) -> BestPhase:

@@ -7,6 +7,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Array, Floats, Ints
+from feederscrew.columns import ColumnHead
 
 GridFunction = Callable[[Floats, Floats], dict[str, Array]]
 
@@ -18,6 +19,12 @@ class GridAxis:
     column: str  # in tables, with its unit: 'beta_deg'
     values: Floats  # (N,) in SI
     unit: float = 1.0  # SI units in one unit of the column
+    label: str = ""  # of that unit: 'deg'
+
+    @property
+    def head(self) -> ColumnHead:
+        """Return what people read above the column, or along an axis of a picture."""
+        return ColumnHead.of_name(self.column, self.label)
 
     @property
     def in_unit(self) -> Floats:
@@ -104,7 +111,7 @@ def evaluate(
     return Grid(first, second, full, codes, tuple(names) or ("",))
 
 
-def span(column: str, low: float, high: float, count: int, unit: float = 1.0) -> GridAxis:
+def span(column: str, low: float, high: float, count: int, unit: float = 1.0, label: str = "") -> GridAxis:
     """Return an axis of evenly spaced values, both ends included.
 
     Parameters
@@ -120,4 +127,4 @@ def span(column: str, low: float, high: float, count: int, unit: float = 1.0) ->
     -------
     GridAxis
     """
-    return GridAxis(column, check.frozen(np.linspace(low, high, count)), unit)
+    return GridAxis(column, check.frozen(np.linspace(low, high, count)), unit, label)

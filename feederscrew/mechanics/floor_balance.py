@@ -16,6 +16,7 @@ import numpy as np
 
 from feederscrew.arrays import Bools, Floats, Ints, Reals
 from feederscrew.bowl.record import Bowl, Friction
+from feederscrew.columns import Column
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
@@ -43,6 +44,21 @@ class FloorMotion:
     offset: Floats  # (..., 2) [m] d, where the normal force acts, from the foot of the centre of mass
     inside: Floats  # (...) [m] of that point within the contact polygon; negative: it tips
     limiting_friction: Floats  # (...) [1] least static friction that holds the part; NaN without contact
+
+
+FLOOR_CYCLE_COLUMNS: tuple[Column[FloorMotion], ...] = (  # over a cycle
+    Column("normal_force_N", lambda motion: motion.normal_force, "N"),
+    Column("friction_z_N", lambda motion: motion.friction[..., 0], "N"),
+    Column("friction_y_N", lambda motion: motion.friction[..., 1], "N"),
+    Column("limiting_friction", lambda motion: motion.limiting_friction),
+    Column("acceleration_z_m_s2", lambda motion: motion.acceleration[..., 0], "m/s2"),
+    Column("acceleration_y_m_s2", lambda motion: motion.acceleration[..., 1], "m/s2"),
+    Column("alignment_acceleration_rad_s2", lambda motion: motion.turning + 0.0, "rad/s2"),
+)
+FLOOR_LINE_COLUMNS: tuple[Column[FloorMotion], ...] = (
+    Column("normal_line_offset_mm", lambda motion: motion.offset[..., 0], "mm"),
+    Column("normal_line_offset_y_mm", lambda motion: motion.offset[..., 1], "mm"),
+)
 
 
 def drive_force(mass: float, bowl: Bowl, heading: Reals, phase: Reals = UPPER_REVERSAL) -> Floats:

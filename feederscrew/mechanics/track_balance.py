@@ -28,6 +28,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.arrays import Array, Bools, Floats, Ints, Points, Reals
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, inset, turned
 from feederscrew.geometry.vectors import dot, ratio
@@ -652,6 +653,23 @@ class TrackMotion:
     needed: Floats  # (..., 3) [1] friction over normal force, at floor and walls, that holds it at rest
     slides: Bools  # (...) bool, also where the state says that it tips
     load: Floats  # (..., 3) [N] weight, drive and centrifugal force
+
+
+TRACK_CYCLE_COLUMNS: tuple[Column[TrackMotion], ...] = (  # over a cycle
+    Column("normal_force_N", lambda motion: motion.normal_force, "N"),
+    Column("wall_1_N", lambda motion: motion.walls[..., 0], "N"),
+    Column("wall_2_N", lambda motion: motion.walls[..., 1], "N"),
+    Column("wall_1_friction_N", lambda motion: motion.wall_friction[..., 0], "N"),
+    Column("wall_2_friction_N", lambda motion: motion.wall_friction[..., 1], "N"),
+    Column("radial_friction_N", lambda motion: motion.radial_friction + 0.0, "N"),
+    Column("traction_N", lambda motion: motion.traction, "N"),
+    Column("normal_line_offset_mm", lambda motion: motion.offset[..., 0], "mm"),
+    Column("normal_line_offset_y_mm", lambda motion: motion.offset[..., 1], "mm"),
+    Column("acceleration_x_m_s2", lambda motion: motion.acceleration[..., 0], "m/s2"),
+    Column("acceleration_y_m_s2", lambda motion: motion.acceleration[..., 1], "m/s2"),
+    Column("turning_rad_s2", lambda motion: motion.turning, "rad/s2"),
+    Column("floor_couple_N_mm", lambda motion: motion.couple, "N mm"),
+)
 
 
 def motion(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew.arrays import Floats, Points
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.geometry.polygons import cross, sides
 from feederscrew.geometry.vectors import ratio
 from feederscrew.heavy import heavy
@@ -43,6 +44,18 @@ class Opening:
     point: Floats  # (3,) [m] of the axis, nearest the centre of mass
     direction: Floats  # (3,) [1] of the axis
     pitch: float  # [m] slide along the axis per radian; infinite where the part only slides
+
+
+OPENING_COLUMNS: tuple[Column[Opening], ...] = (
+    Column("first_to_open", lambda opening: opening.contact),
+    Column("opens_at_drive_factor", lambda opening: opening.drive_factor),
+    Column("opens_at_reversal", lambda opening: opening.reversal),
+)
+TIPPING_AXIS_COLUMNS: tuple[Column[Opening], ...] = (
+    Column("point_mm", lambda opening: opening.point, "mm"),
+    Column("direction", lambda opening: opening.direction),
+    Column("pitch_mm", lambda opening: opening.pitch, "mm"),
+)
 
 
 def contact_wrenches(

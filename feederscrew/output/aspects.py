@@ -7,26 +7,23 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Array, Floats, Points, Vector
+from feederscrew.columns import Frame
 from feederscrew.documents import hint, nearest
 from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
-from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.columns import UJ
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output import part_facts, style, tables
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, names_text
 from feederscrew.resting.exact_tumbling import Transition
-from feederscrew.resting.inertia_products import find_products
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.studies.aspects import AspectsStudy
-from feederscrew.units import GRAVITY, MM, quantity_text
+from feederscrew.units import MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
 
 MOST_DRAWN_ASPECTS = 24  # rows that a picture shows
 TIPPING_ALT = "Tipping graph: which aspect tips into which, and the lift it takes"
-NORMALS = ("normal_x", "normal_y", "normal_z")
 RECOMMENDED_COLUMNS = ("p_recommended", "p_recommended_low", "p_recommended_high")
 DROP_COLUMNS = ("p_drop", "p_drop_low", "p_drop_high")
 PRINTED = (  # the table for people, unless they ask for more
@@ -35,38 +32,8 @@ PRINTED = (  # the table for people, unless they ask for more
 )  # fmt: skip
 
 
-def aspects(study: AspectsStudy) -> Frame:
-    """Return the classes of resting aspects of an AspectsStudy, one row each: the columns of ``aspects.csv``.
-
-    An open surface is labelled in every row, and tumbling that fails a self-check. A card has no shape and
-    does not say how it lies.
-    """
-    resting, hull, count = study.aspects, study.part.hull, len(study.aspects.names)
-    circles = np.where(np.isfinite(resting.rolling_circles), resting.rolling_circles, np.nan)
-    lies = "" if hull is None else "lies rolls"
-    names = f"aspect=names {lies} faces stable {'/'.join(NORMALS)}=normals height_mm=heights"
-    sizes = "contact_area_mm2=contact_areas solid_angle_sr=solid_angles polar_inertia_g_mm2=polar_inertias"
-    table = row_of(resting, names, sizes)
-    table |= {f"p_{rule}": chance for rule, chance in resting.probabilities.items()}
-    if hull is not None and study.part.inertia is not None:
-        off = find_products(resting, study.part.inertia)
-        table |= row_of(off, "product_of_inertia_g_mm2=products p_pmi_principal=probabilities")
-    if resting.barriers is not None:
-        names = "barrier_mm=barriers barrier_uJ=barrier_energies tip_angle_deg=tip_angles"
-        table |= row_of(resting, names)
-    table["rolling_circle_mm"] = circles / MM
-    for name, answer in (("p_drop", study.tally), ("p_recommended", study.recommended)):
-        if answer is not None:
-            table |= {name: answer.p, f"{name}_low": answer.low, f"{name}_high": answer.high}
-    if study.part.open_surface:
-        table["surface"] = ["open"] * count
-    if study.doubtful:
-        table["tumbling"] = ["doubtful"] * count
-    return tables.frame(table)
-
-
 def select_columns(frame: Frame, choice: str | None = None) -> Frame:
-    """Return the columns of a frame of ``aspects`` that are printed for people.
+    """Return the columns of the table of an AspectsStudy that are printed for people.
 
     ``choice`` are names, or what the table heads them, with commas between, or 'all'; without it
     those of ``PRINTED`` that there are, the likeliest answer first. Raises ArgumentError if there is no such
@@ -78,10 +45,10 @@ def select_columns(frame: Frame, choice: str | None = None) -> Frame:
             return table
         shares = np.nan_to_num(np.asarray(table[RECOMMENDED_COLUMNS[0]], dtype=float), nan=-1.0)
         order = np.argsort(-shares, kind="stable")
-        return tables.frame({name: [column[row] for row in order] for name, column in table.items()})
+        return table.taking({name: [column[row] for row in order] for name, column in table.items()})
     names = list(frame) if choice.strip() == "all" else [name.strip() for name in choice.split(",")]
     # by what a table heads them, 'height' and 'pmi'; without what heads several, 'low'
-    words = [tables.heading(name)[0].casefold() for name in frame]
+    words = [tables.head_of(frame, name).heading.casefold() for name in frame]
     headed = {word: name for word, name in zip(words, frame) if words.count(word) == 1}
     names = [name if name in frame else headed.get(name.casefold(), name) for name in names]
     for name in names:
@@ -95,15 +62,15 @@ def select_columns(frame: Frame, choice: str | None = None) -> Frame:
 
 def check_columns(study: AspectsStudy, choice: str) -> None:
     """Refuse before a part is dropped what ``select_columns`` will, by the study of the closed form."""
-    frame = aspects(study)
-    select_columns(tables.frame(dict(frame) | dict.fromkeys(DROP_COLUMNS, frame["aspect"])), choice)
+    frame = study.table()
+    select_columns(frame.taking(dict.fromkeys(DROP_COLUMNS, frame["aspect"])), choice)
 
 
 def document(study: AspectsStudy) -> dict[str, Any]:
     """Return all of a part and its aspects; ``recommended``, the rule of that answer, is None for a card."""
-    return columns.part(study.part, study.aspects.warnings) | {
+    return part_facts.part(study.part, study.aspects.warnings) | {
         "recommended": None if study.recommended is None else study.recommended.rule,
-        "aspects": aspects(study),
+        "aspects": study.table(),
     }
 
 
@@ -124,7 +91,7 @@ def offers(study: AspectsStudy, *, with_graph: bool = False) -> list[offer.Offer
     """
     by_rule = "Probability of each aspect by every rule"
     offered = [
-        offer.table("aspects.csv", aspects, study),
+        offer.table("aspects.csv", study.table),
         offer.document("aspects.json", document, study),
         offer.picture("probabilities.png", by_rule, _probability_chart, study),
     ]
@@ -137,7 +104,7 @@ def offers(study: AspectsStudy, *, with_graph: bool = False) -> list[offer.Offer
     if with_graph:
         rules = study.aspects.probabilities
         offered += [
-            offer.table("graph.csv", transitions, study),
+            offer.table("graph.csv", study.transitions_table),
             offer.picture(
                 "graph.png", TIPPING_ALT,
                 lambda: draw_tipping_graph(study, study.transitions, rules["quasistatic"]),
@@ -308,22 +275,6 @@ def _caption(axes: "style.Axes", aspects: Aspects, row: int, answer: Recommended
 
 
 # --- feeder aspects --graph: which aspect tips into which, and by what lift ---
-
-
-def transitions(study: AspectsStudy) -> Frame:
-    """Return the tipping graph, a row a way from one aspect into another or its equal: ``graph.csv``."""
-    tips, names = study.transitions, study.aspects.names
-    axes = np.array([tip.axis for tip in tips]).reshape(-1, 3)
-    lifts = np.array([tip.lift for tip in tips], dtype=float)
-    return tables.frame(
-        {
-            "from": [names[tip.start] for tip in tips],
-            "to": [names[tip.end] for tip in tips],
-            "barrier_mm": lifts / MM,
-            "barrier_uJ": study.part.mass * GRAVITY * lifts / UJ,
-            **dict(zip(("axis_x", "axis_y", "axis_z"), axes.T)),
-        }
-    )
 
 
 MOST_GRAPH_ASPECTS = 12  # aspects a picture can show

@@ -7,10 +7,11 @@ from typing import Any, Literal
 import numpy as np
 
 from feederscrew.arrays import Floats
+from feederscrew.columns import Frame
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output.tables import row_of
 from feederscrew.resting.deviation import Comparison
 from feederscrew.resting.rules import registry
 from feederscrew.studies import compare as studies
@@ -32,7 +33,7 @@ def _pair_frame(comparisons: Iterable[Comparison]) -> Frame:
 
 def _without_zero_degrees(table: Frame) -> Frame:
     """The table with an empty cell where a test has no degrees of freedom."""
-    return tables.frame(table | {TESTS[1]: [degrees or None for degrees in table[TESTS[1]]]})
+    return Frame.of(table | {TESTS[1]: [degrees or None for degrees in table[TESTS[1]]]})
 
 
 def offers(study: studies.CompareStudy | studies.FeedingStudy) -> list[offer.Offer]:
@@ -102,7 +103,7 @@ def _feedings(tests: Iterable[studies.FeedingStudy]) -> Frame:
         for k, station in enumerate(study.stations)
     ]
     names = dict.fromkeys(name for row in rows for name in row)
-    return tables.frame({name: [row.get(name) for row in rows] for name in names})
+    return Frame.of({name: [row.get(name) for row in rows] for name in names})
 
 
 def _feeding_document(study: studies.FeedingStudy) -> dict[str, Any]:
@@ -147,7 +148,7 @@ def sets_printout(study: studies.SetsStudy, form: str) -> list[Frame]:
         for name in study.answers:
             values = whole[name].astype(float)
             columns[name] = [None if np.isnan(value) else f"{value:.3f}" for value in values]
-        frames.append(tables.frame(columns))
+        frames.append(Frame.of(columns))
     if study.feedings:
         rows = _feedings(study.feedings)
         columns = rows.only(("set", "device", "passed", "rejected"))
@@ -155,7 +156,7 @@ def sets_printout(study: studies.SetsStudy, form: str) -> list[Frame]:
         for name in ("measured", "predicted"):
             ends = zip(rows[name], rows[f"{name}_low"], rows[f"{name}_high"])
             columns[name] = [f"{value:.3f} ({low:.3f} to {high:.3f})" for value, low, high in ends]
-        frames.append(tables.frame(columns | {"agrees": rows["agrees"]}))
+        frames.append(Frame.of(columns | {"agrees": rows["agrees"]}))
     return frames
 
 
@@ -185,7 +186,7 @@ def _sets_frame(study: studies.SetsStudy) -> Frame:
             row[name] = float(np.mean(distances)) if distances else None
         rows.append(row)
     names = ("set", "series", "launch", "parts", "rule", "aspects", "inside", *study.answers)
-    return tables.of_rows(rows, names)
+    return Frame.of_rows(rows, names)
 
 
 def _set_label(item: studies.SetStudy) -> str:
@@ -350,7 +351,7 @@ def fit_quantities(study: studies.BowlFit) -> Frame:
     """Return friction, restitution and stroke that explain the velocities of a BowlFit, one a row."""
     columns = row_of(study, "bowl_file=assumed fitted=values low high")
     decided = ["not decided by these velocities" if is_open else "yes" for is_open in study.open_ended]
-    return tables.frame({"quantity": list(studies.QUANTITIES), **columns, "decided": decided})
+    return Frame.of({"quantity": list(studies.QUANTITIES), **columns, "decided": decided})
 
 
 def fit_velocities(study: studies.BowlFit) -> Frame:
@@ -358,7 +359,7 @@ def fit_velocities(study: studies.BowlFit) -> Frame:
     settings = [setting or "as the bowl file" for setting in study.settings]
     names = "measured_mm_s doubt_mm_s bowl_file_mm_s=file fitted_mm_s"
     remains = (study.measured - study.fitted) / MM_S
-    return tables.frame({"setting": settings, **row_of(study, names), "remains_mm_s": remains})
+    return Frame.of({"setting": settings, **row_of(study, names), "remains_mm_s": remains})
 
 
 def fit_document(study: studies.BowlFit) -> dict[str, Any]:

@@ -9,16 +9,24 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.arrays import Array, Bools, Floats
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Frame, of_arrays, quantities, values
 from feederscrew.conveying import answer, steady
-from feederscrew.conveying.answer import Neighbours, throw_of_flight
+from feederscrew.conveying.answer import (
+    ANSWER_COLUMNS,
+    BEST_PHASE_COLUMNS,
+    NEIGHBOUR_COLUMNS,
+    OVER_FRICTION_COLUMNS,
+    Neighbours,
+    throw_of_flight,
+)
 from feederscrew.conveying.operating_point import PHASES
 from feederscrew.conveying.steady import MotionStatus
 from feederscrew.geometry.grids import Grid
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.limits import Regime
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
-from feederscrew.output.tables import PHASE_WORDS, Frame, regime_words, row_of
+from feederscrew.output import style
+from feederscrew.output.tables import PHASE_WORDS, regime_words
 from feederscrew.studies.convey import ConveyCurve, ConveyMap, ConveyPhase, ConveyStudy
 from feederscrew.units import MM_S, factor
 
@@ -30,7 +38,6 @@ UNSTEADY_WORDS = {
     answer.UnsteadyMotion.SLIDES_DOWN: "the part slides down the track without stopping",
     answer.UnsteadyMotion.KEEPS_SPEED: "without friction a part on the level keeps whatever speed it has",
 }
-VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
 
 
 def document(study: ConveyStudy) -> dict[str, Any]:
@@ -40,21 +47,13 @@ def document(study: ConveyStudy) -> dict[str, Any]:
     def change_entry(pair: Neighbours, change: float) -> dict[str, Any]:
         return {
             "change_percent": 100.0 * change,
-            **row_of(pair, "velocity_less_mm_s=less velocity_more_mm_s=more"),
+            **values(NEIGHBOUR_COLUMNS, pair),
             "percent_per_percent": pair.elasticity(conveying.velocity, change),
         }
 
     nearby = study.nearby.items()
     return {
-        **row_of(
-            conveying,
-            "status period velocity_mm_s velocity_low_mm_s=low velocity_high_mm_s=high",
-            "velocity_slowest_period_mm_s=slowest velocity_fastest_period_mm_s=fastest regime runs_away",
-            "unsteady",
-            "acceleration_ratio=setting.ratio throw_number mu_effective=setting.static",
-            "mu_effective_kinetic=setting.kinetic mu_forward mu_backward margins fractions",
-            "longest_flight_periods=longest_flight hardest_impact_mm_s flights_per_period=flights",
-        ),
+        **values(ANSWER_COLUMNS, conveying),
         "sensitivity": {name: change_entry(pair, answer.SENSITIVITY_CHANGE) for name, pair in nearby},
         "friction_doubt": change_entry(study.doubt, answer.FRICTION_DOUBT),
         "restitution_doubt": restitution_entry(study.bowl, study.rebound),
@@ -68,7 +67,7 @@ def restitution_entry(bowl: Bowl, neighbours: Neighbours | None) -> dict[str, An
     if neighbours is None:
         return None
     ends = dict(zip(("restitution_low", "restitution_high"), answer.rebounds(bowl)))
-    return ends | row_of(neighbours, "velocity_less_mm_s=less velocity_more_mm_s=more")
+    return ends | values(NEIGHBOUR_COLUMNS, neighbours)
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -106,7 +105,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
         ends = " / ".join(_number(spread[f"restitution_{end}"]) for end in ("low", "high"))
         speeds = " / ".join(_number(spread[f"velocity_{end}_mm_s"]) for end in ("less", "more"))
         rows.append((f"velocity for restitution {ends} [mm/s]", speeds))
-    return tables.quantities([*rows, ("validity", d["validity"])])
+    return quantities([*rows, ("validity", d["validity"])])
 
 
 def remarks(document: Mapping[str, Any]) -> list[str]:
@@ -144,32 +143,6 @@ def _number(value: float) -> str:
     return "none" if np.isnan(value) else f"{value:.4g}"
 
 
-def cells(study: ConveyMap) -> Frame:
-    """Return the cells of a ConveyMap as a frame."""
-    columns = _in_mm_s(study.grid.columns()) | {"status": study.statuses.ravel()}
-    last = {name: columns.pop(name) for name in ("regime", "throw_number", "status")}
-    del columns["several"]
-    return tables.frame(columns | last)
-
-
-def points(study: ConveyCurve) -> Frame:
-    """Return the points of a ConveyCurve as a frame."""
-    columns = _in_mm_s(study.cells)
-    return tables.frame(
-        {
-            **{axis.column: axis.in_unit for axis in study.axes},
-            **{column: columns[column] for column in VELOCITIES.values()},
-            "regime": np.asarray(answer.SWEEP_REGIMES)[columns["regime"]],
-            "throw_number": columns["throw_number"],
-            "status": study.statuses,
-        }
-    )
-
-
-def _in_mm_s(columns: Mapping[str, Array]) -> dict[str, Array]:
-    return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in columns.items()}
-
-
 def cell_remarks(status: Array, several: Bools) -> list[str]:
     """Return how many cells of a map or a curve have no steady velocity, no period, several velocities."""
     counts = {
@@ -183,18 +156,8 @@ def cell_remarks(status: Array, several: Bools) -> list[str]:
 def phase_document(study: ConveyPhase) -> dict[str, Any]:
     """Return a ConveyPhase as the JSON document."""
     phase = study.best
-    over = zip(phase.frictions, phase.best_over_friction, phase.straight_over_friction)
-    best_phase = {
-        "phase_deg": float(np.degrees(phase.phase)),
-        **row_of(phase, "velocity_mm_s straight_mm_s"),
-        "gain": phase.velocity / phase.straight if phase.straight > 0.0 else np.nan,
-        "nine_tenths_from_deg": float(np.degrees(phase.lowest)),
-        "nine_tenths_to_deg": float(np.degrees(phase.highest)),
-        "over_friction": [
-            {"friction": share, "velocity_mm_s": best / MM_S, "straight_mm_s": straight / MM_S}
-            for share, best, straight in over
-        ],
-    }
+    over = of_arrays(OVER_FRICTION_COLUMNS, phase)
+    best_phase = values(BEST_PHASE_COLUMNS, phase) | {"over_friction": over}
     return {"best_phase": best_phase, "bowl": bowls.texts(study.bowl.settings)}
 
 
@@ -209,10 +172,10 @@ def phase_summary(document: Mapping[str, Any]) -> Frame:
         ("times as fast", _number(best["gain"])),
         ("nine tenths of it at phases [deg]", tenths),
     ]
-    for row in best["over_friction"]:
+    for row in best["over_friction"].rows():
         name = f"at {row['friction']:g} times the friction, best / straight [mm/s]"
         rows.append((name, f"{_number(row['velocity_mm_s'])} / {_number(row['straight_mm_s'])}"))
-    return tables.quantities(rows)
+    return quantities(rows)
 
 
 def offers(study: ConveyStudy) -> list[offer.Offer]:
@@ -229,7 +192,7 @@ def offers(study: ConveyStudy) -> list[offer.Offer]:
 def curve_offers(study: ConveyCurve) -> list[offer.Offer]:
     """Offer the files of a ConveyCurve."""
     name, alt = f"convey_{study.kind}", f"Velocity over {study.over}"
-    return [offer.table(f"{name}.csv", points, study), offer.picture(f"{name}.png", alt, _curve, study, alt)]
+    return [offer.table(f"{name}.csv", study.table), offer.picture(f"{name}.png", alt, _curve, study, alt)]
 
 
 def phase_offers(study: ConveyPhase) -> list[offer.Offer]:
@@ -246,7 +209,7 @@ def map_offers(study: ConveyMap) -> list[offer.Offer]:
         line = [np.atleast_1d(x) / factor(key.unit, key.dimension) for x, key in zip(values, keys)]
     alt = f"Velocity and regimes over {' and '.join(names)}"
     return [
-        offer.table("convey_map.csv", cells, study),
+        offer.table("convey_map.csv", study.table),
         offer.picture("convey_map.png", alt, velocity_map, study.grid, line),
     ]
 
@@ -312,7 +275,7 @@ def velocity_map(grid: Grid, curve: Sequence[Floats] | None = None) -> "style.Fi
     figure = style.figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, sharey=True)
     x, y = grid.first.in_unit, grid.second.in_unit
-    names = [tables.title(axis.column) for axis in (grid.first, grid.second)]
+    names = [axis.head.title for axis in (grid.first, grid.second)]
     velocity, several = grid.values["velocity"].T / MM_S, grid.values["several"].T
     finite = velocity[np.isfinite(velocity)]
     has_signs = bool(finite.size) and finite.min() < 0.0 < finite.max()
@@ -368,9 +331,9 @@ def velocity_map(grid: Grid, curve: Sequence[Floats] | None = None) -> "style.Fi
 
 
 def _curve(study: ConveyCurve, title: str, ax: "style.Axes | None" = None) -> "style.Figure":
-    frame = points(study)
+    frame = study.table()
     column = next(iter(frame))
-    figure, axes = style.chart(ax=ax, title=title, x=tables.title(column), y="velocity [mm/s]")
+    figure, axes = style.chart(ax=ax, title=title, x=frame.heads[column].title, y="velocity [mm/s]")
     x = frame[column]
     low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]
     if (high > low).any():

@@ -25,7 +25,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
-from feederscrew.output import columns, style, tables
+from feederscrew.output import part_facts, style, tables
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
@@ -92,7 +92,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
             "throw_number": facts["throw_number"],
         }
     return {
-        **columns.part(study.part, study.warnings),
+        **part_facts.part(study.part, study.warnings),
         **row_of(study, "status wanted"),
         "up": list(request.up),
         "outcome": study.outcome,

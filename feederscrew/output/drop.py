@@ -6,56 +6,36 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Floats, Ints, Points
+from feederscrew.columns import values
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
 from feederscrew.dropping.drop_test import DropTrace, chosen
 from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.heavy import heavy
-from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
+from feederscrew.output import part_facts, style
 from feederscrew.output.aspects import MARKS, PROBABILITIES
-from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
-from feederscrew.studies.drop import DropStudy, TossStudy
+from feederscrew.studies.drop import (
+    AGREEMENT_COLUMNS,
+    DROP_TEST_COLUMNS,
+    DROP_TRACE_COLUMNS,
+    TOSS_FILE_COLUMNS,
+    DropStudy,
+    TossStudy,
+)
 from feederscrew.units import MM
 
 mpl_ticker = heavy("matplotlib.ticker")
 ndimage = heavy("scipy.ndimage")
 shading = heavy("feederscrew.output.shading")
 
-NONE = "none"  # the class of a drop or toss that never settles
-
-
-def counts(study: DropStudy) -> Frame:
-    """Return how many drops rest on each aspect: columns of ``drop.csv``, ``partial`` if stopped."""
-    names, tally = study.aspects.names, study.result.tally
-    columns = {"aspect": names, "height_mm": study.result.heights / MM}
-    columns |= row_of(tally, "count=counts p_drop=p p_drop_low=low p_drop_high=high")
-    columns |= row_of(tally, "p_gentle=gentle p_violent=violent p_restitution=restitution")
-    columns["unsettled_share"] = [tally.unsettled_share] * len(names)
-    return tables.frame(columns | ({"partial": [True] * len(names)} if study.result.drops.partial else {}))
-
 
 def document(study: DropStudy) -> dict[str, Any]:
     """Return the drop test as one JSON document; ``traces`` has when and on what each drop was counted."""
-    return {
-        **row_of(study, "part=part.name drops"),
-        **row_of(
-            study.result,
-            "seed launch partial=drops.partial",
-            "unsettled=tally.unsettled unsettled_share=tally.unsettled_share until=aim widest=tally.widest",
-        ),
-        "traces": [
-            {
-                "drop": trace.number,
-                "aspect": _counted_on(study.aspects, trace),
-                **row_of(trace, "counted_s=decided still"),
-            }
-            for trace in study.result.traces
-        ],
-        "aspects": counts(study),
-    }
+    followed = [values(DROP_TRACE_COLUMNS, (study, trace)) for trace in study.result.traces]
+    return values(DROP_TEST_COLUMNS, study) | {"traces": followed, "aspects": study.table()}
 
 
 def remarks(study: DropStudy) -> list[str]:
@@ -83,34 +63,10 @@ def remarks(study: DropStudy) -> list[str]:
     return lines
 
 
-def traces(study: DropStudy) -> Frame:
-    """Return one row a moment of each followed drop: the columns of ``drop_traces.csv``.
-
-    They are the centre of mass over the plane, the quaternion from the file's axes to the plane's, total
-    energy over m g, what happens, and the aspect the drop ends on.
-    """
-    names = "time_s=times x_mm/y_mm/z_mm=positions q_w/q_x/q_y/q_z=attitudes energy_mm=energies"
-    rows = []
-    for trace in study.result.traces:
-        event = np.where(trace.impacts, "impact", "").astype(object)
-        event[0] = "launch"
-        event[-1] = "still" if trace.still else event[-1]
-        count, aspect = len(trace.times), _counted_on(study.aspects, trace)
-        moments = row_of(trace, names)
-        rows.append(
-            {"drop": np.full(count, trace.number), **moments, "event": event, "aspect": [aspect] * count}
-        )
-    return tables.frame({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
-
-
-def _counted_on(aspects: Aspects, trace: DropTrace) -> str:
-    return aspects.names[trace.row] if trace.row >= 0 else NONE
-
-
 def offers(study: DropStudy) -> list[offer.Offer]:
     """Offer the counts of a drop test and, where drops were followed, their motion."""
     offered = [
-        offer.table("drop.csv", counts, study),
+        offer.table("drop.csv", study.table),
         offer.document("drop.json", document, study),
         offer.picture("drop.png", "How often the part was found on each aspect", counts_figure, study),
     ]
@@ -119,7 +75,7 @@ def offers(study: DropStudy) -> list[offer.Offer]:
         title = f"{study.part.name}: drop {trace.number}, {study.result.launch['name']}"
         what = "One drop in stills, and its energy below"
         offered += [
-            offer.table("drop_traces.csv", traces, study),
+            offer.table("drop_traces.csv", study.traces_table),
             offer.picture("drop_trace.png", what, strip, study.part, study.aspects, trace, title),
         ]
     return offered
@@ -141,11 +97,11 @@ def counts_figure(study: DropStudy, ax: "style.Axes | None" = None) -> "style.Fi
     error = 100.0 * np.stack([tally.p - tally.low, tally.high - tally.p])
     axes.bar(places, 100.0 * tally.p, 0.4, color=style.ANSWER, label="drops")
     axes.errorbar(places, 100.0 * tally.p, error, fmt="none", ecolor=style.INK, capsize=4, linewidth=1.0)
-    for place, (name, values) in enumerate(study.rules.items()):
+    for place, (name, chances) in enumerate(study.rules.items()):
         label, colour = style.method(name, place)
         mark_places = places + 0.09 * (place + 1)  # beside the whisker, which stands in the middle
         look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
-        axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
+        axes.plot(mark_places, 100.0 * chances, ls="none", label=label, **look)
     style.named_ticks(axes, places, names, length=3.0)
     style.legend(figure, ax=ax, ncols=min(len(study.rules) + 2, 6))
     return figure
@@ -307,58 +263,22 @@ def still_caption(trace: DropTrace, row: int, names: Sequence[str], gap: float) 
 
 # --- Tosses: each launch of a file, followed from its own state ---
 
-BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side in FACE_NAMES)
-HIDDEN_TOSS_COLUMNS = (
-    "p_low", "p_high", *BY_SIDE, "settled_runs", "time_s", "x_measured_mm", "y_measured_mm",
-)  # fmt: skip
-
-
-def tosses(study: TossStudy) -> Frame:
-    """Return where each toss leads, one row a toss: the columns of ``tosses.csv``."""
-    result, launches, aspects = study.result, study.launches, study.aspects.names
-    count, (low, high) = len(result.faces), study.intervals
-    labels = list(launches.names[:count])
-    whole = all(label.isdecimal() for label in labels)
-    measured: dict[str, Any] = {}
-    if launches.ends is not None and study.off is not None:
-        ends = launches.ends[:count] / MM
-        measured |= {"x_measured_mm": ends[:, 0], "y_measured_mm": ends[:, 1], "off_mm": study.off / MM}
-    if launches.faces is not None:
-        measured["face_up_measured"] = list(launches.faces[:count])
-    return tables.frame(
-        {
-            "toss": np.array([int(label) for label in labels]) if whole else labels,
-            "aspect": [aspects[row] if row >= 0 else NONE for row in result.rows],
-            "face_up": [FACE_NAMES[face] if face >= 0 else NONE for face in result.faces],
-            "p": study.p,
-            "p_low": low,
-            "p_high": high,
-            **row_of(result, "x_mm/y_mm=places half_within_mm=spreads time_s=times"),
-            **row_of(result, f"{'/'.join(BY_SIDE)}=shares settled_runs=settled"),
-            **measured,
-        }
-    )
-
 
 def toss_document(study: TossStudy) -> dict[str, Any]:
     """Return the tosses as one JSON document."""
     agreement, measured = study.agreement, None
     if agreement is not None:
-        measured = row_of(
-            agreement,
-            "tosses told=right_share low high at_release expected sure sure_told=sure_right_share",
-            "median_off_mm",
-        )
+        measured = values(AGREEMENT_COLUMNS, agreement)
     return {
-        **columns.part(study.part),
-        **row_of(study, "launches=launches.source runs=result.runs seed frame_s=launches.frame"),
+        **part_facts.part(study.part),
+        **values(TOSS_FILE_COLUMNS, study),
         "restitution": list(study.surface.restitution),
         "friction": list(study.surface.friction),
         "restitution_scatter": RESTITUTION_DOUBT,
         "friction_scatter": toss_runs.FRICTION_SPREAD,
         "partial": study.result.partial,
         "measured": measured,
-        "tosses": tosses(study),
+        "tosses": study.table(),
     }
 
 
@@ -399,7 +319,7 @@ def toss_summary(study: TossStudy) -> list[str]:
 
 def toss_offers(study: TossStudy) -> list[offer.Offer]:
     """Offer where each toss leads."""
-    offered = [offer.table("tosses.csv", tosses, study), offer.document("tosses.json", toss_document, study)]
+    offered = [offer.table("tosses.csv", study.table), offer.document("tosses.json", toss_document, study)]
     if (ends := study.launches.ends) is not None:
         alt = "Places computed and measured"
         offered.append(offer.picture("tosses.png", alt, _toss_plan, study, ends, study.off))

@@ -9,18 +9,24 @@ import numpy as np
 from feederscrew.arrays import Array, Bools, Floats, Ints, Points, Vector
 from feederscrew.bowl import texts
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Frame, quantities, values
 from feederscrew.geometry.grids import Grid
 from feederscrew.geometry.polygons import centroid, turned
 from feederscrew.heavy import heavy
 from feederscrew.mechanics import floor_balance
 from feederscrew.mechanics.cycle import Cycle
-from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, FloorMotion
+from feederscrew.mechanics.floor_balance import (
+    FLOOR_CYCLE_COLUMNS,
+    FLOOR_LINE_COLUMNS,
+    HOP,
+    MOTION_STATES,
+    FloorMotion,
+)
 from feederscrew.mechanics.track_balance import TrackMotion
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, row_of
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.floor import FloorStudy
+from feederscrew.studies.floor import FLOOR_COLUMNS, FloorStudy
 from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
 
@@ -71,10 +77,10 @@ def instant(motion: Any, posture: Posture, bowl: Bowl) -> dict[str, Any]:
         limit = float(bowl.friction.static * motion.normal_force)
         friction = {"friction_N": float(np.hypot(*motion.friction)), "greatest_friction_N": limit}
     return {
-        **row_of(motion, "normal_force_N"),
+        "normal_force_N": motion.normal_force[()],
         "alignment_acceleration_rad_s2": float(motion.turning) + 0.0,
         "stable_heading_deg": float(np.degrees(floor_balance.stable_heading(posture, bowl))),
-        **row_of(motion, "limiting_friction"),
+        "limiting_friction": motion.limiting_friction[()],
         "acceleration_y_m_s2": drop_rounding(motion.acceleration[1], size),
         "acceleration_z_m_s2": drop_rounding(motion.acceleration[0], size),
         "normal_line_offset_mm": float(along) / MM,
@@ -87,12 +93,10 @@ def instant(motion: Any, posture: Posture, bowl: Bowl) -> dict[str, Any]:
 
 def cycle_columns(motion: FloorMotion, course: Cycle) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
-    forces = "normal_force_N friction_z_N/friction_y_N=friction limiting_friction"
     columns = {
-        **row_of(motion, forces, "acceleration_z_m_s2/acceleration_y_m_s2=acceleration"),
-        "alignment_acceleration_rad_s2": motion.turning + 0.0,
+        **values(FLOOR_CYCLE_COLUMNS, motion),
         "velocity_m_s": course.velocity,
-        **row_of(motion, "normal_line_offset_mm/normal_line_offset_y_mm=offset"),
+        **values(FLOOR_LINE_COLUMNS, motion),
     }
     return samples(motion, course, columns)
 
@@ -111,21 +115,15 @@ def phases(course: Cycle) -> Floats:
 
 def document(study: FloorStudy) -> dict[str, Any]:
     """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print."""
-    posture, bowl = study.posture, study.bowl
-    now, values = instant(study.now, posture, bowl), {}
+    bowl, printed = study.bowl, {}
+    now = instant(study.now, study.posture, bowl)
     if study.printed is not None:
-        values = {"instant": instant(study.printed, posture, bowl)}
-        values["difference"] = difference(values["instant"], now, study.terms)  # type: ignore[attr-defined]
+        printed = {"instant": instant(study.printed, study.posture, bowl)}
+        printed["difference"] = difference(printed["instant"], now, study.terms)  # type: ignore[attr-defined]
     return {
-        **row_of(study, "part=part.name aspect=posture.name lies=posture.lies rolls=posture.rolls"),
-        "heading_deg": float(np.degrees(study.heading)),
-        **row_of(posture, "height_mm drive_offset_mm=offset"),
-        "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
-        **row_of(posture, "turning_inertia_g_mm2"),
-        "as_published": study.printed is not None,
-        "regime": floor_balance.regime(study.cycle.state),
+        **values(FLOOR_COLUMNS, study),
         "instant": now,
-        **values,
+        **printed,
         "mean_velocity_m_s": mean_velocity(study),
         "settled": study.course.settled,
         "cycle": cycle_columns(study.cycle, study.course),
@@ -136,7 +134,7 @@ def document(study: FloorStudy) -> dict[str, Any]:
 def printout(document: Mapping[str, Any], format: str, summary: Callable[..., Frame]) -> Frame:
     """Return what is printed: the cycle as CSV; for people its ``summary``, or what print leaves out."""
     if format == "csv":
-        return tables.frame(document["cycle"])
+        return Frame.of(document["cycle"])
     return document.get("difference", summary(document))
 
 
@@ -164,7 +162,7 @@ def people_table(rows: Mapping[str, Any]) -> Frame:
             return "yes" if value else "no"
         return value if isinstance(value, str) else "never" if np.isinf(value) else f"{value:.5g}"
 
-    return tables.quantities((name, words(value)) for name, value in rows.items())
+    return quantities((name, words(value)) for name, value in rows.items())
 
 
 def difference(published: Mapping[str, Any], complete: Mapping[str, Any], terms: Mapping[str, str]) -> Frame:
@@ -174,7 +172,7 @@ def difference(published: Mapping[str, Any], complete: Mapping[str, Any], terms:
     is_equal = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
     omitted = ["-" if same else term for same, term in zip(is_equal, terms.values())]
     columns = {"quantity": list(terms), "as_published": first, "complete": second}
-    return tables.frame(columns | {"difference": gap, "omitted_term": omitted})
+    return Frame.of(columns | {"difference": gap, "omitted_term": omitted})
 
 
 def remarks(study: FloorStudy) -> list[str]:

@@ -10,9 +10,8 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.headings import Headings
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
+from feederscrew.output import style
 from feederscrew.output.floor import CONTACT, polygon
-from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.track import wall_and_edge
 from feederscrew.part.record import small_part_remarks
 from feederscrew.resting.posture import Posture
@@ -22,32 +21,12 @@ from feederscrew.units import MM
 mpl_ticker = heavy("matplotlib.ticker")
 shading = heavy("feederscrew.output.shading")
 
-HIDDEN_HEADING_COLUMNS = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", "contact_2_y_mm")
 SPARE_COLUMNS = (("straight_wall_share",), ("half_turn_of_deg", "mirror_of_deg"))  # of a table too wide
-
-
-def frame(study: HeadingsStudy) -> Frame:
-    """Return every stable heading of a HeadingsStudy, a row each: the columns of ``headings.csv``."""
-    parts = []
-    for stable in study.headings:
-        degrees = np.append(np.degrees(stable.headings), np.nan)  # the last is of none, -1
-        columns = {
-            "aspect": np.full(len(stable.shares), stable.aspect),
-            "heading_deg": degrees[:-1],
-            "share": stable.shares,
-            "straight_wall_share": stable.straight_shares,
-            "aspect_share": study.chances.get(stable.aspect, np.nan) * np.asarray(stable.shares),
-            **row_of(stable, "length_mm=lengths width_mm=widths overhang_mm=overhangs falls_off"),
-            "half_turn_of_deg": degrees[np.maximum(stable.half_turns, -1)],
-            "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
-        }
-        parts.append(columns | dict(zip(HIDDEN_HEADING_COLUMNS, stable.touching.reshape(-1, 4).T / MM)))
-    return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def document(study: HeadingsStudy) -> dict[str, Any]:
     """Return a HeadingsStudy as the JSON document."""
-    headings, bowl = frame(study), texts(study.bowl.settings)
+    headings, bowl = study.table(), texts(study.bowl.settings)
     return {"part": study.part.name, "answer": study.answer, "headings": headings, "bowl": bowl}
 
 
@@ -69,7 +48,7 @@ def remarks(study: HeadingsStudy) -> list[str]:
 
 def offers(study: HeadingsStudy) -> list[offer.Offer]:
     """Offer the files of a HeadingsStudy."""
-    offered = [offer.document("headings.json", document, study), offer.table("headings.csv", frame, study)]
+    offered = [offer.document("headings.json", document, study), offer.table("headings.csv", study.table)]
     for posture, stable in zip(study.postures, study.headings):
         alt = f"Stable headings of aspect {posture.name} from above"
         title = f"{study.part.name}, aspect {posture.name}: heading, share"

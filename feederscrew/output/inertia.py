@@ -1,57 +1,85 @@
 """Files of ``feeder inertia``."""
 
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from feederscrew.output import columns, tables
+from feederscrew.arrays import Vector
+from feederscrew.columns import Column, ColumnHead, Frame, UnitName, of_records, quantities, values
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, row_of
-from feederscrew.part.density import MATERIALS
-from feederscrew.studies.aspects import InertiaStudy
+from feederscrew.output import part_facts
+from feederscrew.part.density import MATERIAL_COLUMNS, MATERIALS
+from feederscrew.studies.aspects import INERTIA_COLUMNS, InertiaStudy
 
 
 def document(study: InertiaStudy) -> dict[str, Any]:
     """Return everything ``feeder inertia`` says, by names with units; None where a card is silent."""
-    facts, balance = columns.part(study.part), study.balance
+    facts = part_facts.part(study.part)
     warnings = facts.pop("warnings")
-    return facts | {
-        **row_of(
-            balance,
-            "inertia_at_origin_g_mm2 principal_moments_g_mm2=moments principal_axes=axes hull_volume_mm3",
-            "bounding_box_mm=extents bounding_box_corner_mm=corner",
-        ),
-        "warnings": warnings,
-    }
+    return facts | values(INERTIA_COLUMNS, study) | {"warnings": warnings}
 
 
 def materials() -> Frame:
     """Return the materials of parts: ``material``, ``density_g_cm3``, ``aliases``, ``source``."""
-    table = tables.table_of(MATERIALS, "material=name density_g_cm3 aliases source")
-    return tables.frame(table | {"aliases": [", ".join(names) for names in table["aliases"]]})
+    return of_records(MATERIAL_COLUMNS, MATERIALS)
+
+
+TENSOR = ("xx", "xy", "xz", "yy", "yz", "zz")
+ROUNDING = 1e-8  # [1] of the largest number of a vector or tensor: less is the file's, and 0
+
+
+def _cells(
+    name: str, letters: Sequence[str], of: Callable[[InertiaStudy], Any], unit: UnitName
+) -> list[Column[InertiaStudy]]:
+    """A column for each number of a vector or of a symmetric tensor; NaN where a card is silent."""
+
+    def cell(study: InertiaStudy, place: int) -> float:
+        numbers = of(study)
+        if numbers is None:
+            return np.nan
+        clean = np.where(np.abs(numbers) <= ROUNDING * np.abs(numbers).max(), 0.0, numbers)
+        return float((clean[np.triu_indices(3)] if clean.ndim == 2 else clean)[place])
+
+    return [
+        Column(name.format(letter), partial(cell, place=place), unit) for place, letter in enumerate(letters)
+    ]
+
+
+QUANTITIES: tuple[Column[InertiaStudy], ...] = (  # a row each
+    Column("density_g_cm3", lambda study: study.part.density, "g/cm3"),
+    Column("mass_g", lambda study: study.part.mass, "g"),
+    Column("volume_mm3", lambda study: study.part.volume, "mm3"),
+    Column("hull_volume_mm3", lambda study: study.balance.hull_volume, "mm3"),
+    *_cells("bounding_box_{}_mm", "xyz", lambda study: study.balance.extents, "mm"),
+    *_cells("bounding_box_corner_{}_mm", "xyz", lambda study: study.balance.corner, "mm"),
+    *_cells("centre_of_mass_{}_mm", "xyz", lambda study: study.part.centre_of_mass, "mm"),
+    *_cells("inertia_{}_g_mm2", TENSOR, lambda study: study.part.inertia, "g mm2"),
+    *_cells("inertia_at_origin_{}_g_mm2", TENSOR, lambda study: study.balance.inertia_at_origin, "g mm2"),
+    *_cells("principal_moment_{}_g_mm2", "123", lambda study: study.balance.moments, "g mm2"),
+    *_cells("principal_axis_1_{}", "xyz", lambda study: _axis(study, 0), ""),
+    *_cells("principal_axis_2_{}", "xyz", lambda study: _axis(study, 1), ""),
+    *_cells("principal_axis_3_{}", "xyz", lambda study: _axis(study, 2), ""),
+)
+
+
+def _axis(study: InertiaStudy, place: int) -> Vector:
+    return study.balance.axes[place]
 
 
 def rows(study: InertiaStudy) -> Frame:
     """Return the numbers of a part, one a row: ``quantity`` and ``value``; NaN where a card is silent."""
-    facts = document(study)
-    listed = [(name, facts[name]) for name in ("density_g_cm3", "mass_g", "volume_mm3", "hull_volume_mm3")]
-    tensor = ("xx", "xy", "xz", "yy", "yz", "zz")
-    for name, letters, values in (
-        ("bounding_box_{}_mm", "xyz", facts["bounding_box_mm"]),
-        ("bounding_box_corner_{}_mm", "xyz", facts["bounding_box_corner_mm"]),
-        ("centre_of_mass_{}_mm", "xyz", facts["centre_of_mass_mm"]),
-        ("inertia_{}_g_mm2", tensor, facts["inertia_g_mm2"]),
-        ("inertia_at_origin_{}_g_mm2", tensor, facts["inertia_at_origin_g_mm2"]),
-        ("principal_moment_{}_g_mm2", "123", facts["principal_moments_g_mm2"]),
-        *((f"principal_axis_{k}_{{}}", "xyz", axis) for k, axis in zip("123", facts["principal_axes"])),
-    ):
-        cells = np.full(len(letters), np.nan)
-        if values is not None:  # rounding of the file as 0
-            clean = np.where(np.abs(values) <= 1e-8 * np.abs(values).max(), 0.0, values)
-            cells = clean[np.triu_indices(3)] if clean.ndim == 2 else clean
-        listed += [(name.format(letter), value) for letter, value in zip(letters, cells)]
-    quantities, numbers = zip(*listed)
-    return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in numbers]})
+    numbers = values(QUANTITIES, study)
+    listed = {"quantity": list(numbers), "value": [np.nan if v is None else v for v in numbers.values()]}
+    return Frame.of(listed, {"value": ColumnHead("value", is_mixed=True)})
+
+
+def facts(study: InertiaStudy, names: Sequence[str]) -> Frame:
+    """Return some numbers of a part for people: quantities with their units, and values."""
+    chosen = [column for column in QUANTITIES if column.name in names]
+    numbers = values(chosen, study).values()
+    return quantities((column.head.title, value) for column, value in zip(chosen, numbers))
 
 
 def offers(study: InertiaStudy, format: str = "csv") -> list[offer.Offer]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl.verified import Verified
+from feederscrew.columns import Frame
 from feederscrew.conveying.hop import hop
 from feederscrew.heavy import heavy
 from feederscrew.machine import drive_sizing
@@ -16,7 +17,7 @@ from feederscrew.machine.springs import LeafSet, Rocking, mean_pull
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import marking, proof, solidbowl, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output.tables import row_of
 from feederscrew.studies.bowl import MachineSheet, Order
 from feederscrew.units import DEG, LITRE, MM, MM_S, PER_MINUTE
 
@@ -154,7 +155,7 @@ def _order_entries(study: MachineSheet, wish: Order) -> dict[str, Any]:
 
 def _angles(study: MachineSheet) -> Frame:
     columns = row_of(study, "radius_mm=radii vibration_angle_deg=angles")
-    return tables.frame(columns | {"to_the_track_deg": (study.angles - study.bowl.track.climb) / DEG})
+    return Frame.of(columns | {"to_the_track_deg": (study.angles - study.bowl.track.climb) / DEG})
 
 
 def leaf_sets(sets: Sequence[LeafSet]) -> Frame:
@@ -179,12 +180,12 @@ def emptying(study: MachineSheet) -> Frame:
     if study.order is not None:
         columns["rate_per_minute"] = study.rates(study.velocities) / PER_MINUTE
         columns["rate_controlled_per_minute"] = study.rates(study.controlled) / PER_MINUTE
-    return tables.frame({name: np.asarray(values) for name, values in columns.items()})
+    return Frame.of({name: np.asarray(values) for name, values in columns.items()})
 
 
 def summary(study: MachineSheet, trial: Verified | None = None) -> Frame:
     """Return the record as a frame for people: the quotation sheet, with what was tried, or the machine."""
-    return tables.of_rows(sheets.quotation(study, trial), ("quantity", "value"))
+    return Frame.of_rows(sheets.quotation(study, trial), ("quantity", "value"))
 
 
 def measured_summary(condition: MeasuredMachine) -> Frame:
@@ -201,7 +202,7 @@ def measured_summary(condition: MeasuredMachine) -> Frame:
         rows.append((name, f"{wanted:.4g}", "-" if now is None or math.isnan(now) else f"{now:.4g}"))
     rows.append(("natural frequency, as drawn [Hz]", f"{condition.natural_frequency:.4g}", ""))
     rows += [("likely cause" if k == 0 else "", cause, "") for k, cause in enumerate(condition.causes)]
-    return tables.of_cells(("quantity", "should be", "measured"), rows)
+    return Frame.of_cells(("quantity", "should be", "measured"), rows)
 
 
 def measured_document(condition: MeasuredMachine) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
+from feederscrew.columns import Frame
 from feederscrew.heavy import heavy
 from feederscrew.output import tables
 
@@ -52,7 +53,7 @@ def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any)
 
     def view() -> Any:
         content = make(*arguments, **keywords)
-        return tables.frame(content) if isinstance(content, dict) else content
+        return Frame.of(content) if isinstance(content, dict) else content
 
     return Offer(name, lambda: tables.text(view(), "csv"), view=view)
 

@@ -1,20 +1,25 @@
 """Files of ``feeder drop --plate``."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from feederscrew.arrays import Floats
 from feederscrew.bowl import Bowl
+from feederscrew.columns import Frame, of_arrays, values
 from feederscrew.dropping.plate_test import MIN_TRANSITIONS, Occupancy, PlateResult
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, row_of
-from feederscrew.resting.aspects import Aspects
+from feederscrew.output import style
 from feederscrew.resting.rules import registry
-from feederscrew.studies.drop import PlateStudy
+from feederscrew.studies.drop import (
+    PLATE_COLUMNS,
+    PLATE_RATE_COLUMNS,
+    PLATE_TEST_COLUMNS,
+    PlateOf,
+    PlateStudy,
+)
 from feederscrew.units import MM, MM_S, counted
 
 if TYPE_CHECKING:
@@ -24,15 +29,8 @@ if TYPE_CHECKING:
 matplotlib = heavy("matplotlib")
 
 SURFACE = ("restitution", "friction")  # of a launch: the plate's own
-HIDDEN_PLATE_COLUMNS = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
-VELOCITY = "velocity_mm_s/velocity_low_mm_s/velocity_high_mm_s"
 COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE_COLOURS)
 LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
-
-
-def plates(study: PlateStudy) -> Frame:
-    """Return how often parts lie on each aspect of each plate, and how fast they travel: ``plate.csv``."""
-    return _for_each_plate(study, _plate)
 
 
 def spare(frame: Frame) -> list[tuple[str, ...]]:
@@ -40,37 +38,6 @@ def spare(frame: Frame) -> list[tuple[str, ...]]:
     limit = ("p_limit", "p_limit_low", "p_limit_high")
     groups = [limit, ("height_mm",), ("throw_number",), ("p_start",)]
     return groups if np.isnan(frame["p_limit"]).all() else groups[1:] + groups[:1]
-
-
-def rates(study: PlateStudy) -> Frame:
-    """Return the transitions seen and their rate, a row a plate and pair of aspects: ``plate_rates.csv``."""
-    return _for_each_plate(study, _rates)
-
-
-def course(study: PlateStudy) -> Frame:
-    """Return the share of the parts on each aspect over time: ``plate_time.csv``."""
-
-    def columns(aspects: Aspects, result: PlateResult) -> dict[str, Any]:
-        shares, count = result.occupancy.course, len(aspects.names)
-        looks = np.unique(np.linspace(0, len(shares) - 1, 101).astype(int))  # so many rows an aspect at most
-        time = np.repeat(looks * result.seconds / (len(shares) - 1), count)
-        return {"time_s": time, "aspect": np.tile(aspects.names, len(looks)), "p": shares[looks].ravel()}
-
-    return _for_each_plate(study, columns)
-
-
-def drives(study: PlateStudy) -> Frame:
-    """Return how fast parts travel on each plate, and how much was seen: ``plate_drives.csv``."""
-
-    def columns(aspects: Aspects, result: PlateResult) -> dict[str, Any]:
-        row = {
-            **row_of(result, "drops=parts seconds unsettled transitions"),
-            "steady": "no" if result.occupancy.changing.any() else "yes",
-            **row_of(result, f"{VELOCITY}=occupancy.velocity"),
-        }
-        return {name: [value] for name, value in row.items()}
-
-    return _for_each_plate(study, columns)
 
 
 def summary(study: PlateStudy) -> Iterator[str]:
@@ -87,19 +54,9 @@ def _travels(result: PlateResult, digits: int) -> str:
 def document(study: PlateStudy) -> dict[str, Any]:
     """Return the test as one JSON document."""
     listed = [
-        {
-            "bowl": name,
-            **row_of(result.bowl.drive, "amplitude_mm frequency_Hz vibration_angle_deg"),
-            "throw_number": result.throw_number,
-            **{name: result.launch[name] for name in SURFACE},
-            **row_of(result, "drops=parts lost unsettled seconds"),
-            "steady": not result.occupancy.changing.any(),
-            "changing": _changing_aspects(study.aspects, result),
-            **row_of(result, f"transitions_seen=transitions {VELOCITY}=occupancy.velocity"),
-            "aspects": tables.frame(_plate(study.aspects, result)),
-            "rates": tables.frame(_rates(study.aspects, result)),
-        }
-        for result, name in zip(study.plates, study.names)
+        values(PLATE_TEST_COLUMNS, plate)
+        | {"aspects": of_arrays(PLATE_COLUMNS, plate), "rates": of_arrays(PLATE_RATE_COLUMNS, plate)}
+        for plate in study.each
     ]
     return {
         "part": study.part.name,
@@ -113,9 +70,9 @@ def document(study: PlateStudy) -> dict[str, Any]:
 def remarks(study: PlateStudy) -> list[str]:
     """Return what a user must know of a test, a line each."""
     listed = []
-    for plate, name in zip(study.plates, study.names):
+    for _, plate, name in study.each:
         where = _where(plate, name)
-        if changing := _changing_aspects(study.aspects, plate):
+        if changing := PlateOf(study.aspects, plate, name).changing():
             share = f"the share of {', '.join(changing)}"
             listed.append(f"{where}: {share} still changes; give a longer `seconds`")
         if plate.unsettled:
@@ -142,51 +99,14 @@ def _where(result: PlateResult, name: str) -> str:
     return f"{name} at {result.bowl.drive.amplitude / MM:.4g} mm"
 
 
-def _changing_aspects(aspects: Aspects, plate: PlateResult) -> list[str]:
-    return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
-
-
-def _for_each_plate(study: PlateStudy, columns: Callable[[Aspects, PlateResult], dict[str, Any]]) -> Frame:
-    """The columns of all plates, headed by which plate; once the user stopped, which is not whole."""
-    parts = []
-    for result, name in zip(study.plates, study.names):
-        own = columns(study.aspects, result)
-        head = {"bowl": name, **row_of(result, "amplitude_mm=bowl.drive.amplitude throw_number")}
-        if study.partial:
-            own["partial"] = [result.partial]
-        count = max(map(len, own.values()))
-        own = {key: values if len(values) == count else [*values] * count for key, values in own.items()}
-        parts.append({key: [value] * count for key, value in head.items()} | own)
-    return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
-
-
-def _plate(aspects: Aspects, result: PlateResult) -> dict[str, Any]:
-    occupancy = result.occupancy
-    return {
-        **row_of(aspects, "aspect=names height_mm=heights"),
-        **row_of(occupancy, "p_start=start p_plate=plate p_plate_low=plate_low p_plate_high=plate_high"),
-        **row_of(occupancy, "p_limit=limit p_limit_low=limit_low p_limit_high=limit_high"),
-        **row_of(occupancy, f"{VELOCITY}=velocities"),
-    }
-
-
-def _rates(aspects: Aspects, result: PlateResult) -> dict[str, Any]:
-    occupancy, names = result.occupancy, np.array(aspects.names)
-    before, after = np.nonzero(np.ones(occupancy.counts.shape, bool) & (occupancy.times > 0.0)[:, None])
-    columns = {"from": names[before], "to": names[after], "count": occupancy.counts[before, after]}
-    for end in ("", "_low", "_high"):
-        columns[f"rate{end}_per_s"] = getattr(occupancy, f"rates{end}")[before, after]
-    return columns
-
-
 def offers(study: PlateStudy) -> list[offer.Offer]:
     """Offer the tables of a dynamic bowl test, its document and its chart."""
     draw = _plate_figure if len(study.plates) == 1 else _trend  # over time, or over the throw number
     return [
-        offer.table("plate.csv", plates, study),
-        offer.table("plate_rates.csv", rates, study),
-        offer.table("plate_time.csv", course, study),
-        offer.table("plate_drives.csv", drives, study),
+        offer.table("plate.csv", study.table),
+        offer.table("plate_rates.csv", study.rates_table),
+        offer.table("plate_time.csv", study.course_table),
+        offer.table("plate_drives.csv", study.drives_table),
         offer.document("plate.json", document, study),
         offer.picture("plate.png", "Shares of the aspects on the plate", draw, study),
     ]

@@ -7,59 +7,32 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
-from feederscrew.conveying.hop import hop
-from feederscrew.output import columns, tables
+from feederscrew.columns import Frame, quantities, values
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, row_of
+from feederscrew.output import part_facts, tables
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
-from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import entering
-from feederscrew.studies.rate import RateStudy
+from feederscrew.studies.rate import RATE_COLUMNS, RateStudy
 from feederscrew.studies.tune import TuneStudy
-from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
+from feederscrew.units import MM, PER_MINUTE
 
+TOLD = {  # columns that stand in rows of the printed table with words of their own
+    "parts_per_minute", "aspect", "heading_deg", "velocity_mm_s", "offered_per_minute", "efficiency",
+    "purity", "length_mm", "gap_mm", "pitch_mm", "p_orientation", "answer", "passes_devices", "fill",
+    "jams_per_hour", "clearing_s",
+}  # fmt: skip
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 
 def document(study: RateStudy) -> dict[str, Any]:
     """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
-    chain, rule = study.rate, study.rule
-    orientations, row = chain.orientations, chain.row
     warnings = (*study.aspects.warnings, *study.of_size, *_jam_remarks(study), *_spacing_remarks(study))
     return {
-        **columns.part(study.part, warnings),
-        **row_of(chain, "parts_per_minute..=parts"),
-        "aspect": orientations.aspects[row],
-        "heading_deg": orientations.headings[row] / DEG,
-        **row_of(chain, "offered_per_minute..=offered efficiency purity velocity_mm_s..=velocity"),
-        "length_mm": orientations.lengths[row] / MM,
-        **row_of(chain, "gap_mm pitch_mm"),
-        "rule": rule,
-        "answer": study.answer,
-        **row_of(chain, "p_orientation..=probability"),
-        "p_aspect": chain.probability.value / orientations.heading_shares[row],
-        "p_heading": orientations.heading_shares[row],
-        **row_of(chain, "passes_devices=through fill well_oriented_of_leaving=purity"),
-        "jams_per_hour": 3600.0 * chain.jams,
-        "clearing_s": chain.clearing,
-        "quasi_static": [device.kind for device in study.devices if device.turns],
-        "rolls_back": [orientation.name for orientation in orientations.lying if orientation.may_roll_back],
-        "orientations": _orientations(orientations, rule),
+        **part_facts.part(study.part, warnings),
+        **values(RATE_COLUMNS, study),
+        "orientations": study.orientations_table(),
     }
-
-
-def _orientations(orientations: Orientations, rule: str) -> Frame:
-    """What each station does with each orientation; ``leaves_as`` is None where it is returned."""
-    leaves = (
-        orientations.states[int(leaving.argmax())].name if leaving.any() else None
-        for leaving in orientations.leaving[: len(orientations.aspects)]
-    )
-    columns = row_of(orientations, "aspect=aspects heading_deg=headings length_mm=lengths width_mm=widths")
-    columns |= {f"p_{rule}": orientations.rules[rule], **row_of(orientations, "margin_mm fate=fates")}
-    columns |= {"leaves_as": leaves, **dict(zip(orientations.names, orientations.passes.T))}
-    columns["passes"] = orientations.through
-    return tables.frame(columns)
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -91,7 +64,12 @@ def summary(document: Mapping[str, Any]) -> Frame:
         rows.append(("jams an hour", f"{d['jams_per_hour']:.4g}"))
     if d["clearing_s"]:
         rows.append(("time a part swept off blocks the track [s]", f"{d['clearing_s']:.3g}"))
-    return tables.quantities(rows)
+    rows += [
+        tables.row_for_people(column, d)
+        for column in RATE_COLUMNS
+        if not column.hidden and column.name not in TOLD
+    ]
+    return quantities(rows)
 
 
 def remarks(study: RateStudy) -> list[str]:
@@ -180,7 +158,7 @@ def offers(study: RateStudy) -> list[offer.Offer]:
     """Offer the files of a RateStudy, as a list of Offer."""
     return [
         offer.document("rate.json", document, study),
-        offer.table("orientations.csv", _orientations, study.rate.orientations, study.rule),
+        offer.table("orientations.csv", study.orientations_table),
     ]
 
 
@@ -191,38 +169,16 @@ TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
 
 def tune_document(study: TuneStudy) -> dict[str, Any]:
     """Return a TuneStudy as the JSON document."""
-    return columns.part(study.part, study.aspects.warnings) | {
+    return part_facts.part(study.part, study.aspects.warnings) | {
         "target_per_minute": study.target / PER_MINUTE,
         "target_met": TARGET_FRICTION[study.worst],
-        "settings": _settings(study),
+        "settings": study.table(),
     }
-
-
-def _settings(study: TuneStudy) -> Frame:
-    rows = []
-    for tuned in study.settings:
-        answer = tuned.solution.answer
-        per_minute = tuned.solution.parts_per_metre / PER_MINUTE  # for each m/s of velocity
-        rows.append(
-            {
-                **row_of(tuned.solution, "key=key.name value=number unit=key.unit"),
-                "parts_per_minute": tuned.velocity.value * per_minute,
-                "parts_per_minute_low": tuned.velocity.low * per_minute,
-                "parts_per_minute_high": tuned.velocity.high * per_minute,
-                **row_of(answer, "velocity_mm_s regime throw_number"),
-                **row_of(hop(tuned.driven), "hop_height_mm=height hop_flight_mm=flight"),
-                "hardest_impact_mm_s": answer.hardest_impact / MM_S,
-                **{f"margin_{name}": answer.margins[name] for name in ("forward", "backward", "hop")},
-                "several": tuned.several,
-                "tips_over": " ".join(tuned.over) or None,
-            }
-        )
-    return tables.of_rows(rows)
 
 
 def tune_printed(study: TuneStudy, format: str) -> Frame:
     """Return what a format prints: every column as CSV, for people no more than a terminal holds."""
-    frame = _settings(study)
+    frame = study.table()
     if format == "csv":
         return frame
     target = f"{study.target / PER_MINUTE:.6g}/min {TARGET_FRICTION[study.worst].replace(' the ', ' ')}"
@@ -238,7 +194,7 @@ def tune_printed(study: TuneStudy, format: str) -> Frame:
     for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop")):
         texts = ("-" if math.isnan(value) else f"{value:.2f}" for value in frame[f"margin_{name}"])
         table[f"to {short}"] = [text.rjust(len(f"to {short}")) for text in texts]  # right under its heading
-    return tables.frame(table)
+    return Frame.of(table)
 
 
 def tune_remarks(study: TuneStudy) -> list[str]:
@@ -259,5 +215,5 @@ def tune_offers(study: TuneStudy) -> list[offer.Offer]:
     """Offer the files of a TuneStudy, as a list of Offer."""
     return [
         offer.document("tune.json", tune_document, study),
-        offer.table("tune.csv", _settings, study),
+        offer.table("tune.csv", study.table),
     ]

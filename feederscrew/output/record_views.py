@@ -20,13 +20,14 @@ from feederscrew import bowl as bowls
 from feederscrew import check
 from feederscrew.arrays import Array, Floats
 from feederscrew.bowl import Bowl
+from feederscrew.columns import Frame
 from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import MOTION_STATES
 from feederscrew.output import offers, style, tables
-from feederscrew.output.columns import conditions
 from feederscrew.output.folder import ResultFolder, safe_name
 from feederscrew.output.offers import Offer
+from feederscrew.output.part_facts import conditions
 from feederscrew.part.record import Part
 from feederscrew.studies.arguments import settings_of
 from feederscrew.units import DEGREE, GRAM, MINUTE, MM, counted, listed, printable
@@ -342,7 +343,7 @@ def frame(record: object, name: str | None = None) -> "DataFrame":
         columns = {k: v for k, v in numbers.items() if not _single(v) and len(v) == rows}
     else:
         columns = {name: [value] for name, value in numbers.items() if _single(value)}
-    return tables.data_frame(tables.frame(columns))
+    return tables.data_frame(Frame.of(columns))
 
 
 def row(record: object) -> "DataFrame":
@@ -351,7 +352,7 @@ def row(record: object) -> "DataFrame":
     Of a record without such a document it is its table.
     """
     numbers = _document_numbers(record)
-    return tables.data_frame(tables.frame({k: [v] for k, v in numbers.items()})) if numbers else frame(record)
+    return tables.data_frame(Frame.of({k: [v] for k, v in numbers.items()})) if numbers else frame(record)
 
 
 def _document_numbers(record: object) -> dict[str, Any]:
@@ -447,7 +448,7 @@ def html(record: object) -> str:
         # the keys that somebody gave, with where they come from; all of them where none was
         own = [setting for setting in record.settings if setting.is_own] or record.settings
         cells = ((setting.key.name, setting.text, setting.origin) for setting in own)
-        table = tables.data_frame(tables.of_cells(("key", "value", "from"), cells))
+        table = tables.data_frame(Frame.of_cells(("key", "value", "from"), cells))
     else:
         table = frame(record)
     table = table.map(lambda cell: printable(cell) if isinstance(cell, str) else cell)

@@ -16,6 +16,7 @@ from feederscrew import __version__
 from feederscrew import bowl as bowls
 from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column, Frame, of_arrays
 from feederscrew.conveying.answer import UnsteadyMotion
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import HOP
@@ -40,7 +41,6 @@ from feederscrew.output import rate as rate_output
 from feederscrew.output import slide as slide_output
 from feederscrew.output import tooling as tooling_output
 from feederscrew.output import track as track_output
-from feederscrew.output.columns import UJ
 from feederscrew.output.folder import LIBRARIES, ResultFolder
 from feederscrew.output.offers import Offer, by_name
 from feederscrew.output.page.as_html import NOTHING, SHORT, html
@@ -68,6 +68,7 @@ from feederscrew.output.trial import tables as trial_tables
 from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.rates.well_oriented import Rate, fed
+from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
 from feederscrew.tooling.orientations import Orientation
@@ -80,11 +81,10 @@ PART_FACTS = (  # rows of the inertia that the chapter on the part shows
     "centre_of_mass_x_mm", "centre_of_mass_y_mm", "centre_of_mass_z_mm",
     "principal_moment_1_g_mm2", "principal_moment_2_g_mm2", "principal_moment_3_g_mm2",
 )  # fmt: skip
-HEADINGS = {  # columns of the table, and their names here
-    "aspect": "aspect", "heading_deg": "heading_deg", "share": "p_of this aspect",
-    "aspect_share": "p_of all drops", "length_mm": "length_mm", "width_mm": "width_mm",
-    "overhang_mm": "overhang_mm", "falls_off": "falls off",
-}  # fmt: skip
+HEADINGS = (  # columns of the table of headings
+    "aspect", "heading_deg", "share", "aspect_share", "length_mm", "width_mm", "overhang_mm", "falls_off",
+)  # fmt: skip
+SHARES = {"share": "of this aspect", "aspect_share": "of all drops"}  # words above two of them
 WORDS = tables.REGIME_WORDS | {Regime.STICK: "sticks, does not travel"}  # of a regime
 METHOD_LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
@@ -127,27 +127,22 @@ BESIDE = "report/"  # folder of the pictures, beside the text
 def the_part(case: ReportStudy) -> Chapter:
     """Mass properties and warnings."""
     part = case.part
-    facts = tables.quantities(
-        (tables.title(row["quantity"]), row["value"])
-        for row in inertia.rows(case.inertia).rows()
-        if row["quantity"] in PART_FACTS
-    )
     facets = "a part card: published data, no shape" if part.faces is None else f"{len(part.faces)} facets"
     lead = Text(f"{part.source}: {facets}, lengths in {part.units}. Material: {part.material}.")
-    return Chapter((lead, Table(facts)), warnings=tuple(part.warnings))
+    return Chapter((lead, Table(inertia.facts(case.inertia, PART_FACTS))), warnings=tuple(part.warnings))
 
 
 def aspects(case: ReportStudy) -> Chapter:
     """Views, tables and chart of the aspects: one table of shapes and heights, one of probabilities."""
     part, study = case.part, case.resting
-    table = aspects_output.aspects(study)
+    table = study.table()
     views: list[Block] = list(aspect_views(part, study))
     if part.vertices is not None:
         drawn = by_name(aspects_output.offers(study))["aspects.png"]
         views.insert(1, _picture(drawn, printed=True))
         views += _notes(aspects_output.remarks(study))
     straight = () if np.isfinite(table["rolling_circle_mm"]).any() else ("rolling_circle_mm",)
-    columns = table.without((*aspects_output.NORMALS, *straight))
+    columns = table.without(("normal_x", "normal_y", "normal_z", *straight))
     chances = [name for name in columns if name.startswith("p_")]
     shapes = Table(columns.without(chances)), Table(columns.only(["aspect", *chances]))
     # which aspect, and how likely: the recommended answer with its interval; for a card, what its rules span
@@ -209,20 +204,21 @@ def quaternion(axes: Floats) -> list[float]:
     return [short(q) for q in Rotation.from_matrix(np.array(axes)).as_quat(canonical=True)]
 
 
+TIPPING_COLUMNS: tuple[Column[Aspects], ...] = (
+    Column("aspect", lambda aspects: aspects.names),
+    Column("p_quasistatic", lambda aspects: aspects.probabilities["quasistatic"], "share", "quasistatic"),
+    Column("lowest_lift_mm", lambda aspects: np.asarray(aspects.barriers), "mm"),
+    Column("energy_uJ", lambda aspects: np.asarray(aspects.barrier_energies), "uJ"),
+    Column("tilts_over_at_deg", lambda aspects: np.asarray(aspects.tip_angles), "deg"),
+)
+
+
 def tips(case: ReportStudy) -> Chapter:
     """The tipping graph, from exact tumbling."""
     study, sides, ways = case.resting, case.resting.aspects, case.resting.transitions
     rows = np.flatnonzero(sides.stable)[: aspects_output.MOST_GRAPH_ASPECTS]
     shares = np.where(sides.stable, sides.probabilities["quasistatic"], np.nan)
-    table = tables.frame(
-        {
-            "aspect": [sides.names[row] for row in rows],
-            "p_quasistatic": shares[rows],
-            "lowest_lift_mm": np.asarray(sides.barriers)[rows] / MM,
-            "energy_uJ": np.asarray(sides.barrier_energies)[rows] / UJ,
-            "tilts_over_at_deg": np.degrees(np.asarray(sides.tip_angles)[rows]),
-        }
-    )
+    table = of_arrays(TIPPING_COLUMNS, sides).at(rows)
     lead = Text(
         "How firmly each aspect holds: the least height by which its centre of mass must be lifted "
         "before the part tips over an edge, into an equal face too, what energy that is, and the tilt "
@@ -240,12 +236,12 @@ def tips(case: ReportStudy) -> Chapter:
 def headings(case: ReportStudy) -> Chapter:
     """How the part lies along the wall."""
     study = case.headings
-    result = headings_output.frame(study)
+    result = study.table()
     lead = Text(
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."
     )
-    table = Table(tables.frame({title: result[name] for name, title in HEADINGS.items()}))
+    table = Table(result.only(HEADINGS).with_headings(SHARES))
     pictures = _pictures_of(headings_output.offers(study.only(case.aspect)), "headings")
     return Chapter((lead, table, *pictures), warnings=tuple(headings_output.remarks(study)))
 
@@ -290,11 +286,9 @@ def rate(case: ReportStudy) -> Chapter:
         "restitution where the part hops, and the interval of the shares. The second table has what the "
         "track and each device do with each orientation."
     )
-    # what each station lets pass as a share, which people read in percent; sizes stand in the chapter before
-    frame, stations = d["orientations"], study.rate.orientations.names
+    frame = d["orientations"]  # sizes stand in the chapter before
     empty = () if np.isfinite(frame["margin_mm"]).any() else ("margin_mm",)
-    frame = frame.without(("length_mm", "width_mm", *empty))
-    passing = tables.frame({f"p_{name}" if name in stations else name: frame[name] for name in frame})
+    passing = frame.without(("length_mm", "width_mm", *empty))
     what = f"{d['aspect']} at {d['heading_deg']:.3g} deg, {percent(d['p_orientation'])} % of drops"
     if d.get("verified") and d["verified"]["parts_per_minute"] == d["parts_per_minute"]:
         what = f"as its trial showed; the rule says {_short(d['parts_per_minute_static'])}; {what}"
@@ -511,7 +505,7 @@ def bowl(case: ReportStudy) -> Chapter | None:
         machine.summary(sheet),
         machine.leaf_sets(sheet.changes),
         machine.leaf_sets(sheet.sets),
-        tables.frame({renamed.get(name, name): column for name, column in emptying.items()}),
+        Frame.of({renamed.get(name, name): column for name, column in emptying.items()}),
     )
     if sheet.order is None:
         lead = "The springs, the tuning and the drift of the machine of the bowl file."
@@ -536,7 +530,7 @@ def bowl(case: ReportStudy) -> Chapter | None:
 
 def how_to_repeat(case: ReportStudy) -> Chapter:
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
-    hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
+    hashes = Frame.of({"input": list(case.inputs), "sha256": list(case.inputs.values())})
     versions = {"feeder": __version__, "python": platform.python_version()}
     versions |= {name: metadata.version(name) for name in LIBRARIES}
     usual = {setting.key.name: setting.text for setting in bowls.settings()}
@@ -561,7 +555,7 @@ def how_to_repeat(case: ReportStudy) -> Chapter:
             *values,
             Text("A key that is not listed has its default (feeder config show)."),
             Text("The aspects to six digits, as feeder aspects writes them."),
-            CsvSheet("aspects.csv", tables.text(aspects_output.aspects(case.resting), "csv")),
+            CsvSheet("aspects.csv", tables.text(case.resting.table(), "csv")),
         ),
     )
 

@@ -8,12 +8,13 @@ import numpy as np
 
 from feederscrew.arrays import Floats
 from feederscrew.bowl import texts
-from feederscrew.bowl.reading import Setting
+from feederscrew.bowl.reading import SETTING_COLUMNS, Setting
+from feederscrew.columns import Frame, of_records
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.limits import Regime
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, regime_words
+from feederscrew.output import style
+from feederscrew.output.tables import regime_words
 from feederscrew.studies.slide import SlideMap, SlideStudy
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def _cells(slides: Sequence[SlideMap]) -> Frame:
         columns = slide_map.grid.columns()
         count = len(columns["regime"])
         parts.append({"beta_deg": np.full(count, np.degrees(slide_map.beta)), **columns})
-    return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+    return Frame.of({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def summary(slides: Sequence[SlideMap]) -> Frame:
@@ -84,7 +85,7 @@ def summary(slides: Sequence[SlideMap]) -> Frame:
         for share in one_map.grid.shares().values():
             cells.append("< 1 %" if 0.0 < share < 0.005 else f"{100 * share:.0f} %")
         columns[f"beta = {np.degrees(one_map.beta):.6g} deg"] = cells
-    return tables.frame(columns)
+    return Frame.of(columns)
 
 
 def document(study: SlideStudy) -> dict[str, Any]:
@@ -128,8 +129,7 @@ def remarks(study: SlideStudy) -> list[str]:
 
 def settings(bowl_settings: Sequence[Setting]) -> Frame:
     """Return the bowl settings and where each came from, as a frame."""
-    fields = "key=key.name value=text from=origin lowest=key.lowest highest=key.highest meaning=key.meaning"
-    return tables.table_of(bowl_settings, fields)
+    return of_records(SETTING_COLUMNS, bowl_settings)
 
 
 def offers(study: SlideStudy) -> list[offer.Offer]:

@@ -14,6 +14,10 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.arrays import Array
+from feederscrew.columns import Column as DeclaredColumn
+from feederscrew.columns import ColumnHead
+from feederscrew.columns import Frame as Frame
+from feederscrew.columns import quantities as quantities
 from feederscrew.mechanics.limits import Regime
 
 if TYPE_CHECKING:
@@ -47,51 +51,7 @@ HEADING_ZERO = (
     "travel (where it lies below it: the longest side of the outline lies along the track)"
 )
 
-Column = Array | Sequence[Any]  # of a Frame
-Columns = dict[str, list[str]]  # cells of one width by the name of the column
-
-
-class Frame(dict[str, Any]):
-    """A table: equally long columns by name, in their order; in a document, a list of rows.
-
-    A column is an array where all its cells are numbers or all are true or false, else a list. A DataFrame
-    does the same; importing pandas takes longer than most answers.
-    """
-
-    def rows(self) -> list[dict[str, Any]]:
-        """Return the rows, each a dict of cells by column."""
-        return [dict(zip(self, cells)) for cells in zip(*self.values())]
-
-    def only(self, names: Iterable[str]) -> "Frame":
-        """Return a table of these columns, in this order."""
-        return Frame({name: self[name] for name in names})
-
-    def without(self, names: Iterable[str]) -> "Frame":
-        """Return a table of all columns but these."""
-        left_out = set(names)
-        return Frame({name: column for name, column in self.items() if name not in left_out})
-
-
-def frame(columns: Mapping[str, Any]) -> Frame:
-    """Return a table of columns by name, in the order given; a name ends in its unit (``height_mm``).
-
-    NaN or None stands for an empty cell; None among numbers becomes NaN. Raises ValueError if the columns
-    are not equally long.
-    """
-    table = Frame()
-    for name, values in columns.items():
-        if not isinstance(values, np.ndarray) or values.dtype.kind not in "iufb":
-            values = list(values)
-            kinds = {type(cell) for cell in values}
-            numbers = {kind for kind in kinds - {bool} if issubclass(kind, (int, float, np.number))}
-            if kinds and kinds <= {bool, np.bool_}:
-                values = np.array(values)
-            elif numbers and kinds - numbers <= {type(None)}:
-                values = np.array([np.nan if cell is None else cell for cell in values])
-        table[name] = values
-    if len(lengths := {len(column) for column in table.values()}) > 1:
-        raise ValueError(f"columns of one table are not of the same length: {sorted(lengths)}")
-    return table
+Cells = dict[str, list[str]]  # of one width by the name of the column
 
 
 def row_of(record: Any, *names: str) -> dict[str, Any]:
@@ -132,7 +92,7 @@ def table_of(records: Iterable[Any], *names: str) -> Frame:
     """Return a table with a row for each record, of fields as ``row_of`` has them."""
     rows = [row_of(record, *names) for record in records]
     columns = [entry.partition("=")[0] for entry in " ".join(names).split()]
-    return frame({name: [row[name] for row in rows] for name in columns})
+    return Frame.of({name: [row[name] for row in rows] for name in columns})
 
 
 def _unit_ending(name: str) -> str:
@@ -140,20 +100,9 @@ def _unit_ending(name: str) -> str:
     return next((ending for ending in COLUMN_UNITS if name.endswith(ending) and name != ending), "")
 
 
-def of_rows(rows: Sequence[Mapping[str, Any]], names: Iterable[str] | None = None) -> Frame:
-    """Return rows, dicts of cells by column, as a table of these columns; by default of the first row's."""
-    return frame({name: [row[name] for row in rows] for name in (rows[0] if names is None else names)})
-
-
-def of_cells(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> Frame:
-    """Return rows, sequences of cells in the order of the columns, as a table."""
-    cells = list(rows)
-    return frame({name: [row[place] for row in cells] for place, name in enumerate(names)})
-
-
-def quantities(rows: Iterable[Sequence[Any]]) -> Frame:
-    """Return pairs as a table for people: the columns ``quantity`` and ``value``."""
-    return of_cells(("quantity", "value"), rows)
+frame = Frame.of
+of_rows = Frame.of_rows
+of_cells = Frame.of_cells
 
 
 def data_frame(frame: Frame) -> "DataFrame":
@@ -190,7 +139,7 @@ def text(frame: Frame, format: str, width: int | None = None) -> str:
         return lines.getvalue()
     if format != "table":
         raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
-    columns = {name: _align_cells(name, column) for name, column in frame.items()}
+    columns = {name: _align_cells(head_of(frame, name), column) for name, column in frame.items()}
     if width is None or not columns:
         pieces = [list(columns.values())]
     else:
@@ -217,17 +166,17 @@ def to_page(frame: Frame, spare: Iterable[Sequence[str]], width: int = PAGE) -> 
     ``spare`` names those that may go, in groups that go together, the first group first. Returns the
     frame, and the headings of what went.
     """
-    wide = {name: len(_align_cells(name, cells)[0]) for name, cells in frame.items()}
+    wide = {name: len(_align_cells(head_of(frame, name), cells)[0]) for name, cells in frame.items()}
     gone: list[str] = []
     for group in spare:
         left = [letters for name, letters in wide.items() if name not in gone]
         if sum(left) + len(GAP) * (len(left) - 1) <= width:
             break
         gone += [name for name in group if name in wide]
-    return frame.without(gone), [heading(name)[0] for name in gone]
+    return frame.without(gone), [head_of(frame, name).heading for name in gone]
 
 
-def _fold_columns(columns: Columns, width: int) -> list[list[list[str]]]:
+def _fold_columns(columns: Cells, width: int) -> list[list[list[str]]]:
     """The pieces of a table that fit a window, each headed by the columns that name its rows."""
     names = list(columns)
     # how many columns, the first ones, it takes to name a row
@@ -282,28 +231,29 @@ def _csv_cell(value: Any) -> Any:
     return units.printable(value) if isinstance(value, str) else "" if value is None else value
 
 
-def _align_cells(name: str, values: Column) -> list[str]:
-    """Name, unit and cells of one column, all of one width; the points of numbers under each other."""
-    numeric, texts = is_numeric(values), cells(name, values)
+def _align_cells(head: ColumnHead, values: Array | Sequence[Any]) -> list[str]:
+    """Heading, unit and cells of one column, all of one width; the points of numbers under each other."""
+    numeric, texts = is_numeric(values), cells(head, values)
     if numeric and not np.issubdtype(np.asarray(values).dtype, np.integer):
         tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in texts]
         texts = [cell + " " * (max(tails) - tail) for cell, tail in zip(texts, tails)]
-    texts = [*heading(name, numeric), *texts]
+    texts = [head.heading, f"[{head.unit}]" if head.unit else "", *texts]
     width = max(map(len, texts))
     return [cell.rjust(width) if numeric else cell.ljust(width) for cell in texts]
 
 
-def cells(name: str, values: Column, share_digits: int = TABLE_DIGITS, nothing: str = "-") -> list[str]:
+def cells(
+    head: ColumnHead, values: Array | Sequence[Any], share_digits: int = TABLE_DIGITS, nothing: str = "-"
+) -> list[str]:
     """Return the cells of a column as people read them: shares in percent, rounding as 0."""
     if not isinstance(values, np.ndarray) or not is_numeric(values):
         return [_word(value, nothing) for value in values]
     if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]
-    share = _is_share(name)
-    scaled = 100.0 * values if share else values
+    scaled = head.shown * values
     # beside the largest value of a column 1e-12 of it is rounding, unless its rows have units of their own
-    noise = 0.0 if name == "value" else 1e-12 * np.abs(scaled[np.isfinite(scaled)]).max(initial=0.0)
-    digits = share_digits if share else TABLE_DIGITS
+    noise = 0.0 if head.is_mixed else 1e-12 * np.abs(scaled[np.isfinite(scaled)]).max(initial=0.0)
+    digits = share_digits if head.shown != 1.0 else TABLE_DIGITS
     return [number(0.0 if abs(value) <= noise else value, digits, nothing) for value in scaled]
 
 
@@ -330,6 +280,16 @@ def _is_share(name: str) -> bool:
     return name in PASSED or whole.rpartition("_")[2] in SHARES
 
 
+def head_of(frame: Frame, name: str) -> ColumnHead:
+    """Return what people read above a column of a table: what is declared of it, else its name."""
+    if name in frame.heads:
+        return frame.heads[name]
+    numeric = is_numeric(frame[name])
+    words, unit = heading(name, numeric)
+    shown = 100.0 if numeric and _is_share(name) else 1.0
+    return ColumnHead(words, unit.strip("[]"), shown, is_mixed=name == "value")
+
+
 def heading(name: str, numeric: bool = True) -> tuple[str, str]:
     """Return a column's name and unit for people: ('height', '[mm]') of 'height_mm'; no unit is ''.
 
@@ -354,6 +314,24 @@ def heading(name: str, numeric: bool = True) -> tuple[str, str]:
 def title(name: str) -> str:
     """Return a column's name and unit in one text: 'height [mm]'."""
     return " ".join(heading(name)).strip()
+
+
+def row_for_people(column: DeclaredColumn[Any], document: Mapping[str, Any]) -> tuple[str, str]:
+    """Return a column of a document as a row for people: its heading with the unit, and its value.
+
+    The ends of an interval follow the value in brackets. A share is in percent.
+    """
+    head, value = column.head, document[column.name]
+
+    def cell(name: str) -> str:
+        entry = document[name]
+        is_number = isinstance(entry, (int, float, np.number)) and not isinstance(entry, (bool, np.bool_))
+        return number(head.shown * float(entry)) if is_number else _word(entry, "-")
+
+    if isinstance(value, (list, tuple)):
+        return head.title, units.listed([str(entry) for entry in value]) or "-"
+    ends = f" ({cell(f'{column.name}_low')} to {cell(f'{column.name}_high')})" if column.interval else ""
+    return head.title, f"{cell(column.name)}{ends}"
 
 
 def file_bytes(content: str | bytes) -> bytes:

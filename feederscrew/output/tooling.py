@@ -10,7 +10,7 @@ from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
 from feederscrew.bowl.reading import Setting
 from feederscrew.designing import texts
 from feederscrew.heavy import heavy
-from feederscrew.output import columns, marking, tables
+from feederscrew.output import marking, part_facts, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.rate import PassagesStudy
@@ -49,7 +49,7 @@ QUASI_STATIC = "quasi-static, until a trial confirms it"
 def document(study: ToolingStudy) -> dict[str, Any]:
     """Return a ToolingStudy as the JSON document."""
     values = {
-        **columns.part(study.part, (*study.aspects.warnings, *study.of_size)),
+        **part_facts.part(study.part, (*study.aspects.warnings, *study.of_size)),
         "rule": study.rule,
         "margin_asked_mm": study.margin / MM,
         "partial": study.partial,

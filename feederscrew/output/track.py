@@ -11,17 +11,18 @@ from numpy.typing import ArrayLike
 from feederscrew import bowl as bowls
 from feederscrew.arrays import Bools, Floats, Vector
 from feederscrew.bowl.record import Track
+from feederscrew.columns import Frame, values
 from feederscrew.geometry.grids import Grid
 from feederscrew.geometry.polygons import outline, turned
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, regime
-from feederscrew.mechanics.track_balance import TrackAxes, TrackMotion, frame
-from feederscrew.output import floor, style, tables
+from feederscrew.mechanics.track_balance import TRACK_CYCLE_COLUMNS, TrackAxes, TrackMotion, frame
+from feederscrew.mechanics.track_contacts import OPENING_COLUMNS, TIPPING_AXIS_COLUMNS
+from feederscrew.output import floor, style
 from feederscrew.output import offers as offer
 from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, drop_rounding, polygon
-from feederscrew.output.tables import Frame, row_of
-from feederscrew.studies.track import TrackStudy
+from feederscrew.studies.track import TRACK_COLUMNS, TrackStudy
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
@@ -66,7 +67,8 @@ def _instant(motion: TrackMotion) -> dict[str, Any]:
         "acceleration_x_m_s2": float(motion.acceleration[0]),
         "acceleration_y_m_s2": drop_rounding(motion.acceleration[1], motion.acceleration[0]),
         "turning_rad_s2": drop_rounding(motion.turning, motion.acceleration[0] / MM),
-        **row_of(motion, "wall_1_friction_N/wall_2_friction_N=wall_friction"),
+        "wall_1_friction_N": motion.wall_friction[0],
+        "wall_2_friction_N": motion.wall_friction[1],
         "floor_couple_N_mm": float(motion.couple) / MM,
         "opened": [] if motion.state == HOP else _open_contacts(motion.closed),
         "tips": floor.is_tipping(motion.inside),
@@ -78,7 +80,10 @@ def _printed_instant(motion: Any) -> dict[str, Any]:
     """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
-        **row_of(motion, "wall_1_N/wall_2_N=walls radial_friction_N traction_N"),
+        "wall_1_N": motion.walls[0],
+        "wall_2_N": motion.walls[1],
+        "radial_friction_N": motion.radial_friction[()],
+        "traction_N": motion.traction[()],
         "normal_line_offset_mm": float(motion.offset) / MM,
         "acceleration_x_m_s2": float(motion.acceleration),
         "tips": None,
@@ -88,14 +93,8 @@ def _printed_instant(motion: Any) -> dict[str, Any]:
 
 def over_cycle(motion: TrackMotion, course: Cycle) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a TrackMotion of shape (N,)."""
-    walls = "wall_1_N/wall_2_N=walls wall_1_friction_N/wall_2_friction_N=wall_friction"
-    offsets = "normal_line_offset_mm/normal_line_offset_y_mm=offset"
-    accelerations = "acceleration_x_m_s2/acceleration_y_m_s2=acceleration turning_rad_s2=turning"
     columns = {
-        **row_of(motion, "normal_force_N", walls),
-        "radial_friction_N": motion.radial_friction + 0.0,
-        **row_of(motion, "traction_N", offsets, accelerations),
-        "floor_couple_N_mm": motion.couple / MM,
+        **values(TRACK_CYCLE_COLUMNS, motion),
         "velocity_m_s": course.velocity,
         "friction_needed": motion.needed[:, 0],
         "opened": [
@@ -116,18 +115,16 @@ def document(study: TrackStudy) -> dict[str, Any]:
     Of one as published, the upper reversal by print. ``stays_on_wall`` is None where it hops: the flight
     is not followed.
     """
-    cycle, seat, opening, values = study.cycle, study.seat, study.opening, {}
+    cycle, seat, printed = study.cycle, study.seat, {}
     if study.printed is not None:
-        values = {"instant": _printed_instant(study.printed), "difference": _differences(study)}
-        values["omitted_terms"] = _omitted_terms(study)
+        printed = {"instant": _printed_instant(study.printed), "difference": _differences(study)}
+        printed["omitted_terms"] = study.omitted_terms_table()  # type: ignore[attr-defined]
     places = seat.walls + np.array([0.0, 0.0, seat.height])
     sigma = np.degrees(np.arcsin(-seat.walls[:, 0] / study.bowl.track.radius))
     at_rest = np.isfinite(cycle.needed).all()
     needed = cycle.needed.max(axis=0).tolist() if at_rest else [np.nan] * len(CONTACT_NAMES)
     return {
-        **row_of(study, "part=part.name aspect=posture.name"),
-        "heading_deg": float(np.degrees(seat.heading)),
-        "height_mm": seat.height / MM,
+        **values(TRACK_COLUMNS, study),
         "wall_contacts": [  # from the foot of the centre of mass
             {"name": name, "place_mm": place / MM, "sigma_deg": float(angle)}
             for name, place, angle in zip(CONTACT_NAMES[1:], places, sigma)
@@ -135,13 +132,11 @@ def document(study: TrackStudy) -> dict[str, Any]:
         "as_published": study.printed is not None,
         "regime": regime(cycle.state),
         "instant": _instant(study.now),
-        **values,
+        **printed,
         "on_the_track": None if study.stands is None else study.stands.verdict,
         "on_the_track_said": None if study.stands is None else study.stands.sentence,
-        **row_of(
-            opening, "first_to_open=contact opens_at_drive_factor=drive_factor opens_at_reversal=reversal"
-        ),
-        "tipping_axis": row_of(opening, "point_mm direction pitch_mm"),
+        **values(OPENING_COLUMNS, study.opening),
+        "tipping_axis": values(TIPPING_AXIS_COLUMNS, study.opening),
         "friction_needed": dict(zip(CONTACT_NAMES, needed)),
         "held_across": study.held_across,
         "stays_on_wall": None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all()),
@@ -155,10 +150,6 @@ def document(study: TrackStudy) -> dict[str, Any]:
 
 def _differences(study: Any) -> Frame:
     return floor.difference(_printed_instant(study.printed), _instant(study.now), study.terms)
-
-
-def _omitted_terms(study: Any) -> Frame:
-    return tables.table_of(study.omitted_terms, "name equation value unit")
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -224,7 +215,7 @@ def remarks(study: TrackStudy) -> list[str]:
 def cells(grid: Grid) -> Frame:
     """Return every cell of a grid of ``TrackStudy.over``, as a frame."""
     columns = grid.columns().items()
-    return tables.frame({IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns})
+    return Frame.of({IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns})
 
 
 def map_remarks(grid: Grid) -> list[str]:
@@ -252,9 +243,10 @@ def offers(study: TrackStudy, grid: Grid | None = None) -> list[offer.Offer]:
     ]
     if study.printed is not None:
         offered.append(offer.table("track_difference.csv", _differences, study))
-        offered.append(offer.table("track_omitted_terms.csv", _omitted_terms, study))
+        terms = study.omitted_terms_table  # type: ignore[attr-defined]
+        offered.append(offer.table("track_omitted_terms.csv", terms))
     if grid is not None:
-        labels = [tables.title(axis.column) for axis in (grid.first, grid.second)]
+        labels = [axis.head.title for axis in (grid.first, grid.second)]
         over = " and ".join(label.partition(" [")[0] for label in labels)
         offered.append(offer.table("track_map.csv", cells, grid))
         alt = f"Acceleration along the track over {over}"

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from feederscrew import documents, units
+from feederscrew.columns import Column
 from feederscrew.errors import ArgumentError
 
 LIGHTEST_SOLID_KG_M3, HEAVIEST_SOLID_KG_M3 = 10.0, 23_000.0  # rigid foams; osmium has 22,590
@@ -30,6 +31,12 @@ class Material:
     aliases: tuple[str, ...] = ()
 
 
+MATERIAL_COLUMNS: tuple[Column[Material], ...] = (
+    Column("material", lambda material: material.name),
+    Column("density_g_cm3", lambda material: material.density, "g/cm3"),
+    Column("aliases", lambda material: ", ".join(material.aliases)),
+    Column("source", lambda material: material.source),
+)
 MATERIALS = (
     Material("steel", 7850.0, EN_1991, ("carbon steel", "mild steel")),
     Material("stainless steel", 7900.0, f"{EN_10088} (1.4301)", ("stainless", "inox", "1.4301", "a2")),

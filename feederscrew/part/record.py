@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrays import Floats, Points, Triangles
+from feederscrew.columns import Column
 from feederscrew.errors import FeederError, MeshError
 from feederscrew.heavy import heavy
 from feederscrew.part.hull import Hull
@@ -115,6 +116,25 @@ class Part(ReadableRecord):
         """The sha256 of each file it was read from, by its path."""
         named = {} if self.names is None else {self.names.source: self.names.sha256}
         return {self.source: self.file_sha256 or self.sha256} | named
+
+
+PART_COLUMNS: tuple[Column[Part], ...] = (  # of every document
+    Column("part", lambda part: part.name),
+    Column("units", lambda part: part.units),
+    Column("material", lambda part: part.material),
+    Column("density_g_cm3", lambda part: part.density, "g/cm3"),
+    Column("mass_g", lambda part: part.mass, "g"),
+    Column("volume_mm3", lambda part: part.volume, "mm3"),
+    Column("centre_of_mass_mm", lambda part: part.centre_of_mass, "mm"),
+    Column("inertia_g_mm2", lambda part: part.inertia, "g mm2"),
+    Column("open_surface", lambda part: part.open_surface),
+)
+# what was assumed of a part
+CONDITION_COLUMNS = tuple(
+    column
+    for column in PART_COLUMNS
+    if column.name in ("units", "material", "density_g_cm3", "centre_of_mass_mm", "open_surface")
+)
 
 
 def refuse_many_facets(part: Part) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.bowl.record import Bowl, Friction, Track
+from feederscrew.columns import Column
 from feederscrew.documents import hint
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
@@ -17,6 +18,7 @@ from feederscrew.part.record import Part
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.profiles import AspectProfile, CountFile, DeviceCounts
+from feederscrew.resting.rules import registry
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, widen_for_launch
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.devices.base import UNSURE, Device
@@ -157,6 +159,11 @@ class Orientations:
         """Return the names of the aspects (M,)."""
         return tuple(orientation.aspect for orientation in self.lying)
 
+    def leaves_as_names(self) -> list[str | None]:
+        """Return in which state most parts of each row leave; None where they are returned."""
+        leaving = self.leaving[: len(self.lying)]
+        return [self.states[int(row.argmax())].name if row.any() else None for row in leaving]
+
     @property
     def headings(self) -> Floats:
         """Return the headings (M,) [rad]."""
@@ -241,6 +248,44 @@ class Orientations:
         left = {one.aspect for one, lost in zip(self.lying, gone) if not (lost or one.returned)}
         turns = [one.may_tip or (one.may_yaw and one.aspect in left) for one in self.lying]
         return self.decided & ~(self.rolls_back | rocks | loose | np.array(turns, dtype=bool))
+
+
+def orientation_columns(queue: Orientations, rule: str) -> list[Column[Orientations]]:
+    """Return the columns of the orientations at the devices: what each station does with each.
+
+    Parameters
+    ----------
+    queue : Orientations
+    rule : str
+        Whose probabilities stand there, a key of ``queue.rules``.
+
+    Returns
+    -------
+    list of Column
+        Of arrays, a row an orientation; ``leaves_as`` is None where it is returned.
+    """
+    return [
+        *ORIENTATION_COLUMNS,
+        Column(f"p_{rule}", lambda queue: queue.rules[rule], "share", registry.heading(rule)),
+        Column("margin_mm", lambda queue: queue.margin, "mm"),
+        Column("fate", lambda queue: queue.fates),
+        Column("leaves_as", lambda queue: queue.leaves_as_names()),
+        *(_station_column(place, name) for place, name in enumerate(queue.names)),
+        Column("passes", lambda queue: queue.through, "share"),
+    ]
+
+
+def _station_column(place: int, name: str) -> Column[Orientations]:
+    """Return the column of the share that a station lets pass."""
+    return Column(name, lambda queue: queue.passes[:, place], "share")
+
+
+ORIENTATION_COLUMNS: tuple[Column[Orientations], ...] = (  # a row an orientation
+    Column("aspect", lambda queue: queue.aspects),
+    Column("heading_deg", lambda queue: queue.headings, "deg"),
+    Column("length_mm", lambda queue: queue.lengths, "mm"),
+    Column("width_mm", lambda queue: queue.widths, "mm"),
+)
 
 
 def follow_orientations(

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import Detail, FeederError, printable
-from feederscrew.output import aspects as aspects_output
 from feederscrew.output.folder import safe_name
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, Page, Table
@@ -257,7 +256,7 @@ class Uploads:
         path.write_bytes(data)
         try:
             study = aspects(load(str(path), units=units))
-            table = aspects_output.aspects(study).only(("aspect", "lies", "stable", "height_mm"))
+            table = study.table().only(("aspect", "lies", "stable", "height_mm"))
             blocks = *aspect_views(study.part, study), Table(table)
             told = (text for text in study.aspects.warnings if not isinstance(text, Detail))
             warnings = tuple(map(in_words_of_the_page, told))

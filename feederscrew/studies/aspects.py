@@ -6,17 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew.arrays import Array
+from feederscrew.arrays import Array, Floats
+from feederscrew.columns import Column, Frame, of_arrays, of_records
 from feederscrew.part.mass import MassBalance, mass_balance
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspect, Aspects, find, require_ground
 from feederscrew.resting.exact_tumbling import Transition, transitions
-from feederscrew.resting.rules import recommended
+from feederscrew.resting.inertia_products import InertiaProducts, find_products
+from feederscrew.resting.rules import recommended, registry
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.running import OnCores
 from feederscrew.signatures import with_shown_signature
 from feederscrew.studies import arguments, simulation_cache
+from feederscrew.units import GRAVITY
 
 if TYPE_CHECKING:
     from feederscrew.dropping.ensemble import Tally
@@ -63,6 +66,103 @@ class AspectsStudy(ReadableRecord):
         Raises MeshError if the part is a card without a shape.
         """
         return transitions(require_ground(self.part, self.aspects))
+
+    def table(self) -> Frame:
+        """Return the classes of resting aspects, a row each: ``aspects.csv``."""
+        return of_arrays(aspect_columns(self), self)
+
+    def transitions_table(self) -> Frame:
+        """Return the tipping graph, a row a way from one aspect into another or its equal: ``graph.csv``."""
+        return of_records(TRANSITION_COLUMNS, [(self, tip) for tip in self.transitions])
+
+
+def aspect_columns(study: AspectsStudy) -> list[Column[AspectsStudy]]:
+    """Return the columns of the aspects of a study: those that its part, rules and drop test have.
+
+    An open surface is labelled in every row, and tumbling that fails a self-check. A card has no shape and
+    does not say how it lies.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    list of Column
+        Of arrays, a row an aspect.
+    """
+    resting, part, count = study.aspects, study.part, len(study.aspects)
+    lying = () if part.hull is None else LYING_COLUMNS
+    columns = [*NAME_COLUMNS, *lying, *ASPECT_COLUMNS]
+    columns += [_rule_column(rule) for rule in resting.probabilities]
+    if part.hull is not None and part.inertia is not None:
+        products: InertiaProducts = find_products(resting, part.inertia)
+        columns += [
+            Column("product_of_inertia_g_mm2", lambda _: products.products, "g mm2"),
+            Column("p_pmi_principal", lambda _: products.probabilities, "share", "pmi principal"),
+        ]
+    if resting.barriers is not None:
+        columns += BARRIER_COLUMNS
+    columns.append(Column("rolling_circle_mm", lambda study: _finite(study.aspects.rolling_circles), "mm"))
+    for name, answer in (("drop", study.tally), ("recommended", study.recommended)):
+        if answer is not None:
+            columns += _answer_columns(name, answer)
+    if part.open_surface:
+        columns.append(Column("surface", lambda _: ["open"] * count))
+    if study.doubtful:
+        columns.append(Column("tumbling", lambda _: ["doubtful"] * count))
+    return columns
+
+
+NAME_COLUMNS: tuple[Column[AspectsStudy], ...] = (Column("aspect", lambda study: study.aspects.names),)
+LYING_COLUMNS: tuple[Column[AspectsStudy], ...] = (  # of a part with a shape
+    Column("lies", lambda study: study.aspects.lies),
+    Column("rolls", lambda study: study.aspects.rolls),
+)
+ASPECT_COLUMNS: tuple[Column[AspectsStudy], ...] = (  # of every part
+    Column("faces", lambda study: study.aspects.faces),
+    Column("stable", lambda study: study.aspects.stable),
+    Column("normal_x", lambda study: study.aspects.normals[:, 0]),
+    Column("normal_y", lambda study: study.aspects.normals[:, 1]),
+    Column("normal_z", lambda study: study.aspects.normals[:, 2]),
+    Column("height_mm", lambda study: study.aspects.heights, "mm"),
+    Column("contact_area_mm2", lambda study: study.aspects.contact_areas, "mm2"),
+    Column("solid_angle_sr", lambda study: study.aspects.solid_angles, "sr"),
+    Column("polar_inertia_g_mm2", lambda study: study.aspects.polar_inertias, "g mm2"),
+)
+BARRIER_COLUMNS: tuple[Column[AspectsStudy], ...] = (  # of a part with a shape
+    Column("barrier_mm", lambda study: study.aspects.barriers, "mm"),
+    Column("barrier_uJ", lambda study: study.aspects.barrier_energies, "uJ"),
+    Column("tip_angle_deg", lambda study: study.aspects.tip_angles, "deg"),
+)
+TRANSITION_COLUMNS: tuple[Column[tuple[AspectsStudy, Transition]], ...] = (
+    Column("from", lambda way: way[0].aspects.names[way[1].start]),
+    Column("to", lambda way: way[0].aspects.names[way[1].end]),
+    Column("barrier_mm", lambda way: way[1].lift, "mm"),
+    Column("barrier_uJ", lambda way: way[0].part.mass * GRAVITY * way[1].lift, "uJ"),
+    Column("axis_x", lambda way: way[1].axis[0]),
+    Column("axis_y", lambda way: way[1].axis[1]),
+    Column("axis_z", lambda way: way[1].axis[2]),
+)
+
+
+def _rule_column(rule: str) -> Column[AspectsStudy]:
+    """The column of a probability rule, by its name."""
+    heading = registry.heading(rule)
+    return Column(f"p_{rule}", lambda study: study.aspects.probabilities[rule], "share", heading)
+
+
+def _answer_columns(name: str, answer: "Recommended | Tally") -> list[Column[AspectsStudy]]:
+    """The columns of an answer with the ends of its interval."""
+    return [
+        Column(f"p_{name}", lambda _: answer.p, "share", name),
+        Column(f"p_{name}_low", lambda _: answer.low, "share", "low"),
+        Column(f"p_{name}_high", lambda _: answer.high, "share", "high"),
+    ]
+
+
+def _finite(lengths: Floats) -> Floats:
+    return np.where(np.isfinite(lengths), lengths, np.nan)
 
 
 @with_shown_signature
@@ -202,6 +302,16 @@ class InertiaStudy(ReadableRecord):
 
     part: Part
     balance: MassBalance
+
+
+INERTIA_COLUMNS: tuple[Column[InertiaStudy], ...] = (  # beside those of every part
+    Column("inertia_at_origin_g_mm2", lambda study: study.balance.inertia_at_origin, "g mm2"),
+    Column("principal_moments_g_mm2", lambda study: study.balance.moments, "g mm2"),
+    Column("principal_axes", lambda study: study.balance.axes),
+    Column("hull_volume_mm3", lambda study: study.balance.hull_volume, "mm3"),
+    Column("bounding_box_mm", lambda study: study.balance.extents, "mm"),
+    Column("bounding_box_corner_mm", lambda study: study.balance.corner, "mm"),
+)
 
 
 def inertia(part: Part) -> InertiaStudy:

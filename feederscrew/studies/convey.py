@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +12,7 @@ from feederscrew import bowl as bowls
 from feederscrew.arrays import Array, Bools, Floats, Ints
 from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column, Frame, of_arrays
 from feederscrew.conveying import answer, steady
 from feederscrew.conveying.answer import Neighbours
 from feederscrew.conveying.steady import STATUSES, MotionStatus
@@ -74,11 +75,26 @@ class ConveyCurve(ReadableRecord):
         """Return the status of each point, (N,) of ``STATUSES``."""
         return np.asarray(STATUSES)[self.cells["status"]]
 
+    def table(self) -> Frame:
+        """Return its points, a row each: ``convey_curve.csv``, ``convey_radius.csv``."""
+        axes = {axis.column: axis.in_unit for axis in self.axes}
+        return _behind_axes(self.axes, axes, of_arrays(CURVE_COLUMNS, self))
+
     @property
     def several(self) -> Bools:
         """Return where a part has several steady velocities, (N,) bool."""
         spread, high = self.cells["high"] - self.cells["low"], np.abs(self.cells["high"])
         return (self.statuses == MotionStatus.PERIODIC) & (spread > answer.COEXISTING_VELOCITY_GAP * high)
+
+
+CURVE_COLUMNS: tuple[Column[ConveyCurve], ...] = (  # behind those of its axes
+    Column("velocity_mm_s", lambda curve: curve.cells["velocity"], "mm/s"),
+    Column("velocity_low_mm_s", lambda curve: curve.cells["low"], "mm/s"),
+    Column("velocity_high_mm_s", lambda curve: curve.cells["high"], "mm/s"),
+    Column("regime", lambda curve: np.asarray(answer.SWEEP_REGIMES)[curve.cells["regime"]]),
+    Column("throw_number", lambda curve: curve.cells["throw_number"]),
+    Column("status", lambda curve: curve.statuses),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +107,7 @@ class ConveyPhase(ReadableRecord):
     @property
     def curve(self) -> ConveyCurve:
         """Return the velocities over the phase, as a ConveyCurve."""
-        axis = grids.GridAxis("phase_deg", self.best.phases, DEG)
+        axis = grids.GridAxis("phase_deg", self.best.phases, DEG, "deg")
         return ConveyCurve("phase", "drive.phase", (axis,), self.best.cells)
 
 
@@ -107,6 +123,27 @@ class ConveyMap(ReadableRecord):
     def statuses(self) -> Ints:
         """Return the status of each cell, (N1, N2) of ``STATUSES``."""
         return np.asarray(STATUSES)[self.grid.values["status"].astype(int)]
+
+    def table(self) -> Frame:
+        """Return its cells, a row each, the second key running fastest: ``convey_map.csv``."""
+        axes = (self.grid.first, self.grid.second)
+        cells = self.grid.columns()
+        return _behind_axes(axes, {a.column: cells[a.column] for a in axes}, of_arrays(MAP_COLUMNS, self))
+
+
+def _behind_axes(axes: Sequence[grids.GridAxis], places: Mapping[str, Array], table: Frame) -> Frame:
+    """Return a table with the quantities that vary before its columns."""
+    return Frame.of({**places, **table}, {axis.column: axis.head for axis in axes} | table.heads)
+
+
+MAP_COLUMNS: tuple[Column[ConveyMap], ...] = (  # behind those of its axes
+    Column("velocity_mm_s", lambda over: over.grid.values["velocity"].ravel(), "mm/s"),
+    Column("velocity_low_mm_s", lambda over: over.grid.values["low"].ravel(), "mm/s"),
+    Column("velocity_high_mm_s", lambda over: over.grid.values["high"].ravel(), "mm/s"),
+    Column("regime", lambda over: over.grid.columns()["regime"]),
+    Column("throw_number", lambda over: over.grid.values["throw_number"].ravel()),
+    Column("status", lambda over: over.statuses.ravel()),
+)
 
 
 @former_keywords()
@@ -168,9 +205,9 @@ def along_radius(bowl: Bowl) -> ConveyCurve:
     """
     there = answer.inwards(bowl)
     axes = (
-        grids.GridAxis("radius_mm", np.asarray(there.track.radius), MM),
-        grids.GridAxis("vibration_angle_deg", np.asarray(there.drive.vibration_angle), DEG),
-        grids.GridAxis("amplitude_mm", np.asarray(there.drive.amplitude), MM),
+        grids.GridAxis("radius_mm", np.asarray(there.track.radius), MM, "mm"),
+        grids.GridAxis("vibration_angle_deg", np.asarray(there.drive.vibration_angle), DEG, "deg"),
+        grids.GridAxis("amplitude_mm", np.asarray(there.drive.amplitude), MM, "mm"),
     )
     return ConveyCurve("radius", "the radius", axes, answer.cells(there))
 

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Array, Floats, Ints
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column, Frame, of_arrays, of_pieces
 from feederscrew.dropping import drop_test, launch_conditions, plate_test, toss_runs
 from feederscrew.dropping.ensemble import Drops, Tally, wilson
 from feederscrew.dropping.rounded_hull import shape_of_part
@@ -23,6 +25,8 @@ from feederscrew.studies.arguments import Condition, Quantity, former_keywords
 
 RULES_DRAWN = ("csa", "surface")  # rules that the drops are shown with
 MIN_SECONDS_S = 1e-6  # [s]
+NO_ASPECT = "none"  # the class of a drop or toss that never settles
+MOST_LOOKS = 101  # moments of a table over time
 SURE_SHARE = 0.95  # [1] from here on an answer is called sure
 
 
@@ -53,6 +57,83 @@ class DropStudy(ReadableRecord):
     def telling(self) -> drop_test.DropTrace:
         """The followed drop to show: the first that tumbled and lies still, else tumbled, else the first."""
         return drop_test.telling(self.result.traces)
+
+    def counted_on(self, trace: drop_test.DropTrace) -> str:
+        """Return the aspect that a drop ends on; ``NO_ASPECT`` of one that never settles."""
+        return self.aspects.names[trace.row] if trace.row >= 0 else NO_ASPECT
+
+    def table(self) -> Frame:
+        """Return how many drops rest on each aspect: ``drop.csv``, with ``partial`` if it was stopped."""
+        partial = PARTIAL_COLUMNS if self.result.drops.partial else ()
+        return of_arrays([*DROP_COLUMNS, *partial], self)
+
+    def traces_table(self) -> Frame:
+        """Return a row a moment of each followed drop: ``drop_traces.csv``.
+
+        They are the centre of mass over the plane, the quaternion from the file's axes to the plane's, total
+        energy over m g, what happens, and the aspect the drop ends on.
+        """
+        return of_pieces(DROP_MOMENT_COLUMNS, [(self, trace) for trace in self.result.traces])
+
+
+def _events(trace: drop_test.DropTrace) -> Array:
+    """Return what happens in each row of a trace: 'launch', 'impact', 'still' or nothing."""
+    event = np.where(trace.impacts, "impact", "").astype(object)
+    event[0] = "launch"
+    event[-1] = "still" if trace.still else event[-1]
+    return event
+
+
+DROP_COLUMNS: tuple[Column[DropStudy], ...] = (  # a row an aspect
+    Column("aspect", lambda study: study.aspects.names),
+    Column("height_mm", lambda study: study.result.heights, "mm"),
+    Column("count", lambda study: study.tally.counts),
+    Column("p_drop", lambda study: study.tally.p, "share", "drop"),
+    Column("p_drop_low", lambda study: study.tally.low, "share", "low"),
+    Column("p_drop_high", lambda study: study.tally.high, "share", "high"),
+    Column("p_gentle", lambda study: study.tally.gentle, "share", "gentle"),
+    Column("p_violent", lambda study: study.tally.violent, "share", "violent"),
+    Column("p_restitution", lambda study: study.tally.restitution, "share", "restitution"),
+    Column("unsettled_share", lambda study: study.tally.unsettled_share, "share"),
+)
+PARTIAL_COLUMNS: tuple[Column[DropStudy], ...] = (  # of a test that was stopped
+    Column("partial", lambda study: True),
+)
+DROP_TEST_COLUMNS: tuple[Column[DropStudy], ...] = (  # of the whole test
+    Column("part", lambda study: study.part.name),
+    Column("drops", lambda study: study.drops),
+    Column("seed", lambda study: study.result.seed),
+    Column("launch", lambda study: study.result.launch),
+    Column("partial", lambda study: study.result.drops.partial),
+    Column("unsettled", lambda study: study.result.tally.unsettled),
+    Column("unsettled_share", lambda study: study.result.tally.unsettled_share, "share"),
+    Column("until", lambda study: study.result.aim),
+    Column("widest", lambda study: study.result.tally.widest),
+)
+DROP_TRACE_COLUMNS: tuple[
+    Column[tuple[DropStudy, drop_test.DropTrace]], ...
+] = (  # of a drop that was followed
+    Column("drop", lambda drop: drop[1].number),
+    Column("aspect", lambda drop: drop[0].counted_on(drop[1])),
+    Column("counted_s", lambda drop: drop[1].decided, "s"),
+    Column("still", lambda drop: drop[1].still),
+)
+DROP_MOMENT_COLUMNS: tuple[
+    Column[tuple[DropStudy, drop_test.DropTrace]], ...
+] = (  # a row a moment of a drop that was followed
+    Column("drop", lambda drop: drop[1].number),
+    Column("time_s", lambda drop: drop[1].times, "s"),
+    Column("x_mm", lambda drop: drop[1].positions[:, 0], "mm"),
+    Column("y_mm", lambda drop: drop[1].positions[:, 1], "mm"),
+    Column("z_mm", lambda drop: drop[1].positions[:, 2], "mm"),
+    Column("q_w", lambda drop: drop[1].attitudes[:, 0]),
+    Column("q_x", lambda drop: drop[1].attitudes[:, 1]),
+    Column("q_y", lambda drop: drop[1].attitudes[:, 2]),
+    Column("q_z", lambda drop: drop[1].attitudes[:, 3]),
+    Column("energy_mm", lambda drop: drop[1].energies, "mm"),
+    Column("event", lambda drop: _events(drop[1])),
+    Column("aspect", lambda drop: drop[0].counted_on(drop[1])),
+)
 
 
 @with_shown_signature
@@ -133,6 +214,41 @@ def _check_run(run: RunSettings) -> None:
     check.argument("jobs", run.jobs, 1)
 
 
+class PlateOf(NamedTuple):
+    """One plate of a study, as its columns see it."""
+
+    aspects: Aspects
+    result: plate_test.PlateResult
+    name: str  # of its bowl
+
+    def changing(self) -> list[str]:
+        """Return the aspects whose share still changes at the end."""
+        changing = self.result.occupancy.changing
+        return [name for name, is_changing in zip(self.aspects.names, changing) if is_changing]
+
+    def pairs(self) -> tuple[Array, Array]:
+        """Return from which aspect to which, (P,) names each: the pairs whose rate is known."""
+        before, after = self._pairs()
+        names = np.array(self.aspects.names)
+        return names[before], names[after]
+
+    def of_pairs(self, quantity: str) -> Array:
+        """Return an (A, A) quantity of the occupancy for each pair, (P,)."""
+        before, after = self._pairs()
+        return getattr(self.result.occupancy, quantity)[before, after]
+
+    def _pairs(self) -> tuple[Ints, ...]:
+        occupancy = self.result.occupancy
+        return np.nonzero(np.ones(occupancy.counts.shape, bool) & (occupancy.times > 0.0)[:, None])
+
+    def moments(self) -> tuple[Floats, Array, Floats]:
+        """Return time [s], aspect and share [1] of ``MOST_LOOKS`` looks at most, (L A,) each."""
+        shares, count = self.result.occupancy.course, len(self.aspects.names)
+        looks = np.unique(np.linspace(0, len(shares) - 1, MOST_LOOKS).astype(int))
+        time = np.repeat(looks * self.result.seconds / (len(shares) - 1), count)
+        return time, np.tile(self.aspects.names, len(looks)), shares[looks].ravel()
+
+
 @dataclass(frozen=True, eq=False)
 class PlateStudy(ReadableRecord):
     """Rest and travel of one part on the plates of one or several bowls."""
@@ -147,6 +263,100 @@ class PlateStudy(ReadableRecord):
     def partial(self) -> bool:
         """Return whether the user stopped it before all parts were done."""
         return any(plate.partial for plate in self.plates)
+
+    @property
+    def each(self) -> list[PlateOf]:
+        """Return the plates with the names of their bowls."""
+        return [PlateOf(self.aspects, result, name) for result, name in zip(self.plates, self.names)]
+
+    def _table(self, columns: Sequence[Column[PlateOf]]) -> Frame:
+        """Return columns of every plate, headed by which plate; once the user stopped, which is not whole."""
+        partial = PLATE_PARTIAL_COLUMNS if self.partial else ()
+        return of_pieces([*PLATE_HEAD_COLUMNS, *columns, *partial], self.each)
+
+    def table(self) -> Frame:
+        """Return how often parts lie on each aspect and how fast they travel: ``plate.csv``."""
+        return self._table(PLATE_COLUMNS)
+
+    def rates_table(self) -> Frame:
+        """Return the transitions seen and their rate, a row a plate and pair: ``plate_rates.csv``."""
+        return self._table(PLATE_RATE_COLUMNS)
+
+    def course_table(self) -> Frame:
+        """Return the share of the parts on each aspect over time: ``plate_time.csv``."""
+        return self._table(PLATE_COURSE_COLUMNS)
+
+    def drives_table(self) -> Frame:
+        """Return how fast parts travel on each plate, and how much was seen: ``plate_drives.csv``."""
+        return self._table(PLATE_DRIVE_COLUMNS)
+
+
+PLATE_HEAD_COLUMNS: tuple[Column[PlateOf], ...] = (  # before those of every table
+    Column("bowl", lambda plate: plate.name),
+    Column("amplitude_mm", lambda plate: plate.result.bowl.drive.amplitude, "mm"),
+    Column("throw_number", lambda plate: plate.result.throw_number),
+)
+PLATE_COLUMNS: tuple[Column[PlateOf], ...] = (  # a row an aspect
+    Column("aspect", lambda plate: plate.aspects.names),
+    Column("height_mm", lambda plate: plate.aspects.heights, "mm"),
+    Column("p_start", lambda plate: plate.result.occupancy.start, "share", "start"),
+    Column("p_plate", lambda plate: plate.result.occupancy.plate, "share", "plate"),
+    Column("p_plate_low", lambda plate: plate.result.occupancy.plate_low, "share", "low"),
+    Column("p_plate_high", lambda plate: plate.result.occupancy.plate_high, "share", "high"),
+    Column("p_limit", lambda plate: plate.result.occupancy.limit, "share", "limit"),
+    Column("p_limit_low", lambda plate: plate.result.occupancy.limit_low, "share", "low"),
+    Column("p_limit_high", lambda plate: plate.result.occupancy.limit_high, "share", "high"),
+    Column("velocity_mm_s", lambda plate: plate.result.occupancy.velocities[..., 0], "mm/s"),
+    Column("velocity_low_mm_s", lambda plate: plate.result.occupancy.velocities[..., 1], "mm/s", hidden=True),
+    Column(
+        "velocity_high_mm_s", lambda plate: plate.result.occupancy.velocities[..., 2], "mm/s", hidden=True
+    ),
+)
+PLATE_RATE_COLUMNS: tuple[Column[PlateOf], ...] = (  # a row a pair of aspects
+    Column("from", lambda plate: plate.pairs()[0]),
+    Column("to", lambda plate: plate.pairs()[1]),
+    Column("count", lambda plate: plate.of_pairs("counts")),
+    Column("rate_per_s", lambda plate: plate.of_pairs("rates"), "1/s", "rate"),
+    Column("rate_low_per_s", lambda plate: plate.of_pairs("rates_low"), "1/s", "rate low"),
+    Column("rate_high_per_s", lambda plate: plate.of_pairs("rates_high"), "1/s", "rate high"),
+)
+PLATE_COURSE_COLUMNS: tuple[Column[PlateOf], ...] = (  # a row a moment and aspect
+    Column("time_s", lambda plate: plate.moments()[0], "s"),
+    Column("aspect", lambda plate: plate.moments()[1]),
+    Column("p", lambda plate: plate.moments()[2], "share"),
+)
+PLATE_DRIVE_COLUMNS: tuple[Column[PlateOf], ...] = (  # a row a plate
+    Column("drops", lambda plate: plate.result.parts),
+    Column("seconds", lambda plate: plate.result.seconds),
+    Column("unsettled", lambda plate: plate.result.unsettled),
+    Column("transitions", lambda plate: plate.result.transitions),
+    Column("steady", lambda plate: "no" if plate.result.occupancy.changing.any() else "yes"),
+    Column("velocity_mm_s", lambda plate: plate.result.occupancy.velocity[..., 0], "mm/s"),
+    Column("velocity_low_mm_s", lambda plate: plate.result.occupancy.velocity[..., 1], "mm/s", hidden=True),
+    Column("velocity_high_mm_s", lambda plate: plate.result.occupancy.velocity[..., 2], "mm/s", hidden=True),
+)
+PLATE_PARTIAL_COLUMNS: tuple[Column[PlateOf], ...] = (  # of a test that was stopped
+    Column("partial", lambda plate: plate.result.partial),
+)
+PLATE_TEST_COLUMNS: tuple[Column[PlateOf], ...] = (  # of the document
+    Column("bowl", lambda plate: plate.name),
+    Column("amplitude_mm", lambda plate: plate.result.bowl.drive.amplitude, "mm"),
+    Column("frequency_Hz", lambda plate: plate.result.bowl.drive.frequency, "Hz"),
+    Column("vibration_angle_deg", lambda plate: plate.result.bowl.drive.vibration_angle, "deg"),
+    Column("throw_number", lambda plate: plate.result.throw_number),
+    Column("restitution", lambda plate: plate.result.launch["restitution"]),
+    Column("friction", lambda plate: plate.result.launch["friction"]),
+    Column("drops", lambda plate: plate.result.parts),
+    Column("lost", lambda plate: plate.result.lost),
+    Column("unsettled", lambda plate: plate.result.unsettled),
+    Column("seconds", lambda plate: plate.result.seconds),
+    Column("steady", lambda plate: not plate.result.occupancy.changing.any()),
+    Column("changing", lambda plate: plate.changing()),
+    Column("transitions_seen", lambda plate: plate.result.transitions),
+    Column("velocity_mm_s", lambda plate: plate.result.occupancy.velocity[..., 0], "mm/s"),
+    Column("velocity_low_mm_s", lambda plate: plate.result.occupancy.velocity[..., 1], "mm/s"),
+    Column("velocity_high_mm_s", lambda plate: plate.result.occupancy.velocity[..., 2], "mm/s"),
+)
 
 
 @former_keywords("bowls")
@@ -231,6 +441,19 @@ class Agreement(ReadableRecord):
     median_off: float | None  # [m] from the place computed to the one measured; None where none was measured
 
 
+AGREEMENT_COLUMNS: tuple[Column[Agreement], ...] = (
+    Column("tosses", lambda agreement: agreement.tosses),
+    Column("told", lambda agreement: agreement.right_share),
+    Column("low", lambda agreement: agreement.low),
+    Column("high", lambda agreement: agreement.high),
+    Column("at_release", lambda agreement: agreement.at_release),
+    Column("expected", lambda agreement: agreement.expected),
+    Column("sure", lambda agreement: agreement.sure),
+    Column("sure_told", lambda agreement: agreement.sure_right_share),
+    Column("median_off_mm", lambda agreement: agreement.median_off, "mm"),
+)
+
+
 @dataclass(frozen=True, eq=False)
 class TossStudy(ReadableRecord):
     """Outcomes of the launches of a file."""
@@ -262,6 +485,12 @@ class TossStudy(ReadableRecord):
         ends = self.launches.ends
         return None if ends is None else np.hypot(*(self.result.places - ends[: len(self.p)]).T)
 
+    def table(self) -> Frame:
+        """Return where each toss leads, a row a toss: ``tosses.csv``."""
+        ends = MEASURED_END_COLUMNS if self.launches.ends is not None else ()
+        faces = MEASURED_FACE_COLUMNS if self.launches.faces is not None else ()
+        return of_arrays([*TOSS_COLUMNS, *ends, *faces], self)
+
     @property
     def agreement(self) -> Agreement | None:
         """Return what was computed beside what was measured; None where the file holds no upper sides."""
@@ -283,6 +512,62 @@ class TossStudy(ReadableRecord):
             sure_right_share=float(right[sure].mean()) if sure.any() else None,
             median_off=None if self.off is None or not settled.any() else float(np.nanmedian(self.off)),
         )
+
+
+def _labels(study: TossStudy) -> Array | list[str]:
+    """Return the names of the tosses; numbers where all are."""
+    labels = list(study.launches.names[: len(study.result.faces)])
+    return np.array([int(label) for label in labels]) if all(map(str.isdecimal, labels)) else labels
+
+
+def _ends(study: TossStudy) -> Floats:
+    """Return where the tosses (N, 2) [m] ended as measured."""
+    ends = study.launches.ends
+    return np.full((len(study.p), 2), np.nan) if ends is None else ends[: len(study.p)]
+
+
+def _side_column(side: int) -> Column[TossStudy]:
+    """Return the column of the share of the runs that end with a side up."""
+    sign, axis = FACE_NAMES[side][0], FACE_NAMES[side][1]
+    name = f"{'plus' if sign == '+' else 'minus'} {axis}"
+    return Column(
+        f"p_{name.replace(' ', '_')}", lambda study: study.result.shares[:, side], "share", name, hidden=True
+    )
+
+
+TOSS_FILE_COLUMNS: tuple[Column[TossStudy], ...] = (  # of the whole file
+    Column("launches", lambda study: study.launches.source),
+    Column("runs", lambda study: study.result.runs),
+    Column("seed", lambda study: study.seed),
+    Column("frame_s", lambda study: study.launches.frame, "s"),
+)
+TOSS_COLUMNS: tuple[Column[TossStudy], ...] = (  # a row a toss
+    Column("toss", lambda study: _labels(study)),
+    Column(
+        "aspect",
+        lambda study: [study.aspects.names[row] if row >= 0 else NO_ASPECT for row in study.result.rows],
+    ),
+    Column(
+        "face_up", lambda study: [FACE_NAMES[face] if face >= 0 else NO_ASPECT for face in study.result.faces]
+    ),
+    Column("p", lambda study: study.p, "share"),
+    Column("p_low", lambda study: study.intervals[0], "share", "low", hidden=True),
+    Column("p_high", lambda study: study.intervals[1], "share", "high", hidden=True),
+    Column("x_mm", lambda study: study.result.places[:, 0], "mm"),
+    Column("y_mm", lambda study: study.result.places[:, 1], "mm"),
+    Column("half_within_mm", lambda study: study.result.spreads, "mm"),
+    Column("time_s", lambda study: study.result.times, "s", hidden=True),
+    *(_side_column(side) for side in range(len(FACE_NAMES))),
+    Column("settled_runs", lambda study: study.result.settled, hidden=True),
+)
+MEASURED_END_COLUMNS: tuple[Column[TossStudy], ...] = (  # where the end of a toss was measured
+    Column("x_measured_mm", lambda study: _ends(study)[:, 0], "mm", hidden=True),
+    Column("y_measured_mm", lambda study: _ends(study)[:, 1], "mm", hidden=True),
+    Column("off_mm", lambda study: study.off, "mm"),
+)
+MEASURED_FACE_COLUMNS: tuple[Column[TossStudy], ...] = (
+    Column("face_up_measured", lambda study: list((study.launches.faces or ())[: len(study.result.faces)])),
+)
 
 
 def follow(

@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew.arrays import Array, Floats
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.geometry.grids import Grid, evaluate, span
 from feederscrew.mechanics import floor_balance, limits, motion_maps
 from feederscrew.mechanics.cycle import Cycle
@@ -61,7 +62,7 @@ class FloorStudy(ReadableRecord):
             varied = replace(self.bowl, drive=replace(self.bowl.drive, vibration_angle=beta))
             return self.cells(floor_balance.with_friction(varied, mu), self.heading)
 
-        angle = span("beta_deg", 0.0, TOP_ANGLE, count, np.pi / 180.0)
+        angle = span("beta_deg", 0.0, TOP_ANGLE, count, np.pi / 180.0, "deg")
         friction = span("friction", 0.0, TOP_FRICTION, count)
         return evaluate(angle, friction, function, motion_maps.FLOOR_REGIMES)
 
@@ -74,8 +75,8 @@ class FloorStudy(ReadableRecord):
 
         highest = max(TOP_FREQUENCY, MAP_MARGIN * self.bowl.drive.frequency)
         widest = max(TOP_AMPLITUDE, MAP_MARGIN * self.bowl.drive.amplitude)
-        frequency = span("frequency_Hz", LEAST_FREQUENCY, highest, count)
-        amplitude = span("amplitude_mm", 0.0, widest, count, 1e-3)
+        frequency = span("frequency_Hz", LEAST_FREQUENCY, highest, count, label="Hz")
+        amplitude = span("amplitude_mm", 0.0, widest, count, 1e-3, "mm")
         return evaluate(frequency, amplitude, function, motion_maps.FLOOR_REGIMES)
 
     def alignment(self) -> tuple[Floats, dict[str, Array]]:
@@ -85,6 +86,25 @@ class FloorStudy(ReadableRecord):
         """
         headings = np.radians(np.arange(-180.0, 181.0, 1.0))
         return headings, self.cells(self.bowl, headings)
+
+
+FLOOR_COLUMNS: tuple[Column[FloorStudy], ...] = (  # of the document
+    Column("part", lambda study: study.part.name),
+    Column("aspect", lambda study: study.posture.name),
+    Column("lies", lambda study: study.posture.lies),
+    Column("rolls", lambda study: study.posture.rolls),
+    Column("heading_deg", lambda study: study.heading, "deg"),
+    Column("height_mm", lambda study: study.posture.height, "mm"),
+    Column("drive_offset_mm", lambda study: study.posture.offset, "mm"),
+    Column("rolling_circle_mm", lambda study: _rolling_circle(study.posture), "mm"),
+    Column("turning_inertia_g_mm2", lambda study: study.posture.turning_inertia, "g mm2"),
+    Column("as_published", lambda study: study.printed is not None),
+    Column("regime", lambda study: floor_balance.regime(study.cycle.state)),
+)
+
+
+def _rolling_circle(posture: Posture) -> float | None:
+    return posture.rolling_circle if np.isfinite(posture.rolling_circle) else None
 
 
 @former_keywords()

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
+from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl, Track
+from feederscrew.columns import Column, Frame, of_pieces
 from feederscrew.mechanics import headings as wall
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
@@ -32,11 +36,43 @@ class HeadingsStudy(ReadableRecord):
         """The bowl's track."""
         return self.bowl.track
 
+    def table(self) -> Frame:
+        """Return every stable heading, a row each: ``headings.csv``."""
+        return of_pieces(HEADINGS_COLUMNS, [(self, stable) for stable in self.headings])
+
     def only(self, aspect: str) -> HeadingsStudy:
         """Return the study of one of its aspects."""
         rows = [k for k, stance in enumerate(self.postures) if stance.name == aspect]
         postures, of_aspect = tuple(self.postures[k] for k in rows), tuple(self.headings[k] for k in rows)
         return replace(self, postures=postures, headings=of_aspect)
+
+
+HEADINGS_COLUMNS: tuple[Column[tuple[HeadingsStudy, wall.Headings]], ...] = (  # a row a heading
+    Column("aspect", lambda lying: lying[1].aspect),
+    Column("heading_deg", lambda lying: lying[1].headings, "deg"),
+    Column("share", lambda lying: lying[1].shares, "share"),
+    Column("straight_wall_share", lambda lying: lying[1].straight_shares, "share"),
+    Column(
+        "aspect_share",
+        lambda lying: lying[0].chances.get(lying[1].aspect, np.nan) * np.asarray(lying[1].shares),
+        "share",
+    ),
+    Column("length_mm", lambda lying: lying[1].lengths, "mm"),
+    Column("width_mm", lambda lying: lying[1].widths, "mm"),
+    Column("overhang_mm", lambda lying: lying[1].overhangs, "mm"),
+    Column("falls_off", lambda lying: lying[1].falls_off),
+    Column("half_turn_of_deg", lambda lying: _heading_of(lying[1], lying[1].half_turns), "deg"),
+    Column("mirror_of_deg", lambda lying: _heading_of(lying[1], lying[1].mirrors), "deg"),
+    Column("contact_1_x_mm", lambda lying: lying[1].touching[:, 0, 0], "mm", hidden=True),
+    Column("contact_1_y_mm", lambda lying: lying[1].touching[:, 0, 1], "mm", hidden=True),
+    Column("contact_2_x_mm", lambda lying: lying[1].touching[:, 1, 0], "mm", hidden=True),
+    Column("contact_2_y_mm", lambda lying: lying[1].touching[:, 1, 1], "mm", hidden=True),
+)
+
+
+def _heading_of(stable: wall.Headings, rows: Ints) -> Floats:
+    """Return the headings [rad] of rows; NaN of none, -1."""
+    return np.append(stable.headings, np.nan)[np.maximum(rows, -1)]
 
 
 @former_keywords()

@@ -11,6 +11,7 @@ from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import shank_remarks, unknown_aspects
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column, Frame, of_arrays
 from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
 from feederscrew.dropping.ensemble import wilson
@@ -18,6 +19,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.machine import checks
 from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.rates import stream, well_oriented
+from feederscrew.rates.stream import orientation_columns
 from feederscrew.rates.tipping import marked
 from feederscrew.records import ReadableRecord
 from feederscrew.resting import profiles
@@ -249,6 +251,11 @@ class RateStudy(ReadableRecord):
         """Say whose probabilities are taken: 'hops, launch feed', 'csa'."""
         return self.aspects.source(self.rule)
 
+    def orientations_table(self) -> Frame:
+        """Return what each station does with each orientation, a row each: ``orientations.csv``."""
+        queue = self.rate.orientations
+        return of_arrays(orientation_columns(queue, self.rule), queue)
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return a sentence for each thing that a user must not overlook: devices, aspects, velocity."""
@@ -263,6 +270,51 @@ class RateStudy(ReadableRecord):
             *odd,
             *(hop.remark(self.bowl) if self.devices else ()),
         )
+
+
+def _heading_share(study: RateStudy) -> float:
+    """Return the share [1] of the parts on the wanted aspect that lie in its heading."""
+    return study.rate.orientations.heading_shares[study.rate.row]
+
+
+RATE_COLUMNS: tuple[Column[RateStudy], ...] = (  # of the document, and of the printed table unless hidden
+    Column("parts_per_minute", lambda study: study.rate.parts, "1/min", interval=True),
+    Column("aspect", lambda study: study.rate.orientations.aspects[study.rate.row]),
+    Column("heading_deg", lambda study: study.rate.orientations.headings[study.rate.row], "deg"),
+    Column("offered_per_minute", lambda study: study.rate.offered, "1/min", interval=True),
+    Column("efficiency", lambda study: study.rate.efficiency, "share"),
+    Column("purity", lambda study: study.rate.purity, "share"),
+    Column("velocity_mm_s", lambda study: study.rate.velocity, "mm/s", interval=True),
+    Column("length_mm", lambda study: study.rate.orientations.lengths[study.rate.row], "mm"),
+    Column("gap_mm", lambda study: study.rate.gap, "mm"),
+    Column("pitch_mm", lambda study: study.rate.pitch, "mm"),
+    Column("rule", lambda study: study.rule, hidden=True),
+    Column("answer", lambda study: study.answer),
+    Column(
+        "p_orientation",
+        lambda study: study.rate.probability,
+        "share",
+        "probability of the orientation",
+        interval=True,
+    ),
+    Column(
+        "p_aspect", lambda study: study.rate.probability.value / _heading_share(study), "share", hidden=True
+    ),
+    Column("p_heading", lambda study: _heading_share(study), "share", hidden=True),
+    Column("passes_devices", lambda study: study.rate.through, "share"),
+    Column("fill", lambda study: study.rate.fill, "share"),
+    Column("well_oriented_of_leaving", lambda study: study.rate.purity, "share", hidden=True),
+    Column("jams_per_hour", lambda study: study.rate.jams, "1/h"),
+    Column("clearing_s", lambda study: study.rate.clearing, "s"),
+    Column(
+        "quasi_static", lambda study: [device.kind for device in study.devices if device.turns], hidden=True
+    ),
+    Column(
+        "rolls_back",
+        lambda study: [way.name for way in study.rate.orientations.lying if way.may_roll_back],
+        hidden=True,
+    ),
+)
 
 
 @former_keywords()

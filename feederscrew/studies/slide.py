@@ -168,7 +168,7 @@ def sliding_map(
     # alpha - theta over half a turn, or over the whole one where the drive points backward
     widest = 90 if abs(direction) <= np.pi / 2.0 else 180
     headings = np.radians(np.arange(-widest, widest + 1, 3))
-    first = GridAxis("alpha_minus_theta_deg", check.frozen(headings), np.pi / 180.0)
+    first = GridAxis("alpha_minus_theta_deg", check.frozen(headings), np.pi / 180.0, "deg")
     # G from 0 past the hop and past the bowl's own, in round steps that grow with the range
     hop = float(limits.hop_ratio(beta))
     reached = hop if beta > 0.0 and hop < MAX_RATIO else 0.0

@@ -11,6 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.arrays import Array, Floats
 from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.geometry import grids
 from feederscrew.mechanics import limits, motion_maps, track_balance, track_contacts
 from feederscrew.mechanics.cycle import Cycle
@@ -64,6 +65,14 @@ class TrackStudy(ReadableRecord):
             return motion_maps.track_cells(self.posture, bowl, self.laid_heading)
 
         return grids.evaluate(first.axis, second.axis, function, motion_maps.TRACK_REGIMES)
+
+
+TRACK_COLUMNS: tuple[Column[TrackStudy], ...] = (  # of the document
+    Column("part", lambda study: study.part.name),
+    Column("aspect", lambda study: study.posture.name),
+    Column("heading_deg", lambda study: study.seat.heading, "deg"),
+    Column("height_mm", lambda study: study.seat.height, "mm"),
+)
 
 
 @former_keywords()

@@ -8,7 +8,9 @@ from typing import Any
 from feederscrew import check
 from feederscrew.bowl.devices import shank_remarks, unknown_aspects
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column, Frame, of_records
 from feederscrew.conveying import answer
+from feederscrew.conveying.hop import hop
 from feederscrew.part.record import Part
 from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates import stream, well_oriented
@@ -32,6 +34,30 @@ class Tuned(ReadableRecord):
     driven: Bowl  # at this setting
 
 
+TUNE_COLUMNS: tuple[Column[Tuned], ...] = (  # a row a setting
+    Column("key", lambda tuned: tuned.solution.key.name),
+    Column("value", lambda tuned: tuned.solution.number),
+    Column("unit", lambda tuned: tuned.solution.key.unit),
+    Column(
+        "parts_per_minute",
+        lambda tuned: tuned.velocity * tuned.solution.parts_per_metre,
+        "1/min",
+        interval=True,
+    ),
+    Column("velocity_mm_s", lambda tuned: tuned.solution.answer.velocity, "mm/s"),
+    Column("regime", lambda tuned: tuned.solution.answer.regime),
+    Column("throw_number", lambda tuned: tuned.solution.answer.throw_number),
+    Column("hop_height_mm", lambda tuned: hop(tuned.driven).height, "mm"),
+    Column("hop_flight_mm", lambda tuned: hop(tuned.driven).flight, "mm"),
+    Column("hardest_impact_mm_s", lambda tuned: tuned.solution.answer.hardest_impact, "mm/s"),
+    Column("margin_forward", lambda tuned: tuned.solution.answer.margins["forward"]),
+    Column("margin_backward", lambda tuned: tuned.solution.answer.margins["backward"]),
+    Column("margin_hop", lambda tuned: tuned.solution.answer.margins["hop"]),
+    Column("several", lambda tuned: tuned.several),
+    Column("tips_over", lambda tuned: " ".join(tuned.over) or None),
+)
+
+
 @dataclass(frozen=True, eq=False)
 class TuneStudy(ReadableRecord):
     """Every setting of one key of the drive that gives a rate, the recommended one first."""
@@ -44,6 +70,10 @@ class TuneStudy(ReadableRecord):
     worst: bool  # whether it is met at the slowest of every start and friction, else from rest
     settings: tuple[Tuned, ...]
     skipped: int = 0  # further settings of about that velocity, whose arriving parts were not simulated
+
+    def table(self) -> Frame:
+        """Return every setting, a row each: ``tune.csv``."""
+        return of_records(TUNE_COLUMNS, self.settings)
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -13,9 +13,9 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats
+from feederscrew.columns import Frame
 from feederscrew.mechanics import limits
-from feederscrew.output import compare, slide, style, tables
-from feederscrew.output.tables import Frame
+from feederscrew.output import compare, slide, style
 from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import parts
 from feederscrew.thesis.motion import Quantity
@@ -351,14 +351,14 @@ def numbers(figure: Figure) -> Frame:
     data = figure.data()
     if isinstance(data, Bars):
         printed = {f"{name}_printed": values for name, values in data.printed_shares.items()}
-        return tables.frame({"aspect": data.aspects, **data.profiles, **printed})
+        return Frame.of({"aspect": data.aspects, **data.profiles, **printed})
     if isinstance(data, ByRatio):
-        return tables.frame({"aspect_ratio": data.ratios, **data.lines})
+        return Frame.of({"aspect_ratio": data.ratios, **data.lines})
     if isinstance(data, Curves):
         limit = {f"mu_limit_beta_{beta:g}": values for beta, values in data.limits.items()}
-        return tables.frame({"acceleration_ratio": data.ratios, **limit})
+        return Frame.of({"acceleration_ratio": data.ratios, **limit})
     arrays = (*np.meshgrid(*data.ticks), data.values, data.hops)
-    return tables.frame({name: np.ravel(a) for name, a in zip((*data.columns, "hops"), arrays)})
+    return Frame.of({name: np.ravel(a) for name, a in zip((*data.columns, "hops"), arrays)})
 
 
 def draw(figure: Figure, ax: "style.Axes | None" = None) -> "style.Figure":

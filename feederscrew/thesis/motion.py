@@ -7,6 +7,7 @@ import numpy as np
 
 from feederscrew.arrays import Array
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column, Frame, of_records
 from feederscrew.geometry import vectors
 from feederscrew.mechanics.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL, drive_force
 from feederscrew.mechanics.limits import acceleration_ratio, published_limit
@@ -88,6 +89,14 @@ class Term:
     unit: str  # 'N' or 'N mm'
 
 
+TERM_COLUMNS: tuple[Column[Term], ...] = (
+    Column("name", lambda term: term.name),
+    Column("equation", lambda term: term.equation),
+    Column("value", lambda term: term.value),
+    Column("unit", lambda term: term.unit),
+)
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FloorAsPublished(floor_study.FloorStudy):
     """A FloorStudy whose upper reversal, and each cell of its maps, is solved by print as well."""
@@ -111,6 +120,10 @@ class TrackAsPublished(track_study.TrackStudy):
     printed: PrintedTrack  # type: ignore[misc]
     omitted_terms: tuple[Term, ...]  # what these leave out
     terms = TRACK_TERMS
+
+    def omitted_terms_table(self) -> Frame:
+        """Return the terms that the printed equations leave out, a row each: ``track_omitted_terms.csv``."""
+        return of_records(TERM_COLUMNS, self.omitted_terms)
 
 
 def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.0) -> FloorAsPublished:

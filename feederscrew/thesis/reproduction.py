@@ -7,12 +7,13 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from feederscrew.columns import Frame
 from feederscrew.errors import ArgumentError
 from feederscrew.output import style
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page, Picture, Text
-from feederscrew.output.tables import Frame, data_frame, frame, table_of, text
+from feederscrew.output.tables import data_frame, table_of, text
 from feederscrew.records import ReadableRecord
 from feederscrew.thesis import figures
 from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
@@ -174,7 +175,7 @@ def overview(items: Sequence[Item]) -> Frame:
     columns |= {name: [item.counts[name] for item in items] + [0] * len(others) for name in COUNTS}
     ids = [item.findings for item in items] + list(without_cells.values())
     titles = ["; ".join(FINDING_OF[id].title for id in each) for each in ids]
-    return frame(columns | {"findings": titles + list(advice.values())})
+    return Frame.of(columns | {"findings": titles + list(advice.values())})
 
 
 def entries(item: Item) -> Frame:
@@ -184,7 +185,7 @@ def entries(item: Item) -> Frame:
     if item.kind == "table":
         for name in ("recomputed", "explaining"):
             rows[name] = [_digits(entry.published, value) for entry, value in zip(item.entries, rows[name])]
-    return frame(rows)
+    return Frame.of(rows)
 
 
 def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[str, Any]:

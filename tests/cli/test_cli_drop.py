@@ -210,11 +210,11 @@ def test_a_plate_that_was_stopped_is_marked_everywhere():
     study = plate_study(part, [bowl, bowl], "place", names=["one", "two"], drops=10, seconds=0.2)
     whole, cut = study.plates
     stopped = replace(study, plates=(whole, replace(cut, partial=True)))
-    for table in (plate_output.plates, plate_output.rates, plate_output.course):
+    for table in (type(study).table, type(study).rates_table, type(study).course_table):
         marks = data_frame(table(stopped)).groupby("bowl")["partial"].agg(["min", "max"])
         assert marks.to_numpy().tolist() == [[False, False], [True, True]]
         assert "partial" not in table(study)
-    assert plate_output.drives(stopped)["partial"].tolist() == [False, True]
+    assert stopped.drives_table()["partial"].tolist() == [False, True]
     assert plate_output.document(stopped)["partial"]
     line = f"partial: stopped after 10 parts on the plate of two at {1e3 * bowl.drive.amplitude:.4g} mm"
     assert plate_output.remarks(stopped)[-1] == line

@@ -14,8 +14,9 @@ from click.testing import CliRunner
 from command_lines import NUT, ROOT
 
 from feederscrew import __version__
+from feederscrew.columns import Frame
 from feederscrew.errors import Faults, FeederError, MeshError
-from feederscrew.output import style, tables
+from feederscrew.output import style
 from feederscrew_cli import interrupt, options
 from feederscrew_cli.main import Fence
 
@@ -40,7 +41,7 @@ def speak(out):
     out.say("done")
     with out.step("nothing"):
         out.detail("slowly")
-    out.show(tables.frame({"normal_x": [1.0], "height_mm": [2.0]}), {"height_mm": 2.0}, hidden=["normal_x"])
+    out.show(Frame.of({"normal_x": [1.0], "height_mm": [2.0]}), {"height_mm": 2.0}, hidden=["normal_x"])
 
 
 @click.command()

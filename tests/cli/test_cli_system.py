@@ -13,6 +13,7 @@ import pytest
 from command_lines import NUT, names, rows
 
 from feederscrew.batch import batch_run as batches
+from feederscrew.columns import Frame
 from feederscrew.output import offers, tables
 from feederscrew_cli.main import feeder
 from feederscrew_cli.progress import Progress
@@ -164,4 +165,4 @@ def test_a_name_that_would_command_a_terminal_is_shown_by_its_letters(run, tmp_p
     good, bad = run("inertia", odd.name, "-o", "out"), run("inertia", f"no {odd.name}")
     assert "\x1b" not in good.stderr + good.stdout + bad.stderr
     assert bad.stderr == "Error: no red\\x1b[31m row.stl: no such file - check the path\n"
-    assert tables.text(tables.frame({"part": ["a\nb\x07"]}), "table") == "part\na b\\x07\n"
+    assert tables.text(Frame.of({"part": ["a\nb\x07"]}), "table") == "part\na b\\x07\n"

@@ -7,7 +7,6 @@ import pytest
 import shapes
 
 from feederscrew import bowl
-from feederscrew.output import headings as headings_output
 from feederscrew.output import tables
 from feederscrew.studies.headings import headings
 
@@ -41,7 +40,7 @@ def test_each_record_is_a_row():
 
 def test_partners_of_a_heading_are_half_a_turn_on_or_its_mirror_image():
     bracket = shapes.part(shapes.prism(shapes.l_profile(), 15.0))
-    rows = headings_output.frame(headings(bracket, bowl.default())).rows()
+    rows = headings(bracket, bowl.default()).table().rows()
     turned = [row["half_turn_of_deg"] - row["heading_deg"] for row in rows]
     turned = [turn % 360.0 for turn in turned if np.isfinite(turn)]
     assert turned and turned == pytest.approx([180.0] * len(turned))

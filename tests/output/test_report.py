@@ -15,7 +15,8 @@ from scipy.spatial.transform import Rotation
 
 import feederscrew as fs
 from feederscrew import bowl as bowls
-from feederscrew.output import DPI, style, tables
+from feederscrew.columns import Frame
+from feederscrew.output import DPI, style
 from feederscrew.output import report as report_output
 from feederscrew.output.page import as_html, blocks
 from feederscrew.output.page.as_html import html
@@ -172,7 +173,7 @@ def test_repeated_leaves_out_where_and_how_loud():
 def test_cells_for_people_and_a_column_for_each_fate_that_a_part_met():
     columns = {"aspect": ["A", None], "faces": [2, 10], "height_mm": [7.5, np.nan]}
     columns |= {"p_csa": [0.5, 1e-15], "fits": [True, False]}
-    heads, numeric, texts = as_html.texts_of(tables.frame(columns))
+    heads, numeric, texts = as_html.texts_of(Frame.of(columns))
     assert heads[2:4] == [("height", "[mm]"), ("CSA", "[%]")]
     assert numeric == [False, True, True, True, False]
     assert list(zip(*texts)) == [("A", "2", "7.500", "50.0", "yes"), ("–", "10", "–", "0", "no")]
@@ -207,14 +208,14 @@ def laid_out(*shown):
 
 
 def pairs(rows):
-    return Table(tables.frame({"quantity": ["a"] * rows, "value": ["b"] * rows}))
+    return Table(Frame.of({"quantity": ["a"] * rows, "value": ["b"] * rows}))
 
 
 def test_what_stands_alone_has_the_whole_width_and_names_with_values_are_set_in_two_halves(monkeypatch):
     """A list of thirty quantities took a page of paper and left its right half empty."""
-    broad = Table(tables.frame({f"column_{k}": [1.0] for k in range(8)}))
+    broad = Table(Frame.of({f"column_{k}": [1.0] for k in range(8)}))
     assert "beside" not in laid_out(pairs(30), broad)
-    columns = laid_out(pairs(30), *[Table(tables.frame({"a": [1.0] * 9}))] * 3)
+    columns = laid_out(pairs(30), *[Table(Frame.of({"a": [1.0] * 9}))] * 3)
     assert columns.split('class="beside"')[1].count("<div>") == 2
     assert columns.split("<div>")[2].count("<table>") == 3  # the short ones below each other
     assert laid_out(pairs(13), pairs(7)).count('<table class="pairs">') == 1

@@ -11,7 +11,8 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.output import tables, tooling_views
+from feederscrew.columns import Frame
+from feederscrew.output import tooling_views
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Table, Views
 from feederscrew.output.report import CHAPTERS, over_cuts, page
@@ -125,7 +126,7 @@ def test_no_row_of_a_table_is_white_beside_a_long_text(probed, width):
         "purity": [0.5, np.nan],
         "what goes wrong": [why, "-"],
     }
-    page = Page("cap", "", (Chapter((Table(tables.frame(rows)),), title="The loop"),))
+    page = Page("cap", "", (Chapter((Table(Frame.of(rows)),), title="The loop"),))
     text = escape(html(page).replace("</body>", PHONE))
     frame = f'<iframe style="width:{width}px;height:900px;border:0" srcdoc="{text}">'
     said, _ = probed(
@@ -167,7 +168,7 @@ def test_nothing_is_wider_than_the_paper(probed, text):
         {name: np.full(3, 124.5) for name in MACHINE.split()},
         {f"p_rule_{k}": np.full(3, 12.34) for k in range(13)},
     )
-    added = html(Page("wide", "", (Chapter(tuple(Table(tables.frame(one)) for one in columns)),)))
+    added = html(Page("wide", "", (Chapter(tuple(Table(Frame.of(one)) for one in columns)),)))
     for shown in (text, added):
         printed = shown.replace("@media print {", "@media all {")
         assert probed(printed, WIDER, "--window-size=688,900", quiet=False)[0] == []
@@ -260,7 +261,7 @@ window.addEventListener("load", () => {
 
 def test_on_a_telephone_nothing_moves_the_page_sideways(probed):
     """The view of a trial was 384 pixels wide on a page of 358; tables and pictures scroll by themselves."""
-    wide = Table(tables.frame({f"column_{k}_mm": np.full(3, 124.5) for k in range(20)}))
+    wide = Table(Frame.of({f"column_{k}_mm": np.full(3, 124.5) for k in range(20)}))
     words = "at sorter of two orientations, play 3.75 mm, sees their outline: passed"
     views = Views({"poses": []}, (("A@2", words, ()),), "trial-views", "Orientation", plays=True)
     text = html(Page("part", "", (Chapter((views, wide, wide), anchor="trial", title="Trial"),)))

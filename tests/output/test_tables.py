@@ -10,6 +10,7 @@ import pytest
 
 import feederscrew as fs
 from feederscrew import bowl as bowls
+from feederscrew.columns import Frame
 from feederscrew.geometry.polygons import centroid
 from feederscrew.output import record_views, tables
 from feederscrew.output.page.as_html import escape, texts_of
@@ -21,7 +22,7 @@ from feederscrew.tooling.orientations import orientations
 PARTS = Path(__file__).parents[2] / "parts"
 COLUMNS = {"aspect": ["A", "BB"], "stable": np.array([True, False]), "faces": np.array([1, 12])}
 COLUMNS |= {"height_mm": [12.34567, 1.0], "normal_x": [1e-17, -0.99999], "p_pmi": [0.1234567, math.nan]}
-FRAME = tables.frame(COLUMNS)
+FRAME = Frame.of(COLUMNS)
 
 
 def test_a_table_for_people_for_spreadsheets_and_for_programs():
@@ -38,7 +39,7 @@ def test_a_table_for_people_for_spreadsheets_and_for_programs():
     own = dict(zip(COLUMNS, ("BB", False, 12, 1.0, -0.99999, None)))
     assert rows[0]["stable"] is True and rows[1] == own
     with pytest.raises(ValueError, match="same length"):
-        tables.frame({"a": [1, 2], "b": [1]})
+        Frame.of({"a": [1, 2], "b": [1]})
     # JSON keeps full precision and order, and has null for no number.
     third = 1.0 / 3.0
     values = {"b": np.float64(third), "a": np.array([math.nan, 1.0]), "c": math.inf, "n": np.int64(3)}
@@ -48,7 +49,7 @@ def test_a_table_for_people_for_spreadsheets_and_for_programs():
     # Four significant digits.
     own = {9.99999: "10.00", 1234.56: "1235", 0.00123456: "0.001235", 3.2e-7: "3.200e-07", 4.2e9: "4.200e+09"}
     for value, text in own.items():
-        assert tables.text(tables.frame({"x": [value]}), "table").split() == ["x", text]
+        assert tables.text(Frame.of({"x": [value]}), "table").split() == ["x", text]
 
 
 @pytest.mark.parametrize(
@@ -70,14 +71,14 @@ ENDS = {f"{name}{end}": [0.5, 0.25] for name in ("p_pmi", "p_csa") for end in ("
 
 
 def folded(width, columns):
-    lines = tables.text(tables.frame(columns), "table", width).splitlines()
+    lines = tables.text(Frame.of(columns), "table", width).splitlines()
     assert max(map(len, lines)) <= width
     return lines
 
 
 def test_a_wide_table_is_folded_to_the_window():
     columns = {"part": ["a.stl", "b.stl"]} | LENGTHS
-    assert max(map(len, tables.text(tables.frame(columns), "table").splitlines())) > 190
+    assert max(map(len, tables.text(Frame.of(columns), "table").splitlines())) > 190
     lines = folded(60, columns)
     heads = [line.split() for line in lines if line.startswith("part")]
     assert [name for head in heads for name in head[1:]] == [f"length{k}" for k in range(20)]
@@ -105,7 +106,7 @@ def test_a_wide_table_is_folded_to_the_window():
 
 def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
     columns = {"name": ["x" * 30], "low_mm": [1.5], "high_mm": [2.5], "note": ["y" * 60], "kept": ["z"]}
-    wide, spare = tables.frame(columns), [("low_mm", "high_mm"), ("gone",), ("note",)]
+    wide, spare = Frame.of(columns), [("low_mm", "high_mm"), ("gone",), ("note",)]
     shown, left_out = tables.to_page(wide, spare)
     assert list(shown) == ["name", "note", "kept"] and left_out == ["low", "high"]
     assert len(tables.text(shown, "table").splitlines()[-1]) <= tables.PAGE
@@ -116,10 +117,10 @@ def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
 def test_texts_of_a_page_are_printable_and_what_has_a_unit_of_its_own_is_no_rounding_beside_another():
     """On the terminal and on a page; in a column of one unit it is."""
     assert escape("red\x1b[31m <b>\nnext \u202e") == "red\\x1b[31m &lt;b&gt;\nnext \\u202e"
-    mixed = tables.frame({"quantity": ["density", "volume"], "value": [7.85, 2.1e13]})
+    mixed = Frame.of({"quantity": ["density", "volume"], "value": [7.85, 2.1e13]})
     assert "7.850" in tables.text(mixed, "table")
     assert texts_of(mixed)[2][1][0] == "7.850"
-    assert texts_of(tables.frame({"volume_mm3": [1e-3, 2.1e13]}))[2][0][0] == "0"
+    assert texts_of(Frame.of({"volume_mm3": [1e-3, 2.1e13]}))[2][0][0] == "0"
 
 
 @pytest.mark.parametrize(

@@ -3,30 +3,13 @@
 import re
 from pathlib import Path
 
-import numpy as np
-import pytest
-
 from feederscrew.errors import Detail
-from feederscrew.output import tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Folded, Page, Text
 from feederscrew.output.page.words import GLOSSARY
 
 DOCS = Path(__file__).parents[2] / "docs"
-
-
-@pytest.mark.parametrize(
-    "name", ["purity_low", "efficiency_high", "yield", "efficiency_static", "p_hops_low"]
-)
-def test_the_ends_of_a_share_are_in_percent_as_the_share_is(name):
-    """A bare 0.97 stood beside 99 %."""
-    assert tables.heading(name)[1] == "[%]"
-    assert tables.cells(name, np.array([0.00299])) == ["0.2990"]
-
-
-def test_a_count_of_what_passed_is_no_share():
-    assert tables.heading("passed")[1] == "" and tables.cells("passed_low", np.array([0.5])) == ["50.00"]
 
 
 def test_words_of_pages_have_the_meaning_that_the_glossary_gives():

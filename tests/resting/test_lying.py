@@ -75,7 +75,7 @@ def test_material_that_touches_is_what_the_floor_sees():
 def test_table_document_picture_and_record_say_the_same():
     part = load(ROOT / "parts/lbracket_30x20x15.stl")
     study = study_of(part, drops=0)
-    table, document = aspects_output.aspects(study), aspects_output.document(study)
+    table, document = study.table(), aspects_output.document(study)
     assert not {"kind", "form"} & set(table)
     assert list(table["lies"]) == list(study.aspects.lies) == [one.lies for one in study.aspects]
     assert [row["lies"] for row in document["aspects"].rows()] == list(table["lies"])

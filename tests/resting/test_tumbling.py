@@ -193,13 +193,13 @@ def test_a_box_by_class():
     assert not ground.tips.doubts
     # The graph is a table.
     study = AspectsStudy(part, aspects)
-    frame = aspects_output.transitions(study)
+    frame = study.transitions_table()
     assert list(frame) == ["from", "to", "barrier_mm", "barrier_uJ", "axis_x", "axis_y", "axis_z"]
     assert list(zip(frame["from"], frame["to"])) == [(a, b) for a in "ABC" for b in "ABC" if a != b]
     assert np.hypot(np.hypot(frame["axis_x"], frame["axis_y"]), frame["axis_z"]) == pytest.approx(1.0)
     lowest = tables.data_frame(frame).groupby("from")["barrier_mm"].min()
     assert lowest.to_numpy() == pytest.approx(lifts)
-    assert aspects_output.aspects(study)["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
+    assert study.table()["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
     # No arrow of its picture ends under a disc.
     ways = transitions(ground)
     axes = aspects_output.tipping_graph("box", aspects.names, ways, np.array([1.0, 0.0, 0.0])).axes[0]

@@ -10,6 +10,7 @@ import shapes
 from matplotlib.figure import Figure
 
 import feederscrew as fs
+from feederscrew.columns import Frame
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignRequest, DesignStudy, NearestDesign
 from feederscrew.output import tables
@@ -79,7 +80,7 @@ def test_a_table_is_the_file_of_its_command(run, run_json, tmp_path):
     shapes.box(8.0, 12.0, 20.0).export(tmp_path / "box.stl")
     part, own = fs.load("box.stl"), [word for value in DRIVE for word in ("--set", value)]
     said = run("headings", "box.stl", *own, "--format", "csv", "-q").stdout
-    assert tables.text(tables.frame(dict(fs.headings(part, BOWL).to_frame())), "csv") == said
+    assert tables.text(Frame.of(dict(fs.headings(part, BOWL).to_frame())), "csv") == said
     assert run_json("inertia", "box.stl", "-q")["mass_g"] == pytest.approx(1e3 * part.mass)
 
 
@@ -130,7 +131,7 @@ def test_a_record_saves_what_its_command_writes(tmp_path, name):
     assert not list(folder.glob("*.png"))
     table = next((p for p in folder.glob("*.csv")), None)
     if table:
-        assert table.read_text() == tables.text(tables.frame(dict(record.to_frame(table.stem))), "csv")
+        assert table.read_text() == tables.text(Frame.of(dict(record.to_frame(table.stem))), "csv")
 
 
 def test_what_no_command_writes_is_not_saved(tmp_path):

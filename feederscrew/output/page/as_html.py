@@ -13,6 +13,7 @@ from html import unescape
 from importlib import resources
 from itertools import groupby
 
+from feederscrew.columns import Frame
 from feederscrew.errors import printable
 from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
@@ -311,7 +312,7 @@ def _size(picture: kinds.Picture) -> list[float]:
     return [pixels * CSS_DPI / DPI for pixels in struct.unpack(">2I", picture.content[16:24])]
 
 
-def _table(frame: tables.Frame) -> str:
+def _table(frame: Frame) -> str:
     heads, numeric, columns = texts_of(frame)
     marks = [' class="number"' if number else "" for number in numeric]
     head = "".join(
@@ -346,11 +347,12 @@ def _long(mark: str, cell: str) -> str:
     return mark or (' class="long"' if len(cell) > LONG_LETTERS else "")
 
 
-def texts_of(frame: tables.Frame) -> tuple[list[tuple[str, str]], list[bool], list[list[str]]]:
+def texts_of(frame: Frame) -> tuple[list[tuple[str, str]], list[bool], list[list[str]]]:
     """Return a frame as a page shows it: heads of (name, unit), which are of numbers, and cells by column."""
     numeric = [tables.is_numeric(column) for column in frame.values()]
-    heads = [tables.heading(name, number) for name, number in zip(frame, numeric)]
-    return heads, numeric, [tables.cells(name, column, SHORT, NOTHING) for name, column in frame.items()]
+    heads = [tables.head_of(frame, name) for name in frame]
+    texts = [tables.cells(head, column, SHORT, NOTHING) for head, column in zip(heads, frame.values())]
+    return [(head.heading, f"[{head.unit}]" if head.unit else "") for head in heads], numeric, texts
 
 
 def _pairs(block: kinds.Block) -> bool:

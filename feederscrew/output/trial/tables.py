@@ -9,8 +9,8 @@ from feederscrew.arrays import Floats, Ints
 from feederscrew.designing.evidence import share_at_least
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.heavy import heavy
-from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
+from feederscrew.output import part_facts, tables
 from feederscrew.output.convey import restitution_entry
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.trial import ENGINE, TrialStudy
@@ -53,7 +53,7 @@ def pictures(study: TrialStudy) -> list[offer.Offer]:
 def document(study: TrialStudy) -> dict[str, Any]:
     """Return a TrialStudy as the JSON document: of the first amplitude, and of all where there are more."""
     entries = {
-        **columns.part(study.part, study.warnings),
+        **part_facts.part(study.part, study.warnings),
         **row_of(study, "rule answer launch seed partial"),
         **_run(study, study.runs[0]),
     }

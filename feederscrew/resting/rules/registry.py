@@ -162,6 +162,12 @@ CLOSED = "closed"  # of the rules the one that is nearest to the recommended ans
 CHOICES = (*RULE_NAMES, CLOSED, RECOMMENDED_ANSWER)  # what a user may ask for
 
 
+def heading(rule: str) -> str:
+    """Return a rule's name as a table heads its column: 'PMI', 'quasistatic'."""
+    is_short = rule in RULE_OF and RULE_OF[rule].label == rule.upper()
+    return rule.upper() if is_short else rule.replace("_", " ")
+
+
 def require_rule(rule: str) -> None:
     """Refuse a rule that there is not; the fault names the nearest one.
 
