@@ -85,6 +85,35 @@ def _mean_at_most(count: int, confidence: float) -> float:
     return float(special.gammaincinv(count + 1, confidence))  # half of chi-square
 
 
+def log_likelihood_ratio(right: int, total: int, share: float, other: float) -> float:
+    """Return by how much a share explains what was seen better than another share.
+
+    Parameters
+    ----------
+    right : int
+        Parts that count.
+    total : int
+        Parts that were looked at.
+    share : float [1]
+        Above 0 and below 1.
+    other : float [1]
+        Above 0 and below 1.
+
+    Returns
+    -------
+    float [1]
+        right ln(share / other) + (total - right) ln((1 - share) / (1 - other)). Where ``other`` is true it
+        ever rises to ln(1 / risk) with a chance of ``risk`` at most, however often it is looked at (Ville).
+
+    References
+    ----------
+    A. Wald, "Sequential tests of statistical hypotheses", Ann. Math. Statist. 16, 117-186, 1945, sec. 5.2;
+    J. Ville, "Etude critique de la notion de collectif", 1939, for the inequality.
+    """
+    wrong = total - right
+    return right * math.log(share / other) + wrong * math.log((1.0 - share) / (1.0 - other))
+
+
 def parts_to_look_at(demand: float, wrong: int, confidence: float = CONFIDENCE) -> int:
     """Return the smallest sample that shows a share of good parts though some of it are wrong.
 

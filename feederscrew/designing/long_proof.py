@@ -194,7 +194,7 @@ def follow_long(
         fill: [Run(fill, _seed(run.seed, number), plan.seconds) for number in range(plan.runs)]
         for fill in FILLS
     }
-    keys = {each: _key(row, each) for own in runs.values() for each in own}
+    keys = {each: run_key(row, each) for own in runs.values() for each in own}
     counts = {each: made for each, key in keys.items() if (made := _kept(row, each, key)) is not None}
 
     def missing() -> Iterator[Run]:
@@ -251,8 +251,18 @@ def _seed(seed: int, number: int) -> int:
     return int(np.random.SeedSequence((seed, number)).generate_state(1)[0])
 
 
-def _key(row: FedRow, run: Run) -> dict[str, str]:
-    """All that decides a run, under which it is kept."""
+def run_key(row: FedRow, run: Run) -> dict[str, str]:
+    """Return all that decides a run, under which it is kept.
+
+    Parameters
+    ----------
+    row : FedRow
+    run : Run
+
+    Returns
+    -------
+    dict of str
+    """
     bowl, digest = row.bowl, hashlib.sha256()
     for shares in (row.shares, row.shares if row.touching is None else row.touching):
         digest.update(np.ascontiguousarray(shares, float).tobytes())

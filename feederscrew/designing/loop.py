@@ -46,7 +46,7 @@ from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.isolating import chain as static
 from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.trial.fills import FedRow, FilledQueue, PoseKind
+from feederscrew.trial.fills import FedRow, FilledQueue, FillLevel, PoseKind
 from feederscrew.trial.long_ride import long_ride
 from feederscrew.trial.result import TrialRun
 
@@ -332,7 +332,10 @@ def prove_design(
     )
     try:
         search.tell(f"queue: {name}, {proposal.sentence}")
-        study = _with_queues(study, queues.follow_fills(line, whole=whole))
+        # a row that was followed before goes on where it was
+        decides = long_proof.run_key(row, long_proof.Run(FillLevel.HIGH, request.seed, 0.0))
+        running = search.state.queues_of(tuple(sorted(decides.items())))
+        study = _with_queues(study, queues.follow_fills(line, whole=whole, running=running))
     except KeyboardInterrupt:
         return replace(study, partial=True)
     frequent = [oriented.lying[k] for k in short_trials.frequent_rows(candidate.weights)]

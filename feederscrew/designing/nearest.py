@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,7 @@ from feederscrew.trial.wanted import wanted_states
 
 MINUTE = 60.0
 SLIGHT = 1e-9  # of rounding
+SAME_DRIVE = 0.05  # [1] by which drives differ that are one: half of what a draw changes
 RATE_DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -103,8 +104,15 @@ def nearest(
         variant = Variant(change, candidate, search)
         return _describe_nearest(search, rate, variant, study, denials, len(proofs)), study
     done, pending = 0, [variants(search, proofs)]
+    proved = [candidate for _, candidate in proofs]
     lower = itertools.islice(_at_a_lower_rate(search), policy.lower_rate_proofs)
-    for variant in itertools.chain(itertools.islice(_in_turn(pending), policy.near_proofs), lower):
+    near_by = (
+        variant for variant in _in_turn(pending) if not _is_denied(variant, proved, policy.near_drives)
+    )
+    for variant in itertools.chain(itertools.islice(near_by, policy.near_proofs), lower):
+        if _is_denied(variant, proved):
+            continue
+        proved.append(variant.candidate)
         search.tell(f"nearest that holds: {variant.candidate.attempt.wanted}, {variant.change}")
         study, done = prove(variant.search, variant.candidate), done + 1
         if study.partial:
@@ -125,6 +133,21 @@ def nearest(
         helps=tuple(_helps(search, best, None)),
     )  # fmt: skip
     return none, None
+
+
+def _is_denied(variant: Variant, proved: Sequence[Candidate], drives: float = math.inf) -> bool:
+    """Whether a variant's chain was proved at so many drives, or at one that is nearly its own."""
+    own = variant.candidate.attempt
+    alike = [
+        one.attempt for one in proved if (one.attempt.wanted, one.attempt.chain) == (own.wanted, own.chain)
+    ]
+    near = (
+        abs(own.peak_to_peak - other.peak_to_peak) < SAME_DRIVE * other.peak_to_peak
+        and abs(own.throw_number - other.throw_number) < SAME_DRIVE * other.throw_number
+        for other in alike
+    )
+    # where more of what leaves counts, it is another proof
+    return variant.as_requested and (len(alike) >= drives or any(near))
 
 
 def nearest_from_study(

@@ -17,7 +17,8 @@ FILLS = (
     FillLevel.NORMAL,
     FillLevel.LOW,
 )  # in turn: the fullest track first, for it fails most often
-LOOK_EVERY_S = 5.0  # [s] of each fill after which it is looked at
+LOOK_EVERY_S = 1.0  # [s] of each fill after which it is looked at
+SLIGHT_S = 1e-6  # [s] rounding of a time
 USUAL_PARTS = 100  # right parts of a pure fill until it is settled: of which progress makes its guess
 
 
@@ -35,7 +36,12 @@ class FollowedRow(FedRow):
     def say(self, fill: FillLevel, seconds: float) -> None:
         """Tell which fill is followed, and until when [s]."""
         if self.tell:
-            self.tell(f"queue of {fill.parts} at {fill} fill, to {seconds:g} s")
+            end = (
+                f"to {seconds:g} s"
+                if seconds < self.longest
+                else f"until it is settled, {seconds:g} s at most"
+            )
+            self.tell(f"queue of {fill.parts} at {fill} fill, {end}")
 
     def tell_periods(self, before: int) -> Callable[[int, int], None]:
         """Return what is told how many periods of a queue are done; ``before`` of other fills are."""
@@ -53,20 +59,38 @@ class FollowedRow(FedRow):
         return fill_verdicts.judge_fill(queue, self.least, self.longest)
 
 
-def follow_fills(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
-    """Follow a queue at each fill, in turn by some seconds, until each is settled.
+def follow_fills(
+    row: FollowedRow, *, whole: bool = True, running: dict[FillLevel, PartsQueue] | None = None
+) -> tuple[FilledQueue, ...]:
+    """Follow a queue at each fill until it is settled: a first look at all of them, then one after the other.
 
-    Each is followed for FIRST_LOOK_S seconds, then LOOK_EVERY_S seconds further at a time, until it holds or
-    is refused, or to the longest time of the row. A settled one is followed no further. Unless ``whole`` all
-    of them end as soon as one is refused: the design does not hold. If ``whole``, each ends by its own parts,
-    however slow it is.
+    Each is followed for FIRST_LOOK_S seconds. Then, the fullest first, each goes on until it holds or is
+    refused, or to the longest time of the row; it is looked at every LOOK_EVERY_S seconds.
 
-    Returns the queues in the order of ``FillLevel``. There are fewer where the user stopped it or one was
-    refused before. Raises KeyboardInterrupt if the user stops it before anything was seen.
+    Parameters
+    ----------
+    row : FollowedRow
+    whole : bool
+        Each fill ends by its own parts, however slow it is. Without it all of them end as soon as one is
+        refused: the design does not hold, and it is not proved at the other fills.
+    running : dict, optional
+        Queues of the same row, by their fills, that go on where they are. It gets those that are followed
+        here.
+
+    Returns
+    -------
+    tuple of FilledQueue
+        In the order of ``FillLevel``. There are fewer where the user stopped it or one was refused before.
+        It is the same on any number of cores.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before anything was seen.
     """
     if whole:
         row = replace(row, least=0.0)
-    running: dict[FillLevel, PartsQueue] = {}
+    running = {} if running is None else running
     queue_of_fill: dict[FillLevel, FilledQueue] = {}
 
     def found() -> tuple[FilledQueue, ...]:
@@ -82,6 +106,13 @@ def follow_fills(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, 
                         queue = queue_of_fill[fill] = followers.follow(fill, until)
                         state = row.judge(queue)
                         if state is FillState.REFUSED and not whole:
+                            followers.stop()
+                            # what other cores followed further than was asked for is not gone on with
+                            for other in [name for name in running if name not in queue_of_fill]:
+                                del running[other]
+                            for other, seen in queue_of_fill.items():
+                                if other in running and running[other].time > seen.seconds + SLIGHT_S:
+                                    del running[other]
                             return found()
                         if state is not FillState.OPEN:
                             going.remove(fill)
@@ -98,7 +129,7 @@ def follow_fills(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, 
                     return found()
         if seconds >= row.longest:
             break
-        seconds = min(seconds + LOOK_EVERY_S, row.longest)
+        seconds = row.longest
     return found()
 
 
@@ -119,8 +150,10 @@ class _Fills:
         self.times: dict[FillLevel, list[float]] = {}
         for name in going:
             begin = running[name].time if name in running else 0.0
-            count = max(math.ceil((seconds - begin) / LOOK_EVERY_S - 1e-6), 1)
-            self.times[name] = [begin + (seconds - begin) * (k + 1) / count for k in range(count)]
+            # one that goes on is looked at as it is, before it is followed
+            first = max(math.floor(begin / LOOK_EVERY_S + SLIGHT_S), 1)
+            last = max(math.ceil(seconds / LOOK_EVERY_S - SLIGHT_S), first)
+            self.times[name] = [min(k * LOOK_EVERY_S, seconds) for k in range(first, last + 1)]
         self.stopped, self.pool = threading.Event(), None
         if row.jobs > 1 and len(going) > 1:
             self.counted: dict[FillLevel, fifo.SimpleQueue] = {name: fifo.SimpleQueue() for name in going}
@@ -168,7 +201,10 @@ class _Fills:
             queue = self._queue(name)
             for until in self.times[name]:
                 queue.follow(until, end_where_stopped)
-                self.counted[name].put(self.row.count(name, queue.result()))
+                seen = self.row.count(name, queue.result())
+                self.counted[name].put(seen)
+                if self.row.judge(seen) is not FillState.OPEN:
+                    break
         finally:
             self.counted[name].put(None)  # nothing more comes: who waits learns what ended it
 

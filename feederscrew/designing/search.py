@@ -22,9 +22,13 @@ from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.tooling.devices.base import ComparedValue
+from feederscrew.trial.fills import FillLevel
+from feederscrew.trial.queue import PartsQueue
 from feederscrew.trial.wanted import leaves_hanging
 
 Place = tuple[float, int]  # bank [rad] of a track, and row of an orientation on it
+RowKey = tuple[tuple[str, str], ...]  # all that decides a row of parts
+KEPT_ROWS = 4  # of which queues are kept in memory
 ChainKey = tuple[Track, str, tuple[tuple[str, tuple[ComparedValue, ...]], ...]]
 
 
@@ -66,6 +70,26 @@ class SearchState:
     reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
     most_trials: float = np.inf  # short trials that are worth it
     nearest_limit: int | None = None  # trials at most, where the nearest that holds is looked for
+    # queues of the designs that were proved last, those of searches beside it too, by all that decides them
+    queues: dict[RowKey, dict[FillLevel, PartsQueue]] = field(default_factory=dict)
+
+    def queues_of(self, key: RowKey) -> dict[FillLevel, PartsQueue]:
+        """Return the queues of a row that were followed, by their fills; those of other rows are forgotten.
+
+        Parameters
+        ----------
+        key : tuple
+            All that decides the row.
+
+        Returns
+        -------
+        dict
+            That it shall be filled in. ``KEPT_ROWS`` are kept, those asked for last.
+        """
+        running = self.queues[key] = self.queues.pop(key, {})
+        while len(self.queues) > KEPT_ROWS:
+            del self.queues[next(iter(self.queues))]
+        return running
 
     @property
     def best_rate(self) -> float:
@@ -126,8 +150,9 @@ class Search:
         """Return a search for another request that tells and counts as this one does, and begins anew."""
         state = self.state
         new = SearchState(
-            state.reserve, state.shares, state.attempts, min_speed=state.min_speed, start=len(state.attempts)
-        )
+            state.reserve, state.shares, state.attempts, min_speed=state.min_speed, start=len(state.attempts),
+            queues=state.queues,
+        )  # fmt: skip
         return replace(self, request=request, state=new)
 
     def keeps(self, key: str) -> bool:

@@ -45,6 +45,9 @@ PARTS_PER_TASK = 5  # parts a core takes at a time
 STANDING_SPEED_M_S = 1e-3  # below which a part stands
 MAX_TRACK_CONTACTS = 96  # of a part with the track at a time
 MAX_PAIR_CONTACTS = 400  # contacts between parts at a time
+PARTNERS = 8  # other parts of which a part has lists
+MAX_NEAR_FACES = 400  # corners and faces that are listed of two parts: where more are near, none are
+MAX_CROSSINGS = 800  # edges of both, the same
 MAX_NEAR_EDGES = 4000  # edges near borders at a time, and faces near their corners
 MEAN_BORDERS_PER_CORNER = 12  # borders near a corner, in the mean
 NO_CROWD = QueueSteps(active=np.zeros(0, bool), time=0.0, steps=0, journals=zero_rows(1, workspace.JOURNAL))
@@ -326,7 +329,7 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
     """
     corners, edges, plates = len(solid.corners), len(solid.edges), len(surface.plates)
     circles, borders = len(solid.circles), len(surface.borders)
-    pairs = 2 * MAX_PAIR_CONTACTS if count > 1 else 0
+    pairs, lists = (2 * MAX_PAIR_CONTACTS, PARTNERS) if count > 1 else (0, 0)
 
     def numbers(*shape: int) -> Floats:
         return np.zeros((count, *shape))
@@ -380,6 +383,13 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
         pairs=zero_rows(pairs, workspace.CONTACT),
         owners=np.zeros(pairs, np.int64),
         pair_rows=np.zeros(1, np.int64),
+        pair_lists=records(workspace.PAIR_LISTS, lists),
+        next_lists=places(),
+        pair_frames=numbers(lists, 12),
+        own_corners=places(lists, MAX_NEAR_FACES, 2),
+        their_corners=places(lists, MAX_NEAR_FACES, 2),
+        near_crossings=places(lists, MAX_CROSSINGS, 2),
+        faces_of_corner=np.zeros((len(solid.triangles) if lists else 0, 2), np.int64),
         strains=numbers(2),
         order=places(),
         islands=np.zeros(count + 1, np.int64),
@@ -389,6 +399,7 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
         second_blocks=np.zeros(edges, np.int64),
         face_blocks=np.zeros(len(solid.triangles), np.int64),
     )
+    work.pair_lists["partner"] = -1
     forget(work, slice(None))
     return work
 

@@ -97,7 +97,7 @@ def by_chance(monkeypatch, block):
         worst = Fault(kind, ways.lying[row].name, row, ends).counted_in_draws(failures, draws)
         return RobustRun(draws, draws - failures, worst)
 
-    def follow_fills(line, *, whole):
+    def follow_fills(line, **_):
         rng = chance(seed["of"], line.bowl.drive.amplitude, [device.text for device in line.bowl.devices])
         found = []
         for name in queues.FILLS:

@@ -100,9 +100,9 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
         mix = np.arange(1.0, len(found.entering) + 1.0)
         return replace(found, arriving=mix / mix.sum())
 
-    def filled(row, *, whole):
+    def filled(row, **more):
         seen.append((row.shares, row.touching))
-        return queues_filled(row, whole=whole)
+        return queues_filled(row, **more)
 
     def robust_run(part, bowl, known, shares, *_, **__):
         drawn.append(shares)
@@ -205,9 +205,7 @@ def test_a_trial_at_one_fill_is_the_queue_of_the_design(monkeypatch):
     """The same gaps, the same arrivals, the same that is wanted: the same parts leave."""
     rows = []
     follow = queues.follow_fills
-    monkeypatch.setattr(
-        queues, "follow_fills", lambda row, *, whole: rows.append(row) or follow(row, whole=whole)
-    )
+    monkeypatch.setattr(queues, "follow_fills", lambda row, **more: rows.append(row) or follow(row, **more))
     request = replace(REQUEST, up=("A",))
     found = loop.design(CUBE, bowls.default(), frozenset(), request, shares=SHARES, with_nearest=False)
     level = fills.FillLevel.HIGH

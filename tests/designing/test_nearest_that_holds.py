@@ -134,7 +134,7 @@ def test_what_was_clean_and_slow_is_proved_until_one_holds_and_counted_where_non
     assert asked == ["B@0", "A@0"] and made is not None and found.rate > 0.0
     assert len(found.denied) == 1 and "12 of 20 draws" in found.denied[0] and found.proofs == 2
     assert len([text for text in said if text.startswith("nearest that holds")]) == 2
-    search, _ = searching(*(candidate(ways, rate=20.0 + k) for k in range(9)))
+    search, _ = searching(*(candidate(ways, rate=20.0 + k, chain=(f"gap: {k} mm",)) for k in range(9)))
     monkeypatch.setattr(exploring, "candidates", lambda free: iter(()))
     search.state.attempts += [attempt()] * 9
     found, made = nothing_near(search, lambda *_: study(600.0, queues=fills(jams=1)))
@@ -143,6 +143,29 @@ def test_what_was_clean_and_slow_is_proved_until_one_holds_and_counted_where_non
     assert designs.nearest(replace(study(600.0), nearest=found))["rate_per_minute"] is None
     with pytest.raises(KeyboardInterrupt):
         nothing_near(searching(candidate(ways))[0], lambda *_: study(600.0, partial=True))
+
+
+def test_a_chain_is_proved_at_two_drives_at_most_and_not_twice_at_nearly_the_same(ways, monkeypatch):
+    """Strokes of one chain, that of the highest rate first; that of another chain besides."""
+    monkeypatch.setattr(exploring, "candidates", lambda free: iter(()))
+    strokes = (0.40, 0.41, 0.30, 0.20)  # [mm]
+
+    def driven(stroke, rate, chain):
+        return candidate(
+            ways, rate=rate, chain=(chain,), peak_to_peak=1e-3 * stroke, throw_number=4.0 * stroke
+        )
+
+    of_gap = [driven(stroke, 40.0 - k, "gap: 9 mm") for k, stroke in enumerate(strokes)]
+    search, _ = searching(*of_gap, driven(0.40, 1.0, "wiper: 6 mm"))
+    asked = []
+
+    def prove(_, one):
+        asked.append((one.attempt.chain[0], round(1e3 * one.attempt.peak_to_peak, 3)))
+        return study(600.0, queues=fills(right=60, left=90))
+
+    found, _ = nothing_near(search, prove)
+    assert asked == [("gap: 9 mm", 0.4), ("gap: 9 mm", 0.3), ("wiper: 6 mm", 0.4)]
+    assert found.rate is None and found.proofs == 3
 
 
 def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_up(monkeypatch, block):

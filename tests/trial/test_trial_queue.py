@@ -105,6 +105,21 @@ def test_a_part_on_another_bears_with_its_weight_and_falling_over_it_wins_no_ene
     assert (np.array([on.reaches([n])[n][2] for n in range(3)]) * LENGTH > -2e-4).all()
 
 
+@pytest.mark.parametrize("room", [0, 6])
+def test_lists_of_what_may_touch_decide_nothing(monkeypatch, room):
+    """Parts that fall onto each other move by the same bytes where lists have no room, or only some have."""
+    rows = [row_of(HOPPING, 8, 0.5, None), None]
+    monkeypatch.setattr(runs, "MAX_NEAR_FACES", room)
+    monkeypatch.setattr(runs, "MAX_CROSSINGS", room)
+    rows[1] = row_of(HOPPING, 8, 0.5, None)
+    for row in rows:
+        row.follow(0.5)
+    kept, without = (row.crowd.arrays for row in rows)
+    assert kept.states.tobytes() == without.states.tobytes() and kept.strains.any()
+    assert (kept.pair_lists.reach > 0.0).sum() > 1 and (without.pair_lists.reach < 0.0).any()
+    assert (without.pair_lists.reach > 0.0).any() == (room > 0)
+
+
 @pytest.mark.parametrize(("bowl", "gaps", "seconds", "near"), [
     (BOWL, 0.0, 3.0, 0.02),
     (BOWL, queue.MEAN_GAP_SHARE, 12.0, 0.05),  # so few uneven gaps are off by 1 mm in the mean

@@ -121,6 +121,15 @@ LIST_STATE = record_type(
 )
 LISTS = ("corners", "sides", "edges", "posts", "faces", "circles", "rounds")
 LIST_COUNTS = record_type(*LISTS, whole=LISTS)  # how many of each list are near the plates so far
+PAIR_LISTS = record_type(
+    "reach",  # how far off the lists of two parts look; negative where they have no room for what is near
+    "partner",
+    # how many there are
+    "own",
+    "theirs",
+    "edges",
+    whole=("partner", "own", "theirs", "edges"),
+)
 JOURNAL = record_type(
     # taken, along the wall, the greatest
     "time",
@@ -256,6 +265,13 @@ class Workspace(NamedTuple):
     pairs: Rows  # (2 K,) CONTACT of parts with each other, two rows each
     owners: Ints  # (2 K,) which part a row is of
     pair_rows: Ints  # (1,) how many rows there are
+    pair_lists: Rows  # (N, S) PAIR_LISTS of a part with some others
+    next_lists: Ints  # (N,) which of them make room for the next
+    pair_frames: Floats  # (N, S, 12) how the other part saw the first as they were made
+    own_corners: Ints  # (N, S, R, 2) its corners, and the faces of the other that they may touch
+    their_corners: Ints  # (N, S, R, 2) the other's corners, and its own faces
+    near_crossings: Ints  # (N, S, R, 2) its edges, and those of the other that they may cross
+    faces_of_corner: Ints  # (T, 2) a corner, and the faces that it may touch
     strains: Floats  # (N, 2) impulse from behind along the track, and from below, of other parts
     order: Ints  # (N,) parts by islands: those that may touch each other
     islands: Ints  # (N + 1,) where each begins
