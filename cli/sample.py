@@ -13,7 +13,10 @@ from feederscrew_cli.options import Output
 @click.argument("name", required=False)
 @click.argument("size", required=False, default="")
 @options.option(
-    "--ratio", "NUMBER", "Thickness over width of t-shape.  [default: 0.4]", type=options.Number()
+    "--ratio",
+    "NUMBER",
+    "Thickness over width of t-shape.  [default: 0.4]",
+    type=options.Number(min=0, min_open=True),
 )
 @options.option(
     "--wall",

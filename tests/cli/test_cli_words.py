@@ -38,6 +38,7 @@ def test_the_help_of_a_command_fits_a_screen_names_each_option_and_has_short_sen
         longest = max(getattr(option, "present", option.opts), key=len)
         assert re.search(rf"(?<![\w-]){longest}(?![\w-])", short), longest
         assert len(re.findall(rf"^  (?:-\w, )?{longest}(?=[ \n])", listed, re.MULTILINE)) == 1, longest
+    assert "None" not in whole, "of a bound that there is not"
     assert "\n  PART" not in listed and "\n  [PART]" not in listed, "an argument is no option"
     assert "\nOutput:\n" in listed or "--format" not in listed or not is_grouped
     texts = [command.help or "", *(getattr(option, "help", None) or "" for option in command.params)]
