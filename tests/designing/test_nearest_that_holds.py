@@ -272,8 +272,10 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
 def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_tried, ways):
     """Of the chains that failed: where parts hop, though nothing left, and where some left calmly."""
     search, _ = searching()
-    lively, slowest = (calm_drive.drive_at(PLAIN, velocity, hops=True) for velocity in (0.18, 0.01))
-    fast = calm_drive.drive_at(PLAIN, 0.12)
+    lively, fast = calm_drive.drive_at(PLAIN, 0.18, hops=True), calm_drive.drive_at(PLAIN, 0.12)
+    slowest = fast  # than which none is calmer
+    while (calmer := calm_drive.find_calmer(PLAIN, slowest)) is not None:
+        slowest = calmer
     for bowl, efficiency in ((lively, 0.0), (slowest, 0.0), (fast, 0.4), (slowest, 0.4)):
         one = candidate(
             ways,
