@@ -130,7 +130,19 @@ class Column(Generic[R]):
 
 
 def in_unit(value: Any, unit: UnitName) -> Any:
-    """Return a value [SI], a number or an array, in a unit; None, texts and plain numbers as they are."""
+    """Return a value in a unit.
+
+    Parameters
+    ----------
+    value : float, array, str or None [SI]
+    unit : str
+        One of ``UNITS``.
+
+    Returns
+    -------
+    float, array, str or None
+        None, texts and plain numbers as they are.
+    """
     size = UNITS[unit].size
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]  # a number

@@ -38,7 +38,7 @@ MIN_SECONDS, MAX_SECONDS = 1.0, 1e9  # [s] of a run
 
 
 class Quantity(enum.StrEnum):
-    """What a buyer measures of the parts; every other line is a setting of the machine."""
+    """Quantity that a buyer measures of the parts; every other line is a setting of the machine."""
 
     RATE = "good parts at the discharge"
     YIELD = "yield, good of what leaves"
@@ -49,7 +49,7 @@ UNITS = {Quantity.RATE: "1/min", Quantity.YIELD: "%", Quantity.JAMS: "1/h"}
 
 
 class Judgement(enum.StrEnum):
-    """What a measured value says of its demand."""
+    """Verdict of a measured value on its demand."""
 
     AGREES = "agrees"
     FAILS = "does not"
@@ -104,7 +104,7 @@ class SheetLine:
 
     @property
     def judged(self) -> tuple[Judgement, str]:
-        """What the measured value says of the demand, and why in words where it does not agree."""
+        """Return the verdict of the measured value on the demand, and why where it does not agree."""
         if self.measured is None:
             return Judgement.UNMEASURED, ""
         low, high = self.demand
@@ -119,7 +119,7 @@ class SheetLine:
 
     @property
     def agrees(self) -> bool | None:
-        """Whether the demand is met, and shown; None where nobody measured."""
+        """Tell whether the demand is met, and shown; None where nobody measured."""
         judgement, _ = self.judged
         return None if judgement is Judgement.UNMEASURED else judgement is Judgement.AGREES
 
@@ -196,7 +196,18 @@ def lines_of_fill(queue: FilledQueue, target: float, agreed_jams: float = AGREED
 
 
 def yield_plan(demand: float) -> str:
-    """Return how many parts show a share [1] of good ones, and how many may be wrong, as a text."""
+    """Return how many parts show a share of good ones, and how many of them may be wrong, as a text.
+
+    Parameters
+    ----------
+    demand : float [1]
+        The share that is to be shown.
+
+    Returns
+    -------
+    str
+        'accept 299 parts with none wrong; or ...'
+    """
     samples = [evidence.parts_to_look_at(demand, wrong) for wrong in range(MAX_WRONG + 1)]
     first, *rest = (f"{sample} parts with {wrong or 'none'} wrong" for wrong, sample in enumerate(samples))
     return "; or ".join((f"accept {first}", *rest))
@@ -205,8 +216,19 @@ def yield_plan(demand: float) -> str:
 def planned_sample(demand: float, seen: tuple[int, int]) -> int:
     """Return the smallest sample of ``yield_plan`` that a feeder as computed is likely to pass.
 
-    ``seen`` are the right parts of the computation, and all of them. Where none of the samples is likely
-    (``LIKELY_PASS``) to be passed it is the largest.
+    A sample of n parts with k wrong ones at most is passed with the binomial probability of k or fewer.
+
+    Parameters
+    ----------
+    demand : float [1]
+        The share that is to be shown.
+    seen : (int, int)
+        The right parts of the computation, and all of them.
+
+    Returns
+    -------
+    int
+        The largest where none of the samples is likely (``LIKELY_PASS``) to be passed.
     """
     right, left = seen
     wrong_share = 1.0 - right / left if left else 0.0
@@ -219,12 +241,32 @@ def planned_sample(demand: float, seen: tuple[int, int]) -> int:
 
 
 def minutes_to_run(agreed_jams: float, jams: int) -> int:
-    """Return for how many whole minutes no more than so many jams show fewer than agreed [1/s]."""
+    """Return for how many whole minutes no more than so many jams show fewer than agreed.
+
+    Parameters
+    ----------
+    agreed_jams : float [1/s]
+    jams : int
+
+    Returns
+    -------
+    int
+    """
     return math.ceil(evidence.time_to_run(agreed_jams, jams) / units.MINUTE - 1e-9)
 
 
 def jam_plan(agreed_jams: float) -> str:
-    """Return for how long a feeder runs, and how many jams are accepted, as a text; of agreed jams [1/s]."""
+    """Return for how long a feeder runs, and how many jams are accepted, as a text.
+
+    Parameters
+    ----------
+    agreed_jams : float [1/s]
+
+    Returns
+    -------
+    str
+        'accept 180 min with no jam; or ...'
+    """
     first, *rest = (f"{minutes_to_run(agreed_jams, jams)} min with {jams or 'no jam'}" for jams in range(3))
     return "; or ".join((f"accept {first}", *rest))
 
@@ -233,7 +275,17 @@ def jam_plan(agreed_jams: float) -> str:
 
 
 def is_sheet(path: str | Path) -> bool:
-    """Return whether a file is an acceptance sheet: its first line names all columns that one needs."""
+    """Tell whether a file is an acceptance sheet: its first line names all columns that one needs.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    bool
+        False of a file that cannot be read.
+    """
     try:
         with Path(path).open("rb") as file:
             first = file.read(MAX_HEAD_BYTES).decode("utf-8-sig", errors="replace").splitlines()
@@ -245,14 +297,21 @@ def is_sheet(path: str | Path) -> bool:
 def sheet(path: str | Path) -> tuple[SheetLine, ...]:
     """Read an acceptance sheet, as ``feeder design`` writes it and someone has filled it in.
 
-    Returns its lines. Sheets without the columns of the plan are read as well; what their columns ``low`` and
-    ``high`` say is the demand.
+    Parameters
+    ----------
+    path : str or Path
+        Sheets without the columns of the plan are read as well; what their columns ``low`` and ``high`` say
+        is the demand.
+
+    Returns
+    -------
+    tuple of SheetLine
 
     Raises
     ------
     FeederError
-        If it cannot be read or is too large, or nothing was measured; every cell that cannot be true, with
-        its line and column: what is no number, is out of range, or contradicts another cell.
+        If it cannot be read or is too large, or nothing was measured. Every cell that cannot be true is a
+        fault, with its line and column: a text in place of a number, a number out of range, a contradiction.
     """
     data = documents.content(path, MAX_BYTES, "an acceptance sheet", FeederError)
     if len(data) > MAX_BYTES:

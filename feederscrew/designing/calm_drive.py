@@ -74,7 +74,7 @@ class PlainBowl:
 
     @property
     def has_stroke(self) -> bool:
-        """Whether the user gave the stroke."""
+        """Tell whether the user gave the stroke."""
         return bool(STROKES & self.kept_keys)
 
 
@@ -88,10 +88,31 @@ def section(
     bank: float = BANKS[0],
     drive: DriveKind = DriveKind.LEAF_SPRING,
 ) -> PlainBowl:
-    """Return a bowl that is large enough for every way a part lies, within two diameters [m].
+    """Return a bowl that is large enough for every way a part lies.
 
-    ``plain`` is what the user gave, completed by the defaults; ``kept_keys``, names of keys, are kept of it.
-    ``bank`` [rad] is that of the track where the user gave none, ``drive`` the kind asked for.
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+    plain : Bowl
+        As the user gave it, completed by the defaults.
+    kept_keys : collection of str
+        Names of keys that are kept of it.
+    diameter : (float, float) [m], optional
+        Between which the bowl's diameter is chosen.
+    bank : float [rad], optional
+        Of the track where the user gave none.
+    drive : DriveKind, optional
+        The kind asked for.
+
+    Returns
+    -------
+    PlainBowl
+
+    Raises
+    ------
+    FeederError
+        If the part fits no bowl.
     """
     rules = plain.sizing
     if diameter is not None:
@@ -124,18 +145,32 @@ def section(
 
 @functools.lru_cache(maxsize=256)
 def drive_at(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
-    """Return a bowl with the calmest drive that carries a point mass at a velocity [m/s].
+    """Return a bowl with the calmest drive that carries a point mass at a velocity.
 
     Of the drives that the machine can make it is the one of the lowest hop, and of these the one of the least
     stroke, that is as fast as asked for, and at the worst friction ``LEAST_VELOCITY_KEPT`` times that; else,
-    or where the velocity is infinite, the fastest. It keeps to the usual speeds, ``sizing.slowest`` to
-    ``sizing.fastest``. Through tooling it is no slower than ``LEAST_VELOCITY_M_S``. ``hops`` says that there
-    is no tooling. What the user gave of the drive is kept.
+    or where the velocity is infinite, the fastest. Through tooling it is no slower than
+    ``LEAST_VELOCITY_M_S``. What the user gave of the drive is kept.
 
     The hop is the lower the higher the frequency, by its square (``conveying.hop``): twice the mains
     frequency comes first where it is fast enough. Below the throw number of 1 a leaf-spring drive carries
-    slowly; from 2.2 to 3 it is three to six times as fast, and friction hardly matters. Source: A. H.
-    Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967; docs/design.md.
+    slowly; from 2.2 to 3 it is three to six times as fast, and friction hardly matters.
+
+    Parameters
+    ----------
+    plain_bowl : PlainBowl
+    velocity : float [m/s]
+    hops : bool, optional
+        Whether there is no tooling: a part may then creep, and hop.
+
+    Returns
+    -------
+    Bowl
+
+    References
+    ----------
+    A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967;
+    docs/design.md.
     """
     velocity = max(velocity, plain_bowl.bowl.sizing.slowest if hops else LEAST_VELOCITY_M_S)
     levels = _levels(plain_bowl, hops)
@@ -166,9 +201,18 @@ def _calmest(
 def find_calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
     """Return a bowl with a calmer drive than that of another one, which turned or lost a part.
 
-    Without devices. Where the part hops: the fastest drive with at most ``CALMER_HOP`` of that hop. Where it
-    does not: a drive that is ``CALMER`` times as fast and throws nothing. None where the user gave the
-    stroke, or none is calmer.
+    Where the part hops: the fastest drive with at most ``CALMER_HOP`` of that hop. Where it does not: a drive
+    that is ``CALMER`` times as fast and throws nothing.
+
+    Parameters
+    ----------
+    plain_bowl : PlainBowl
+    bowl : Bowl
+
+    Returns
+    -------
+    Bowl or None
+        Without devices; None where the user gave the stroke, or none is calmer.
     """
     if plain_bowl.has_stroke:
         return None
@@ -290,14 +334,24 @@ def _set_throw_number(bowl: Bowl, throw: float) -> Bowl:
 
 
 def _can_build(plain_bowl: PlainBowl, bowl: Bowl) -> bool:
-    """Whether a machine of usual springs and magnets makes the drive; what the user owns counts as built."""
+    """Tell whether usual springs and magnets make the drive; what the user owns counts as built."""
     if is_two_axis(bowl.drive) or plain_bowl.has_stroke or plain_bowl.keeps("machine.leaves"):
         return True
     return not drive_sizing.drive_shortfall(bowl, frozenset(plain_bowl.kept_keys))
 
 
 def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
-    """Return a bowl at another amplitude [m], rounded to a micrometre."""
+    """Return a bowl at another amplitude, rounded down to a step of the stroke.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    amplitude : float [m]
+
+    Returns
+    -------
+    Bowl
+    """
     rounded = float(np.floor(amplitude / STROKE_STEP + 1e-6) * STROKE_STEP)
     return replace(bowl, drive=replace(bowl.drive, amplitude=rounded))
 
@@ -319,30 +373,71 @@ def _fast(bowl: Bowl) -> float:
 
 
 def _is_fast(bowl: Bowl, velocity: float) -> bool:
-    """Whether a velocity [m/s] may be asked of a bowl."""
+    """Tell whether a velocity [m/s] may be asked of a bowl."""
     return speed(bowl) >= velocity and slowest(bowl) >= LEAST_VELOCITY_KEPT * velocity
 
 
 def slowest(bowl: Bowl) -> float:
-    """Return the velocity of the point mass [m/s] at the worst friction."""
+    """Return the velocity of the point mass at the worst friction.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [m/s]
+        The least at the shares ``WORST`` of its friction.
+    """
     return min(speed(scale_friction(bowl, share)) for share in WORST)
 
 
 def velocity_kept(bowl: Bowl) -> float:
-    """Return the share [1] of its velocity that a bowl keeps at the worst friction; 0 where it has none."""
+    """Return the share of its velocity that a bowl keeps at the worst friction.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [1]
+        0 where it has none.
+    """
     own = speed(bowl)
     return min(slowest(bowl) / own, 1.0) if own > 0.0 else 0.0
 
 
 def scale_friction(bowl: Bowl, share: float) -> Bowl:
-    """Return a bowl with a share of its friction."""
+    """Return a bowl with a share of its friction.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    share : float [1]
+        Of every coefficient.
+
+    Returns
+    -------
+    Bowl
+    """
     values = {name: getattr(bowl.friction, name) for name in vars(bowl.friction)}
     scaled: dict = {name: None if value is None else value * share for name, value in values.items()}
     return replace(bowl, friction=replace(bowl.friction, **scaled))
 
 
 def speed(bowl: Bowl) -> float:
-    """Return the velocity of the point mass [m/s]; 0 where the bowl does not convey."""
+    """Return the velocity of the point mass.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [m/s]
+        0 where the bowl does not convey.
+    """
     return _speed(replace(bowl, devices=()))
 
 

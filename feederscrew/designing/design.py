@@ -37,7 +37,7 @@ from feederscrew.tooling.isolating.chain import OutcomeKind
 
 @dataclass(frozen=True)
 class DesignSearch:
-    """How a design is looked for and proved."""
+    """Limits of the search for a design and of its proof."""
 
     rule: str = DesignRequest.rule  # whose probabilities are taken
     budget: int = DesignRequest.budget  # short trials of the search, at most
@@ -199,7 +199,7 @@ DESIGNED_TEXTS = (
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """What is built for a design: the machine below its bowl, and the bowl as a solid."""
+    """Machine below the bowl of a design, and the bowl as a solid."""
 
     sheet: MachineSheet | None = None  # as it is driven; None where no machine can be
     drawn: MachineSheet | None = None  # the same with its order and its solid; None where there is no solid
@@ -211,7 +211,16 @@ class Built:
 def build_machine(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     """Return the machine below the bowl of a design, sized for it, and that bowl as a solid of steel.
 
-    The settings are as the user gave them.
+    Parameters
+    ----------
+    study : DesignStudy
+    settings : iterable of Setting
+        As the user gave them.
+
+    Returns
+    -------
+    Built
+        Empty for a design without a bowl.
     """
     if study.bowl is None:
         return Built()
@@ -276,8 +285,16 @@ def _new_remarks(sheet: MachineSheet, known: MachineSheet, warned: Collection[st
 def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, ...]:
     """Return a bowl as settings that the user gave, for the machine below a design of the library.
 
-    Its devices are left out: a design has its own. What differs from the defaults counts as given, and so do
-    ``kept_keys``, names of keys that have their default value.
+    Parameters
+    ----------
+    bowl : Bowl
+        Its devices are left out: a design has its own. What differs from the defaults counts as given.
+    kept_keys : collection of str, optional
+        Names of keys that count as given though they have their default value.
+
+    Returns
+    -------
+    tuple of Setting
     """
     usual, lines = bowls.default(), {}
     for key in BOWL_KEYS:
@@ -300,8 +317,19 @@ def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, .
 def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
     """Return a design that knows what its own machine is out of limits in, and what it cannot make.
 
-    Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do not
-    make the angle that was tried, or its bowl makes no solid, it falls short.
+    Where the leaf springs that are drawn do not make the angle that was tried, or its bowl makes no solid, it
+    falls short.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    below : Built
+        As ``build_machine`` returns it.
+
+    Returns
+    -------
+    DesignStudy
+        Its ``warnings`` hold those of ``feeder bowl`` for its file.
     """
     sheet = below.sheet
     solid = (f"no solid of its bowl can be made: {below.why}",) if below.why else ()

@@ -42,7 +42,20 @@ def share_at_least(right: int, total: int, confidence: float = CONFIDENCE) -> fl
 
 
 def share_at_most(right: int, total: int, confidence: float = CONFIDENCE) -> float:
-    """Return the upper bound [1] of a share, as ``share_at_least`` returns the lower one; 1 of no part."""
+    """Return the upper bound of a share, as ``share_at_least`` returns the lower one.
+
+    Parameters
+    ----------
+    right, total : int
+        Parts of the kind, and all of them.
+    confidence : float [1], optional
+        One-sided.
+
+    Returns
+    -------
+    float [1]
+        1 of no part.
+    """
     return 1.0 - share_at_least(total - right, total, confidence)
 
 
@@ -72,9 +85,28 @@ def rate_at_most(count: int, time: float, confidence: float = CONFIDENCE) -> flo
 
 
 def rate_at_least(count: int, time: float, confidence: float = CONFIDENCE) -> float:
-    """Return the lower bound [1/s] of a rate of events, as ``rate_at_most`` returns the upper one.
+    """Return the lower bound of a rate of events, as ``rate_at_most`` returns the upper one.
 
-    It is the rate at which ``count`` or more have a chance of 1 - confidence; 0 of no event.
+    It is the rate at which ``count`` or more have a chance of 1 - confidence: the Poisson mean m with
+    P(count, m) = 1 - confidence, over the time, P the regularised lower incomplete gamma function.
+
+    Parameters
+    ----------
+    count : int
+        Events that came.
+    time : float [s]
+        In which they came.
+    confidence : float [1], optional
+        One-sided.
+
+    Returns
+    -------
+    float [1/s]
+        0 of no event.
+
+    References
+    ----------
+    As ``rate_at_most``.
     """
     if count <= 0 or not time > 0.0:
         return 0.0
@@ -155,8 +187,25 @@ def parts_to_look_at(demand: float, wrong: int, confidence: float = CONFIDENCE) 
 
 
 def time_to_run(demand: float, count: int, confidence: float = CONFIDENCE) -> float:
-    """Return for how long [s] no more than ``count`` events must come to show a rate below ``demand`` [1/s].
+    """Return for how long no more than some events must come to show a rate below a demand.
 
-    Of 1 an hour: 2.996 h without an event, 4.744 h with one. Source: as ``rate_at_most``.
+    Of 1 an hour: 2.996 h without an event, 4.744 h with one.
+
+    Parameters
+    ----------
+    demand : float [1/s]
+        Above 0.
+    count : int
+        Events that may come.
+    confidence : float [1], optional
+        One-sided.
+
+    Returns
+    -------
+    float [s]
+
+    References
+    ----------
+    As ``rate_at_most``.
     """
     return _mean_at_most(count, confidence) / demand

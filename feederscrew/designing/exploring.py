@@ -54,10 +54,20 @@ class _Idea:
 
 
 def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candidate]:
-    """Try proposals, and yield each Candidate that is clean and brings the target, within the budget.
+    """Try proposals, and yield each candidate that is clean and brings the target, within the budget.
 
-    They are of one cost class, or else of all, the cheapest first: in each no device at all, then the most
-    promising chain of all banks, and so on. The ``clean`` and ``failures`` of the search's state are filled.
+    In each cost class no device at all comes first, then the most promising chain of all banks, and so on.
+    The ``clean`` and ``failures`` of the search's state are filled.
+
+    Parameters
+    ----------
+    search : Search
+    cost_class : int, optional
+        Of the proposals; all without it, the cheapest first.
+
+    Yields
+    ------
+    Candidate
     """
     state = search.state
     own_devices = search.plain.devices
@@ -193,7 +203,7 @@ def _tracks(search: Search) -> list[BankedTrack]:
 
 
 def _bound(search: Search, idea: _Idea) -> float:
-    """How promising [1] the chain of an idea can be at best."""
+    """Return how promising [1] the chain of an idea can be at best."""
     policy = search.policy
     recipe, track = idea.recipe, idea.track
     asked = search.state.reserve * search.request.target
@@ -210,21 +220,32 @@ def _bound(search: Search, idea: _Idea) -> float:
 def chain_key(track: Track, proposal: Proposal, orientations: Sequence[Orientation]) -> ChainKey:
     """Return what names a chain on a track and what shall leave it, whatever the drive.
 
-    The order of what a sensor lets pass makes no difference.
+    Parameters
+    ----------
+    track : Track
+    proposal : Proposal
+    orientations : sequence of Orientation
+        Of which the proposal names rows.
+
+    Returns
+    -------
+    ChainKey
+        Track, name of what leaves, and kind and values of each device; the order of what a sensor lets pass
+        makes no difference.
     """
     wanted = "hanging" if proposal.hangs else orientations[proposal.row].name
     return track, wanted, tuple((device.kind, device.compared_values) for device in proposal.devices)
 
 
 def _was_tried(search: Search, track: BankedTrack, proposal: Proposal) -> bool:
-    """Whether a chain was tried on that track, or one whose values differ by less than makes a difference."""
+    """Tell whether a chain was tried on that track, or one whose values differ by too little."""
     state = search.state
     key = chain_key(track.plain_bowl.bowl.track, proposal, track.orientations.lying)
     return key in state.chains or any(_is_alike(key, other, search.policy) for other in state.chains)
 
 
 def _is_alike(key: ChainKey, other: ChainKey, policy: SearchPolicy) -> bool:
-    """Whether two chains for the same track and orientation differ by little in each of their numbers."""
+    """Tell whether two chains for one track and orientation differ by little in each number."""
     if key[:2] != other[:2] or [kind for kind, _ in key[2]] != [kind for kind, _ in other[2]]:
         return False
     devices = zip(key[2], other[2], strict=True)
@@ -236,7 +257,7 @@ def _is_alike(key: ChainKey, other: ChainKey, policy: SearchPolicy) -> bool:
 
 
 def _is_alike_value(first: ComparedValue, second: ComparedValue, policy: SearchPolicy) -> bool:
-    """Whether two values of devices are the same word, or numbers that differ by little."""
+    """Tell whether two values of devices are the same word, or numbers that differ by little."""
     a, b = first.value, second.value
     if a == b or not isinstance(a, float) or not isinstance(b, float):
         return a == b
@@ -286,22 +307,61 @@ def _propose(search: Search, track: BankedTrack, row: int, recipe: proposals.Rec
 def required_velocity(
     search: Search, orientations: Orientations, weights: Floats, gain: float, spacing: float = 0.0
 ) -> float:
-    """Return the velocity [m/s] that brings the target, with a reserve, at a share that leaves as wanted.
+    """Return the velocity that brings the target, with a reserve, at a share that leaves as wanted.
 
-    Parts come in a row, ``spacing`` [m] farther than they do by themselves where devices need that.
+    Parts come in a row: v = reserve target (gap mean length + spacing) / gain.
+
+    Parameters
+    ----------
+    search : Search
+        With target and reserve.
+    orientations : Orientations
+    weights : (M,) float [1]
+        Shares in which the orientations come.
+    gain : float [1]
+        Share of the parts that leaves as wanted.
+    spacing : float [m], optional
+        By which parts come farther than they do by themselves where devices need that.
+
+    Returns
+    -------
+    float [m/s]
     """
     pitch = short_trials.GAP * float((weights * orientations.lengths).sum()) + spacing
     return search.state.reserve * search.request.target * pitch / max(gain, 1e-3)
 
 
 def entry_shares(search: Search, bowl: Bowl) -> Shares:
-    """Return what lies at the entry of the track of a bowl."""
+    """Return the mix of aspects that enters the track of a bowl.
+
+    Parameters
+    ----------
+    search : Search
+    bowl : Bowl
+        Its devices are not looked at.
+
+    Returns
+    -------
+    Shares
+    """
     bare = replace(bowl, devices=())
     return shares(search.part, bare, rule=search.request.rule, jobs=search.request.jobs)
 
 
 def weigh_orientations(search: Search, bowl: Bowl) -> tuple[Orientations, Floats]:
-    """Return what comes along a track, and in which shares (M,) [1]."""
+    """Return the orientations that come along a track, and in which shares.
+
+    Parameters
+    ----------
+    search : Search
+    bowl : Bowl
+
+    Returns
+    -------
+    orientations : Orientations
+    weights : (M,) float [1]
+        Their sum is 1; all alike where none is known.
+    """
     orientations = search.orientations_along(bowl)
     weights = np.nan_to_num(orientations.rules[search.request.rule])
     total = weights.sum()
@@ -409,7 +469,18 @@ def _try_rails(
 
 
 def devices_to(end: End, proposal: Proposal) -> int:
-    """Return how many devices of a chain stand along the track up to an end; 0 on the bare track."""
+    """Return how many devices of a chain stand along the track up to an end.
+
+    Parameters
+    ----------
+    end : End
+    proposal : Proposal
+
+    Returns
+    -------
+    int
+        0 on the bare track.
+    """
     placed = [k for k, device in enumerate(proposal.devices) if device.placed]
     return 0 if end.on_bare_track else placed[end.station - 1] + 1
 
@@ -435,7 +506,18 @@ def _find_livelier(search: Search, candidate: Candidate) -> Candidate | None:
 
 
 def try_livelier(search: Search, candidate: Candidate) -> Candidate | None:
-    """Return the same chain screened at a livelier drive than that at which parts stay; None without one."""
+    """Return the same chain screened at a livelier drive than that at which parts stay.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+
+    Returns
+    -------
+    Candidate or None
+        None without a livelier drive.
+    """
     bowl = calm_drive.find_livelier(candidate.plain_bowl(search), candidate.bowl)
     other = _at_drive(search, candidate, bowl, MoveKind.LIVELIER_DRIVE)
     return None if other is None else _screen(search, other)
@@ -450,7 +532,18 @@ def _at_drive(search: Search, candidate: Candidate, bowl: Bowl | None, kind: Mov
 
 
 def stays_at_steel(proposal: Proposal, faults: Iterable[Fault]) -> bool:
-    """Return whether parts stay at a blade or at rails of a chain, as faults of a trial or of draws show."""
+    """Tell whether parts stay at a blade or at rails of a chain.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    faults : iterable of Fault
+        Of a trial or of draws.
+
+    Returns
+    -------
+    bool
+    """
     steel = {cut.device.kind for cut in proposal.cuts if cut.device.overhead or cut.device.hangs}
     return any(fault.stops_at(steel) for fault in faults)
 
@@ -473,7 +566,18 @@ def _find_calmer(search: Search, first: Candidate) -> Candidate:
 
 
 def try_calmer(search: Search, candidate: Candidate) -> Candidate | None:
-    """Return the same chain tried at a calmer drive than that which lost parts; None without one."""
+    """Return the same chain tried at a calmer drive than that which lost parts.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+
+    Returns
+    -------
+    Candidate or None
+        None without a calmer drive.
+    """
     bowl = calm_drive.find_calmer(candidate.plain_bowl(search), candidate.bowl)
     return _at_drive(search, candidate, bowl, MoveKind.CALMER_DRIVE)
 
@@ -506,9 +610,21 @@ def try_proposal(
     weights: Floats,
     driven: Bowl | None = None,
 ) -> Candidate:
-    """Return one short trial at the drive that the target asks for, or at that of a bowl.
+    """Return a proposal with one short trial, at the drive that the target asks for.
 
-    Weights are shares (M,) [1] of the orientations.
+    Parameters
+    ----------
+    search : Search
+    plain_bowl : PlainBowl
+    proposal : Proposal
+    weights : (M,) float [1]
+        Shares in which the orientations come.
+    driven : Bowl, optional
+        Its drive is taken in place of that of the target.
+
+    Returns
+    -------
+    Candidate
     """
     check_written(proposal.devices, "design.yaml")
     if not search.keeps("track.climb") and any(device.leans for device in proposal.devices):
@@ -557,7 +673,19 @@ def try_proposal(
 
 
 def try_again(search: Search, candidate: Candidate, proposal: Proposal, bowl: Bowl) -> Candidate:
-    """Return a candidate tried with another proposal at the drive of a bowl."""
+    """Return a candidate tried with another proposal at the drive of a bowl.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+    proposal : Proposal
+    bowl : Bowl
+
+    Returns
+    -------
+    Candidate
+    """
     return try_proposal(search, candidate.plain_bowl(search), proposal, candidate.weights, bowl)
 
 
@@ -566,7 +694,17 @@ def drive_for_target(
 ) -> Bowl:
     """Return the bowl at the drive that brings the target, with the gaps that its devices need there.
 
-    Weights are shares (M,) [1] of the orientations.
+    Parameters
+    ----------
+    search : Search
+    plain_bowl : PlainBowl
+    proposal : Proposal
+    weights : (M,) float [1]
+        Shares in which the orientations come.
+
+    Returns
+    -------
+    Bowl
     """
     orientations = search.through(replace(plain_bowl.bowl, devices=proposal.devices))
     gain, spacing = short_trials.gain(orientations, weights, proposal.states(orientations)), 0.0

@@ -41,7 +41,7 @@ class FamilyStudy(ReadableRecord):
 
     @property
     def shared(self) -> bool:
-        """Whether all run on one track through one chain: only drive and sensors are set anew."""
+        """Tell whether all run on one track through one chain: only drive and sensors are set anew."""
         steel: set[Any] = set()
         for member in self.members:
             if member.bowl is None:
@@ -53,12 +53,21 @@ class FamilyStudy(ReadableRecord):
 
     @property
     def partial(self) -> bool:
-        """Whether the user stopped it."""
+        """Tell whether the user stopped it."""
         return self.stopped or any(member.partial for member in self.members)
 
 
 def check_names(parts: Sequence[Part]) -> None:
-    """Say which two parts have one name; raises FeederError."""
+    """Refuse two parts of one name: the results of one would overwrite those of the other.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+
+    Raises
+    ------
+    FeederError
+    """
     names = [FAMILY_FOLDER, *(part.name.casefold() for part in parts)]
     for k, name in enumerate(names[1:]):
         if name in names[: k + 1]:
@@ -82,10 +91,28 @@ def family(
     to the others. Where each holds with them, one value is chosen for each device out of what all of them
     admit, and who has another one by that is tried again. Who does not gets devices of its own.
 
-    The parts are two or more, from meshes, of different names; the request is the same for each, with no
-    aspect and no heading. ``tell``, ``before`` and ``progress`` are as for ``loop.design``. The members are
-    as the parts, fewer where the user stopped it. Raises FeederError as ``loop.design``, and where two parts
-    have one name.
+    Parameters
+    ----------
+    parts : sequence of Part
+        Two or more, from meshes, of different names.
+    plain : Bowl
+        As the user gave it, completed by the defaults.
+    kept_keys : collection of str
+        Names of keys that are kept of it.
+    request : DesignRequest
+        The same for each, with no aspect and no heading.
+    tell, before, progress : callable, optional
+        As for ``loop.design``.
+
+    Returns
+    -------
+    FamilyStudy
+        With members as the parts, fewer where the user stopped it.
+
+    Raises
+    ------
+    FeederError
+        As ``loop.design``, and where two parts have one name.
     """
     check_names(parts)
     tell = tell or (lambda text: None)
@@ -176,11 +203,18 @@ def _unify_chains(
 
 
 def common_limits(chains: Sequence[Sequence[Cut]]) -> list[float | None] | None:
-    """Return the values [m] at which each device of several chains suits all of them.
+    """Return the values at which each device of several chains suits all of them.
 
-    Chains are of devices of the same kinds in the same order. A value each, None of what has no number; that
-    of one of the chains where all admit it, else the middle of what they admit. None where some device has no
-    such value.
+    Parameters
+    ----------
+    chains : sequence of sequence of Cut
+        Of devices of the same kinds in the same order.
+
+    Returns
+    -------
+    list of (float [m] or None), or None
+        A value each, None of what has no number; that of one of the chains where all admit it, else the
+        middle of what they admit. None in place of the list where some device has no such value.
     """
     limits: list[float | None] = []
     for cuts in zip(*chains, strict=True):
@@ -209,9 +243,29 @@ def prove_with_cuts(
     tell: Callable[[str], None],
     before: Callable[[], None] | None,
 ) -> DesignStudy | None:
-    """Return a design with other values of its devices, proved as any; None where its trial denies it.
+    """Return a design with other values of its devices, proved as any.
 
-    The design has a bowl, of which some keys are kept.
+    Parameters
+    ----------
+    study : DesignStudy
+        With a bowl.
+    cuts : sequence of Cut
+        In place of its own.
+    request : DesignRequest
+    kept_keys : collection of str
+        Names of keys of the bowl that are kept.
+    tell, before : callable
+        As for ``loop.design``.
+
+    Returns
+    -------
+    DesignStudy or None
+        None where its trial denies it.
+
+    Raises
+    ------
+    ValueError
+        If the design has no bowl.
     """
     if study.bowl is None or study.turn is None:
         raise ValueError("a design without a bowl has no devices")

@@ -1,4 +1,4 @@
-"""What the queue at one fill has shown: it holds, is refused, or is open; and how fills differ.
+"""Verdict on the queue at one fill: it holds, is refused, or is open; and how fills differ.
 
 A design promises what its worst fill brings. So each fill is judged by its own parts alone: nothing that a
 cleaner fill does improves the figure.
@@ -28,7 +28,7 @@ DIFFERENCE_RISK = 0.01  # [1] chance at which fills that are alike would differ 
 
 
 class FillState(enum.Enum):
-    """What a fill has shown."""
+    """Verdict on a fill."""
 
     OPEN = enum.auto()  # more of its parts decide it
     HOLDS = enum.auto()
@@ -36,20 +36,47 @@ class FillState(enum.Enum):
 
 
 def longest_time(target: float) -> float:
-    """Return for how long [s] a fill is followed at the most, where ``target`` [1/s] is asked for.
+    """Return for how long a fill is followed at the most: until it brings ``SETTLING_PARTS`` at the target.
 
-    In that time it brings ``SETTLING_PARTS`` at the target: 10 min at 30 a minute.
+    It is 10 min at 30 a minute, ``SHORTEST_LIMIT_S`` at least and ``LONGEST_LIMIT_S`` at most.
+
+    Parameters
+    ----------
+    target : float [1/s]
+
+    Returns
+    -------
+    float [s]
     """
     return min(max(SETTLING_PARTS / target, SHORTEST_LIMIT_S), LONGEST_LIMIT_S)
 
 
 def shows_rate(queue: FilledQueue, least_rate: float) -> bool:
-    """Return whether the lower end of the rate's 95 % interval is ``least_rate`` [1/s] or more."""
+    """Tell whether the lower end of the rate's 95 % interval is a rate or more.
+
+    Parameters
+    ----------
+    queue : FilledQueue
+    least_rate : float [1/s]
+
+    Returns
+    -------
+    bool
+    """
     return queue.ends[0] >= least_rate
 
 
 def shows_purity(queue: FilledQueue) -> bool:
-    """Return whether ``PURE`` was seen at a fill, and a purity above ``SHOWN_PURITY`` is shown."""
+    """Tell whether ``PURE`` was seen at a fill, and a purity above ``SHOWN_PURITY`` is shown.
+
+    Parameters
+    ----------
+    queue : FilledQueue
+
+    Returns
+    -------
+    bool
+    """
     return _is_pure(queue.right, queue.left)
 
 
@@ -112,7 +139,16 @@ def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillSta
 
 
 def least_of(target: float) -> float:
-    """Return the rate [1/s] that a fill must show where ``target`` is asked for."""
+    """Return the rate that a fill must show: ``RATE_KEPT`` of the target.
+
+    Parameters
+    ----------
+    target : float [1/s]
+
+    Returns
+    -------
+    float [1/s]
+    """
     return RATE_KEPT * target
 
 

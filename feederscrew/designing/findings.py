@@ -1,4 +1,4 @@
-"""What trials of a design find, and what the search changes because of it: records, and no sentence.
+"""Findings of trials, and the moves that the search makes because of them: records, and no sentence.
 
 The search decides on these. ``designing.texts`` makes the sentences that people read of them.
 """
@@ -11,7 +11,7 @@ from feederscrew.trial.course import Fate
 
 
 class Cause(enum.StrEnum):
-    """What keeps a design from holding; files print the word."""
+    """Cause why a design does not hold; files print the word."""
 
     UNKNOWN = ""  # it holds, or was stopped
     DRIVE = "drive"
@@ -22,7 +22,7 @@ class Cause(enum.StrEnum):
 
 @dataclass(frozen=True)
 class End:
-    """How and where a part ended, or came into another orientation."""
+    """End of a part, or its turn into another orientation: the fate and the place."""
 
     fate: Fate  # TURNED of one that left otherwise, at the last station that turned it
     station: int = 0  # place along the chain of what stands on the track; 0 is the bare track
@@ -30,12 +30,12 @@ class End:
 
     @property
     def on_bare_track(self) -> bool:
-        """Whether it happened before any device."""
+        """Tell whether it happened before any device."""
         return not self.kind
 
     @property
     def came_back(self) -> bool:
-        """Whether the part was returned, and comes along once more."""
+        """Tell whether the part was returned, and comes along once more."""
         return self.fate is Fate.RETURNED
 
 
@@ -65,17 +65,17 @@ class Fault:
 
     @property
     def is_stopped(self) -> bool:
-        """Whether the first of its parts that were lost stands at a device."""
+        """Tell whether the first of its parts that were lost stands at a device."""
         return bool(self.ends) and self.ends[0].fate is Fate.STOPPED
 
     @property
     def is_at_device(self) -> bool:
-        """Whether some of its parts ended or were turned at a device."""
+        """Tell whether some of its parts ended or were turned at a device."""
         return any(not end.on_bare_track for end in self.ends)
 
     @property
     def is_on_bare_track(self) -> bool:
-        """Whether some of its parts ended or were turned before any device."""
+        """Tell whether some of its parts ended or were turned before any device."""
         return any(end.on_bare_track for end in self.ends)
 
     def stops_at(self, kinds: Iterable[str]) -> bool:
@@ -133,13 +133,13 @@ class SeldomPart:
 
     @property
     def may_spoil(self) -> bool:
-        """Whether it may come often enough to make the purity too low."""
+        """Tell whether it may come often enough to make the purity too low."""
         return self.break_even is not None and self.share_high >= self.break_even
 
 
 @dataclass(frozen=True)
 class Hooking:
-    """How two parts of one kind hold each other."""
+    """Two parts of one kind that hold each other."""
 
     pulls: int
     held: int  # of them that do not part the two

@@ -65,7 +65,19 @@ def expected_gain(orientations: Orientations, shares: Floats, row: int) -> float
 
 
 def same_head(orientations: Sequence[Orientation], own: Neck) -> Bools:
-    """Return which orientations (M,) bool could hang by the same head of the part."""
+    """Return which orientations could hang by the same head of the part.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    own : Neck
+        With that head.
+
+    Returns
+    -------
+    (M,) bool
+    """
     heads = [find_head(orientation) for orientation in orientations]
     return np.array(
         [head is not None and vectors.dot(head.down, own.down) > SAME_HEAD_COSINE for head in heads]
@@ -73,7 +85,20 @@ def same_head(orientations: Sequence[Orientation], own: Neck) -> Bools:
 
 
 def head_rows(orientations: Sequence[Orientation], shares: Floats, rows: Sequence[int]) -> list[int]:
-    """Return the most frequent of some rows with each head of a part, the most frequent head first."""
+    """Return the most frequent of some rows with each head of a part, the most frequent head first.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    rows : sequence of int
+
+    Returns
+    -------
+    list of int
+    """
     chosen: list[int] = []
     left = [k for k in rows if find_head(orientations[k]) is not None]
     while left:
@@ -88,7 +113,7 @@ def head_rows(orientations: Sequence[Orientation], shares: Floats, rows: Sequenc
 
 @dataclass(frozen=True)
 class Shown:
-    """What a trial shows of M orientations at rails."""
+    """Findings of a trial on M orientations at rails."""
 
     hangs: Bools  # (M,) which leave hanging, most of their parts at least
     gone: Bools  # (M,) which the bare track or the rails return
@@ -216,10 +241,22 @@ class RailsSearch:
 
 
 def shown_by(trial: ShortTrial, proposal: Proposal, count: int) -> Shown:
-    """Return what a trial shows of M orientations at rails.
+    """Return what a trial shows of the orientations at rails.
 
     What a cut before the rails returns, or a blade behind them sweeps off, needs that device: it is neither
     gone nor does it stand, as what was not tried.
+
+    Parameters
+    ----------
+    trial : ShortTrial
+    proposal : Proposal
+        That was tried.
+    count : int
+        Of orientations, M.
+
+    Returns
+    -------
+    Shown
     """
     placed = [device for device in proposal.devices if device.placed]
     station = next((n for n, device in enumerate(placed, start=1) if device.hangs), -1)
@@ -247,8 +284,16 @@ def _sweep_of(proposal: Proposal) -> float | None:
 
 
 def score(trial: ShortTrial) -> float:
-    """Return how good a chain is by its trial: what leaves as wanted, less what stands or leaves otherwise.
+    """Return how good a chain is: efficiency less three times the share that stands or leaves wrongly.
 
     A share that stands or leaves wrongly counts three times: it stops a bowl. What comes back only slows it.
+
+    Parameters
+    ----------
+    trial : ShortTrial
+
+    Returns
+    -------
+    float [1]
     """
     return trial.efficiency - 3.0 * (trial.stopped + trial.wrong_share)

@@ -39,16 +39,32 @@ CUBE_DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
 
 
 def wedge(orientation: Orientation, lift: float = LIFT) -> tuple[float, float, float]:
-    """Return the angle [rad] at which a part is pushed up on another where it lies higher by ``lift`` [m].
+    """Return the angle at which a part is pushed up on another where it lies a little higher.
 
-    The least of the two angles, of the part behind and of the one before as the higher one; 0 where one
-    clears the other. It is a quarter of a turn where upright sides meet, more where the plane pushes the
-    higher one down. Then how far the parts are apart where they meet, L [m], and +1 where the part behind is
-    higher, or -1. They meet in a plane on which the higher one rises by -dL/d(lift) along the track. L is the
-    largest q_x - p_x of points q of the part behind and p of the part before that meet: a linear programme in
-    the shares of the corners, whose multiplier of the height is dL/d(lift).
+    The parts meet in a plane on which the higher one rises by -dL/d(lift) along the track. L, how far they
+    are apart where they meet, is the largest q_x - p_x of points q of the part behind and p of the part
+    before that meet: a linear programme in the shares of the corners, whose multiplier of the height is
+    dL/d(lift).
 
-    Source: own; docs/method/design.md.
+    Parameters
+    ----------
+    orientation : Orientation
+    lift : float [m], optional
+        By which it lies higher.
+
+    Returns
+    -------
+    angle : float [rad]
+        The least of two, of the part behind and of the one before as the higher one; 0 where one clears the
+        other. A quarter of a turn where upright sides meet, more where the plane pushes the higher one down.
+    distance : float [m]
+        L.
+    sign : float [1]
+        +1 where the part behind is higher, -1 where the one before is.
+
+    References
+    ----------
+    docs/method/design.md.
     """
     from scipy.optimize import linprog
 
@@ -76,10 +92,23 @@ def risks(
     orientations: Sequence[Orientation] = (),
     seed: int = 1,
 ) -> tuple[Risk, ...]:
-    """Say what may go wrong between parts, after queues that were followed.
+    """Return what may go wrong between parts, after queues that were followed.
 
-    ``orientation`` is the wanted one, of a part from a mesh, ``orientations`` are all that come often enough
-    to matter. The friction of the bowl is also that of part on part.
+    Parameters
+    ----------
+    orientation : Orientation
+        The wanted one, of a part from a mesh.
+    bowl : Bowl
+        Its friction is also that of part on part.
+    queues : sequence of FilledQueue
+    orientations : sequence of Orientation, optional
+        All that come often enough to matter.
+    seed : int, optional
+        Of the pairs that may tangle.
+
+    Returns
+    -------
+    tuple of Risk
     """
     part, mu = orientation.posture.solid, bowl.friction
     listed: list[Risk] = []
@@ -182,12 +211,25 @@ LEAST_STRUT_RATIO = 1.02
 
 
 def walls_between(orientation: Orientation, friction: float) -> tuple[float, float] | None:
-    """Return between which distances [m] of two parallel walls a part may wedge; None where it cannot.
+    """Return between which distances of two parallel walls a part may wedge.
 
-    Friction [1] holds a part there whose longest line is within its angle of square to the walls. Walls that
-    are nearer than the part is broad let none in; walls that are further apart never touch it at once.
+    Friction holds a part there whose longest line l is within its angle of square to the walls: from max(l
+    cos(atan mu), breadth) to l. Walls that are nearer than the part is broad let none in; walls that are
+    further apart never touch it at once.
 
-    Source: own; docs/method/design.md.
+    Parameters
+    ----------
+    orientation : Orientation
+    friction : float [1]
+
+    Returns
+    -------
+    (float, float) [m] or None
+        None where it cannot.
+
+    References
+    ----------
+    docs/method/design.md.
     """
     corners = orientation.outline
     breadth = float(np.ptp(corners[:, 1]))
@@ -198,7 +240,18 @@ def walls_between(orientation: Orientation, friction: float) -> tuple[float, flo
 
 
 def strut(orientation: Orientation, width: float) -> float:
-    """Return the heading [rad] by which a part is turned further where it touches walls a width [m] apart."""
+    """Return the heading by which a part is turned further where it touches two parallel walls.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    width : float [m]
+        Between the walls.
+
+    Returns
+    -------
+    float [rad]
+    """
     angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 721)
     x, y = orientation.outline.T
     wide = [float(np.ptp(math.sin(turn) * x + math.cos(turn) * y)) for turn in angles]
@@ -219,15 +272,31 @@ class Stack:
 
     @property
     def depth(self) -> float:
-        """How far the one is in the other [m]."""
+        """Return how far the one is in the other [m]."""
         return self.height - float(vectors.norm(self.place))
 
 
 def stack(part: Part, friction: float) -> Stack | None:
-    """Return how a part, from a mesh, sits deepest in another, shifted and not turned; None where none holds.
+    """Return how a part sits deepest in another, shifted and not turned.
 
     They touch where the upright chord of the one is longest, its hollows counted in, and stay so where their
-    sides all round are steeper there than friction [1] holds. Source: own; docs/method/design.md.
+    sides all round are steeper there than friction holds.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    friction : float [1]
+        Of part on part.
+
+    Returns
+    -------
+    Stack or None
+        None where none holds.
+
+    References
+    ----------
+    docs/method/design.md.
     """
     solid, length, principal = solid_of(part)
     stacks = []
@@ -279,10 +348,26 @@ class Tangle:
 
 @functools.lru_cache(maxsize=8)
 def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle | None:
-    """Return the pair of a part that holds best of those that reach into each other; None where none holds.
+    """Return the pair of a part that holds best of those that reach into each other.
 
-    The part is from a mesh; friction [1] of part on part is static and kinetic. Pairs that are laid out by
-    chance and reach deepest into each other's hulls are pulled apart in the trial's engine. Source: own;
+    Pairs that are laid out by chance and reach deepest into each other's hulls are pulled apart in the
+    trial's engine.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    friction : (float, float) [1]
+        Of part on part, static and kinetic.
+    seed : int, optional
+
+    Returns
+    -------
+    Tangle or None
+        None where none holds.
+
+    References
+    ----------
     docs/method/design.md.
     """
     solid, length, principal = solid_of(part)
@@ -322,10 +407,18 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
 
 
 def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[Floats, Floats]]:
-    """Return the deepest poses of a part in another of its kind that do not overlap: rotations and places.
+    """Return the deepest poses of a part in another of its kind that do not overlap.
 
-    The Cells are of the part, about its centre of mass. Rotations (3, 3) [1] and places (3,) [L], the deepest
-    first, no two alike.
+    Parameters
+    ----------
+    grid : Cells
+        Of the part, about its centre of mass.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    list of ((3, 3) float [1], (3,) float [L])
+        Rotations and places, the deepest first, no two alike.
     """
     own, rim = grid.middles(grid.solid), grid.middles(grid.rim)
     hollow = grid.middles(grid.hull & ~grid.solid & (grid.away > grid.size))

@@ -39,7 +39,7 @@ KIND = "long proof"  # of the entries in the cache
 
 @dataclass(frozen=True)
 class LongPlan:
-    """How a fill is followed: so many runs, and for how long each [s]."""
+    """Plan by which a fill is followed: so many runs, and for how long each [s]."""
 
     runs: int
     seconds: float
@@ -76,7 +76,7 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class RunCounts:
-    """What one run counted; M orientations come, S may leave, A aspects, D devices on the track."""
+    """Counts of one run; M orientations come, S may leave, A aspects, D devices on the track."""
 
     seconds: float  # [s] followed
     counted: float  # [s] of them since the first part came to the outlet

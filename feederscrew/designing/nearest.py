@@ -44,24 +44,51 @@ class Variant:
 
 
 def only_slow(study: DesignStudy) -> bool:
-    """Return whether a design lacks nothing but parts per minute."""
+    """Tell whether a design lacks nothing but parts per minute.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    bool
+    """
     low, (purity, _) = study.delivered[1], study.purity
     sorts = study.robust.share >= DRAWS_HELD and purity >= PURE and not study.jams and not study.partial
     return sorts and 0.0 < low < RATE_KEPT * study.request.target
 
 
 def whole(study: DesignStudy) -> bool:
-    """Return whether a design was proved to the end, holding or not: all draws, a queue at each fill."""
+    """Tell whether a design was proved to the end, holding or not: all draws, a queue at each fill.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    bool
+    """
     return study.robust.draws >= study.request.draws and queues.is_complete(
         study.queues, longest_time(study.request.target)
     )
 
 
 def rate_that_holds(study: DesignStudy) -> float:
-    """Return the rate [1/s] at which a design holds, as it was proved; 0 where it holds at none.
+    """Return the rate at which a design holds, as it was proved.
 
-    It is rounded down to two digits a minute: what its queues surely deliver, over the share of a target that
-    is enough.
+    It is what its queues surely deliver, over the share of a target that is enough, rounded down to two
+    digits a minute.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    float [1/s]
+        0 where it holds at none.
     """
     if study.partial or not study.queues:
         return 0.0
@@ -88,10 +115,24 @@ def nearest(
     proved as any design is, until one holds: ``near_proofs`` of the policy at most, with ``near_trials``
     short trials. Then bowls are sought for a lower rate: the chains that its drive makes possible are others.
 
-    ``best`` does not hold, nor does what was proved; the search is as it ended. ``prove`` returns the design
-    of a candidate with draws and queues, followed as long as they are pure, however slow. The design has the
-    request it was proved for; it is None where nothing holds, or it leaves another orientation than one that
-    was asked for.
+    Parameters
+    ----------
+    best : DesignStudy
+        That does not hold, nor does what was proved.
+    search : Search
+        As it ended.
+    proofs : list of (DesignStudy, Candidate)
+        That were made.
+    prove : callable
+        Returns the design of a candidate with draws and queues, followed as long as they are pure, however
+        slow.
+
+    Returns
+    -------
+    nearest : NearestDesign
+    study : DesignStudy or None
+        With the request it was proved for; None where nothing holds, or it leaves another orientation than
+        one that was asked for.
     """
     state, policy = search.state, search.policy
     state.nearest_limit = len(state.attempts) + policy.near_trials
@@ -136,7 +177,7 @@ def nearest(
 
 
 def _is_denied(variant: Variant, proved: Sequence[Candidate], drives: float = math.inf) -> bool:
-    """Whether a variant's chain was proved at so many drives, or at one that is nearly its own."""
+    """Tell whether a variant's chain was proved at so many drives, or at one that is nearly its own."""
     own = variant.candidate.attempt
     alike = [
         one.attempt for one in proved if (one.attempt.wanted, one.attempt.chain) == (own.wanted, own.chain)
@@ -153,9 +194,21 @@ def _is_denied(variant: Variant, proved: Sequence[Candidate], drives: float = ma
 def nearest_from_study(
     study: DesignStudy, rate: float, change: str, *, trials: int = 0, proofs: int = 1
 ) -> NearestDesign:
-    """Return the nearest that holds at a rate [1/s], as a design showed it that was proved.
+    """Return the nearest that holds at a rate, as a design showed it that was proved.
 
-    It has a bowl, its draws and its queues; so many ``trials`` and ``proofs`` were made to find it.
+    Parameters
+    ----------
+    study : DesignStudy
+        With a bowl, its draws and its queues.
+    rate : float [1/s]
+    change : str
+        In words, from what was asked for.
+    trials, proofs : int, optional
+        That were made to find it.
+
+    Returns
+    -------
+    NearestDesign
     """
     bowl = study.bowl
     return NearestDesign(
@@ -193,7 +246,17 @@ def _drive(bowl: Bowl) -> str:
 
 
 def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
-    """Yield designs near those that do not hold, the cheapest change first, each clean in its short trial."""
+    """Yield designs near those that do not hold, the cheapest change first, each clean in its short trial.
+
+    Parameters
+    ----------
+    search : Search
+    proofs : list of (DesignStudy, Candidate)
+
+    Yields
+    ------
+    Variant
+    """
     budget, proved = search.policy.near_trials, {id(candidate) for _, candidate in proofs}
     for study, candidate in proofs:
         if _by_motion(study) and budget:
@@ -234,7 +297,7 @@ def _fastest_first(candidates: Iterable[Candidate]) -> list[Candidate]:
 
 
 def _by_motion(study: DesignStudy) -> bool:
-    """Whether a calmer drive may mend it: it jams, is impure, or draws lose or let through what hops."""
+    """Tell whether a calmer drive may mend it: it jams, is impure, or draws lose or let through what hops."""
     impure = bool(study.queues) and (bool(study.jams) or not study.purity[0] >= PURE)
     hops = study.bowl is not None and hop(study.bowl).height > 0.0
     denied = study.robust.share < DRAWS_HELD and hops
@@ -338,7 +401,7 @@ def _other_way(candidate: Candidate) -> str:
 
 
 def _helps(search: Search, study: DesignStudy, chosen: Candidate | None) -> Iterator[str]:
-    """What else was clean in a short trial, or would count more parts."""
+    """Return what else was clean in a short trial, or would count more parts."""
     named = {study.wanted}
     for candidate in _fastest_first(search.state.clean):
         if candidate is not chosen and candidate.attempt.wanted not in named:

@@ -47,7 +47,7 @@ def _chosen(value: Any, basis: Basis = JUDGED) -> Any:
 
 @dataclass(frozen=True)
 class SearchPolicy:
-    """How the search of a design ranks chains, what it tries next, and when it gives up."""
+    """Policy of the search: how it ranks chains, what it tries next, and when it gives up."""
 
     # short trials
     trial_parts: int = _chosen(2)  # parts of each orientation in one

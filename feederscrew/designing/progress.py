@@ -1,4 +1,4 @@
-"""How far a search is: sentences and counts for the user, and a guess of the time to go."""
+"""Progress of a search: sentences and counts for the user, and a guess of the time to go."""
 
 import enum
 import time
@@ -17,7 +17,7 @@ TELL_EVERY_S = 0.5  # [s] between two calls of progress in a queue
 
 
 class SearchStage(enum.StrEnum):
-    """What a search is doing; programs that show its progress are told the word."""
+    """Stage of a search; programs that show its progress are told the word."""
 
     TRIAL = "trial"
     DRAWS = "draws"
@@ -40,7 +40,7 @@ def _silent(text: str) -> None:
 
 @dataclass(frozen=True)
 class TrialBudget:
-    """What a search has made and may make."""
+    """Trials that a search has made, and may make."""
 
     attempts: list[Attempt]  # short trials that were made
     limit: int  # short trials at most
@@ -48,7 +48,7 @@ class TrialBudget:
 
 
 class Clock:
-    """How long the stages of a design take, and a guess of what is still to come."""
+    """Time that the stages of a design take, and a guess of the time still to come."""
 
     def __init__(self) -> None:
         self.begun = self.last = self.since = time.monotonic()

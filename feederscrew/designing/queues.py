@@ -210,7 +210,18 @@ class _Fills:
 
 
 def is_complete(fills: Sequence[FilledQueue], longest: float) -> bool:
-    """Return whether queues were followed to their end: each has settled its purity, or had its time [s]."""
+    """Tell whether queues were followed to their end: each has settled its purity, or had its time.
+
+    Parameters
+    ----------
+    fills : sequence of FilledQueue
+    longest : float [s]
+        The time of each at the most.
+
+    Returns
+    -------
+    bool
+    """
     if len(fills) < len(FILLS):
         return False
     return all(

@@ -50,7 +50,7 @@ class BankedTrack:
 
 @dataclass(eq=False)
 class SearchState:
-    """What a search has found so far; each of its steps reads and changes it."""
+    """State of a search: its findings so far; each of its steps reads and changes it."""
 
     reserve: float  # [1] of the target, for which a bowl is driven
     shares: Shares | None = None  # what arrives; None before the tracks are known
@@ -166,13 +166,13 @@ class Search:
 
     @property
     def is_spent(self) -> bool:
-        """Whether the budget of trials is used up."""
+        """Tell whether the budget of trials is used up."""
         state = self.state
         return len(state.attempts) >= min(self.request.budget, state.most_trials, state.reach)
 
     @property
     def arrivals(self) -> Shares:
-        """What arrives."""
+        """Return the mix of aspects that arrives."""
         if self.state.shares is None:
             raise ValueError("what arrives is not known before the tracks are")
         return self.state.shares
@@ -219,7 +219,7 @@ class Search:
 
     @property
     def budget(self) -> TrialBudget:
-        """What it has made and may make."""
+        """Return the trials that it has made and may make."""
         return TrialBudget(self.state.attempts, self.limit, self.request.draws)
 
     def tell(self, text: str) -> None:

@@ -48,7 +48,7 @@ GAP = 1.0 + FillLevel.LOW.gaps  # pitch of parts that come in a row at low fill,
 
 @dataclass(frozen=True, eq=False)
 class ShortTrial:
-    """What single parts did in one bowl; M orientations."""
+    """Outcome of single parts in one bowl; M orientations."""
 
     orientations: stream.Orientations
     shares: Floats  # (M,) [1] in which they come; sums to 1
@@ -86,7 +86,7 @@ class ShortTrial:
 
     @property
     def loses_wanted(self) -> bool:
-        """Whether some part of what is wanted did not leave as wanted."""
+        """Tell whether some part of what is wanted did not leave as wanted."""
         return any(self.right[n] < self.parts[n] for n in self.wanted_places)
 
     @property
@@ -151,12 +151,37 @@ class ShortTrial:
 
 
 def gain(orientations: stream.Orientations, shares: Floats, states: Sequence[int]) -> float:
-    """Return the share [1] of what comes that leaves in one of some states, as the static rule says."""
+    """Return the share of what comes that leaves in one of some states, as the static rule says.
+
+    Parameters
+    ----------
+    orientations : Orientations
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    states : sequence of int
+
+    Returns
+    -------
+    float [1]
+    """
     return float((shares[:, None] * orientations.leaving[:, list(states)]).sum())
 
 
 def frequent_rows(shares: Floats, rows: Sequence[int] = ()) -> list[int]:
-    """Return the rows (R,) that come often enough to matter, the most frequent first; some in any case."""
+    """Return the rows that come often enough to matter, the most frequent first.
+
+    Parameters
+    ----------
+    shares : (M,) float [1]
+        ``SELDOM_SHARE`` or more is often.
+    rows : sequence of int, optional
+        Those that are there in any case.
+
+    Returns
+    -------
+    list of int
+    """
     order = np.argsort(-shares, kind="stable")
     return [int(k) for k in order if shares[k] >= SELDOM_SHARE or k in rows]
 
@@ -216,13 +241,39 @@ def try_parts(
     any_heading: Sequence[str] = (),
     shown: tuple[int, ...] | None = None,
 ) -> ShortTrial:
-    """Try parts one at a time: of each orientation in ``rows`` (R,) ``count`` parts, one number or (R,).
+    """Try parts one at a time, some of each orientation.
 
-    The bowl has its devices, and the orientations, M of them, come along its track through these in
-    ``shares`` (M,) [1]. ``targets`` are the wanted orientation and others that count as it; so does a part on
-    an aspect of ``any_heading``, whatever its heading: then ``aspects`` are needed. ``shown`` are the rows
-    that another trial has shown to leave as wanted. Raises KeyboardInterrupt
-    if the user stops it before all parts are through.
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    orientations : Orientations
+        M of them, that come along its track through these.
+    shares : (M,) float [1]
+        In which they come.
+    targets : int or sequence of int
+        The wanted orientation and others that count as it.
+    rows : (R,) int
+        Orientations that are tried.
+    count : int or (R,) int
+        Parts of each.
+    run : RunSettings
+    aspects : Aspects, optional
+        Needed with ``any_heading``.
+    any_heading : sequence of str, optional
+        Aspects on which a part counts as wanted, whatever its heading.
+    shown : tuple of int, optional
+        Rows that another trial has shown to leave as wanted.
+
+    Returns
+    -------
+    ShortTrial
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all parts are through.
     """
     rows, states = np.asarray(rows, int), wanted_states(orientations, np.atleast_1d(targets))
     sent = np.tile(rows, count) if isinstance(count, int) else np.repeat(rows, count)
@@ -280,8 +331,17 @@ def try_parts(
 def find_returnable_rows(trial: ShortTrial) -> tuple[int, ...]:
     """Return the wanted rows of which a chain returns parts while it lets others of them leave.
 
-    Fewer parts a minute, no fault. None where no wanted orientation leaves whole, nor any of which a part
-    stays or leaves otherwise.
+    They mean fewer parts a minute, no fault.
+
+    Parameters
+    ----------
+    trial : ShortTrial
+
+    Returns
+    -------
+    tuple of int
+        Empty where no wanted orientation leaves whole; without those of which a part stays or leaves
+        otherwise.
     """
     own = trial.wanted_places
     if not any(trial.right[n] == trial.parts[n] for n in own):
@@ -292,9 +352,16 @@ def find_returnable_rows(trial: ShortTrial) -> tuple[int, ...]:
 
 
 def lost_by_motion(trial: ShortTrial) -> int:
-    """Return how many parts of what is wanted were turned, or ended on the track before any device.
+    """Return how many parts of what is wanted were turned, or ended, on the track before any device.
 
-    What a device returns, stops or turns is not among them.
+    Parameters
+    ----------
+    trial : ShortTrial
+
+    Returns
+    -------
+    int
+        What a device returns, stops or turns is not among them.
     """
     counts = [ends[n] for ends in (trial.ends, trial.turns) if ends for n in trial.wanted_places]
     return sum(number for count in counts for end, number in count.items() if end.on_bare_track)
@@ -311,8 +378,16 @@ OTHERS_DRAWN = 3  # parts tried in each draw beside the wanted one, as they come
 def draw_bowl(bowl: Bowl, orientations: Sequence[Orientation], rng: np.random.Generator) -> Bowl:
     """Return a bowl with other friction, restitution, drive and cuts.
 
-    ``orientations`` are of the part as drawn, which a profile may name: its opening is that of the
-    nominal part.
+    Parameters
+    ----------
+    bowl : Bowl
+    orientations : sequence of Orientation
+        Of the part as drawn, which a profile may name: its opening is that of the nominal part.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    Bowl
     """
     rubbed, driven = calm_drive.scale_friction(bowl, rng.uniform(*FRICTION)), rng.uniform(*DRIVE)
     devices = tuple(_draw_device(device, orientations, rng) for device in bowl.devices)
@@ -356,15 +431,42 @@ def _named_orientation(
 
 
 def principal_sizes(part: Part) -> list[float]:
-    """Return how long a part from a mesh is along each principal axis [m], of the least moment first."""
+    """Return how long a part is along each principal axis, of the least moment first.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+
+    Returns
+    -------
+    list of float [m]
+    """
     points, axes = np.asarray(part.vertices).T, vectors.eigen(part.inertia)[1].T
     return [float(np.ptp(vectors.dot_columns(points, axis))) for axis in axes]
 
 
 def draw_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
-    """Return a part, from a mesh, whose size along each principal axis is off by up to a tolerance [m].
+    """Return a part whose size along each principal axis is off by a random length.
 
     Axes about which it is round stay so.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    tolerance : float [m]
+        By up to which it is off, evenly drawn.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    Part
+
+    Raises
+    ------
+    ValueError
+        If the part has no surface.
     """
     if part.vertices is None or part.volume is None:
         raise ValueError("a part without a surface has no size that could be off")
@@ -424,19 +526,43 @@ def robust_run(
     enough: float = LEAST_SHARE_LEAVING,
     max_failures: int | None = None,
 ) -> RobustRun:
-    """Try so many ``draws`` of friction, drive, cuts and part, whose sizes are off by up to a tolerance [m].
+    """Try draws of friction, drive, cuts and part.
 
     A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each draw
-    tries the wanted orientation and some others, drawn by their shares (M,) [1]. Where a wanted part comes
-    back, RETRIED_PARTS more of each wanted orientation are tried: it is offered again, and costs rate. The
-    draw then holds where at least the share ``enough`` [1] of what is wanted leaves, LEAST_SHARE_LEAVING or
-    more.
+    tries the wanted orientation and some others, drawn by their shares. Where a wanted part comes back,
+    RETRIED_PARTS more of each wanted orientation are tried: it is offered again, and costs rate. The draw
+    then holds where at least a share of what is wanted leaves.
 
-    The bowl has its devices, the M orientations are those of the nominal part in it; ``targets`` are the
-    wanted one and others that count as it, as aspects of ``any_heading`` do; ``returnable`` ones count as it
-    and may be returned; ``shown`` are the rows that a trial has shown to leave as wanted, by the static rule
-    without them. Once more than ``max_failures`` draws fail the run ends, for the rest decides
-    nothing; all draws are made without it. The progress of ``run`` is told how many are done, of how many.
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    orientations : Orientations
+        The M of the nominal part in it.
+    shares : (M,) float [1]
+        In which they come.
+    targets : int or sequence of int
+        The wanted one and others that count as it.
+    draws : int
+    tolerance : float [m]
+        By up to which sizes of the part are off.
+    run : RunSettings
+        It is told how many draws are done, of how many.
+    any_heading : sequence of str, optional
+        Aspects that count as wanted, whatever the heading.
+    returnable : sequence of int, optional
+        Orientations that count as wanted and may be returned.
+    shown : tuple of int, optional
+        Rows that a trial has shown to leave as wanted; those of the static rule without it.
+    enough : float [1], optional
+        The share that is to leave where parts come back, LEAST_SHARE_LEAVING or more.
+    max_failures : int, optional
+        Once more draws fail the run ends, for the rest decides nothing; all draws are made without it.
+
+    Returns
+    -------
+    RobustRun
     """
     most = draws if max_failures is None else max_failures
 
@@ -475,7 +601,7 @@ def _draw(
     tolerance: float, seed: tuple[int, int], any_heading: Sequence[str], returnable: Sequence[int],
     enough: float, shown: tuple[int, ...] | None,
 ) -> tuple[list[Fault], float]:  # fmt: skip
-    """What goes wrong in one draw, and the velocity there.
+    """Return the faults of one draw, and the velocity there.
 
     Faults name the orientations of the part as it is drawn, not those of the part of other size.
     """
@@ -552,9 +678,24 @@ def draw_rows(
 ) -> list[int]:
     """Return the orientations that one draw tries: a wanted one, then OTHERS_DRAWN parts as they come.
 
-    ``shares`` (M,) [1] are those of the orientations, ``rows`` the wanted one and others that count as it. Of
-    those that are ``returnable``, and may be returned, none is drawn first while another is left. ``wanted``
-    are the rows that leave as wanted: those of the static rule without them.
+    Parameters
+    ----------
+    orientations : Orientations
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    rows : sequence of int
+        The wanted one and others that count as it.
+    rng : numpy.random.Generator
+    returnable : sequence of int, optional
+        Those that may be returned: none of them is drawn first while another is left.
+    wanted : sequence of int, optional
+        Rows that leave as wanted: those of the static rule without them.
+
+    Returns
+    -------
+    list of int
+        Each once.
     """
     wanted = list(wanted) or _leaving_as_wanted(orientations, rows)
     wanted = [k for k in wanted if k not in returnable] or wanted
@@ -565,16 +706,36 @@ def draw_rows(
 
 
 def came_back(trial: ShortTrial, row: int) -> bool:
-    """Return whether the part of a wanted orientation was returned: it comes along once more."""
+    """Tell whether the part of a wanted orientation was returned: it comes along once more.
+
+    Parameters
+    ----------
+    trial : ShortTrial
+    row : int
+        Of the orientation.
+
+    Returns
+    -------
+    bool
+    """
     place = list(trial.rows).index(row)
     ends = trial.ends[place]
     return not trial.right[place] and bool(ends) and all(end.came_back for end in ends)
 
 
 def comes_through(trial: ShortTrial, weights: dict[int, float], enough: float = LEAST_SHARE_LEAVING) -> bool:
-    """Return whether enough [1] of more parts of what is wanted leave, and the others come back.
+    """Tell whether enough parts of what is wanted leave, and the others come back.
 
-    Weights are the shares [1] in which their orientations come.
+    Parameters
+    ----------
+    trial : ShortTrial
+    weights : dict of int to float [1]
+        Shares in which orientations come, by their rows.
+    enough : float [1], optional
+
+    Returns
+    -------
+    bool
     """
     own = np.array([weights[k] for k in trial.rows])
     leaving = float((own * trial.right / trial.parts).sum())
@@ -620,6 +781,14 @@ def find_denials(trial: ShortTrial) -> Iterator[Fault]:
     Those are all but three kinds. What comes so seldom that it was not seen is named as a risk. Little that
     is carried through is let be while the purity is CLEAN. A wanted orientation of which most parts leave,
     and none stays, is a loss of parts a minute.
+
+    Parameters
+    ----------
+    trial : ShortTrial
+
+    Yields
+    ------
+    Fault
     """
     if not trial.efficiency > 0.0:
         yield Fault(FaultKind.NOTHING_LEAVES)

@@ -14,18 +14,45 @@ from feederscrew.units import counted
 
 
 def end_text(end: End) -> str:
-    """Return how and where a part ended: 'returned at gap', 'turned on the track'."""
+    """Return how and where a part ended: 'returned at gap', 'turned on the track'.
+
+    Parameters
+    ----------
+    end : End
+
+    Returns
+    -------
+    str
+    """
     place = "on the track" if end.on_bare_track else f"at {end.kind}"
     return f"{end.fate.word.replace('_', ' ')} {place}"
 
 
 def ends_text(ends: Iterable[End]) -> str:
-    """Return how parts ended, each way once."""
+    """Return how parts ended, each way once.
+
+    Parameters
+    ----------
+    ends : iterable of End
+
+    Returns
+    -------
+    str
+    """
     return ", ".join(dict.fromkeys(map(end_text, ends)))
 
 
 def fault_text(fault: Fault) -> str:
-    """Return a fault as a sentence: 'A@188 is lost (returned at gap)'."""
+    """Return a fault as a sentence: 'A@188 is lost (returned at gap)'.
+
+    Parameters
+    ----------
+    fault : Fault
+
+    Returns
+    -------
+    str
+    """
     match fault.kind:
         case FaultKind.NOTHING_LEAVES:
             text = "nothing leaves as wanted"
@@ -44,23 +71,64 @@ def fault_text(fault: Fault) -> str:
 
 
 def counted_fault_text(fault: Fault, text: str = "") -> str:
-    """Return a fault with the draws that show it: 'A@188 is lost (...) in 2 of 20'."""
+    """Return a fault with the draws that show it: 'A@188 is lost (...) in 2 of 20'.
+
+    Parameters
+    ----------
+    fault : Fault
+    text : str, optional
+        The fault in words; made here without it.
+
+    Returns
+    -------
+    str
+    """
     return f"{text or fault_text(fault.counted_in_draws(0, 0))} in {fault.failures} of {fault.draws}"
 
 
 def fault_texts(faults: Iterable[Fault], most: int | None = None) -> list[str]:
-    """Return faults as sentences, the first ``most`` of them."""
+    """Return faults as sentences.
+
+    Parameters
+    ----------
+    faults : iterable of Fault
+    most : int, optional
+        So many, the first ones; all without it.
+
+    Returns
+    -------
+    list of str
+    """
     return [fault_text(fault) for fault in tuple(faults)[:most]]
 
 
 def percent(value: float, ends: tuple[float, float]) -> str:
-    """Return a share [1] in percent, with its interval."""
+    """Return a share in percent, with its interval: '98.2 % (95.1 to 99.4)'.
+
+    Parameters
+    ----------
+    value : float [1]
+    ends : (float, float) [1]
+
+    Returns
+    -------
+    str
+    """
     low, high = (f"{100.0 * end:.3g}" for end in ends)
     return f"{100.0 * value:.4g} % ({low} to {high})"
 
 
 def move_text(move: Move) -> str:
-    """Return a step of the search in words: 'proposed with margins of 0.5 mm'."""
+    """Return a step of the search in words: 'proposed with margins of 0.5 mm'.
+
+    Parameters
+    ----------
+    move : Move
+
+    Returns
+    -------
+    str
+    """
     match move.kind:
         case MoveKind.PROPOSED:
             return f"proposed with margins of {in_mm(move.value)}"
@@ -101,7 +169,16 @@ SEPARATORS = ("a de-tangling drum", "bursts of air", "a magazine that keeps them
 
 
 def condition_text(hooking: Hooking) -> str:
-    """Return under which condition a bowl holds whose parts hook: what separates them, what to change."""
+    """Return under which condition a bowl holds whose parts hook: what separates them, what to change.
+
+    Parameters
+    ----------
+    hooking : Hooking
+
+    Returns
+    -------
+    str
+    """
     return (
         f"two parts hook into each other ({hooking.held} of {counted(hooking.pulls, 'pull')} do not part "
         f"them), and no queue was tried with parts that hang together; separate them before the bowl by "
@@ -110,7 +187,16 @@ def condition_text(hooking: Hooking) -> str:
 
 
 def change_text(hooking: Hooking) -> str:
-    """Return what to change on a part so that two of them do not hook."""
+    """Return what to change on a part so that two of them do not hook.
+
+    Parameters
+    ----------
+    hooking : Hooking
+
+    Returns
+    -------
+    str
+    """
     limb = in_mm(hooking.section)
     if np.isfinite(hooking.opening):
         return (
@@ -121,7 +207,16 @@ def change_text(hooking: Hooking) -> str:
 
 
 def seldom_text(seldom: SeldomPart) -> str:
-    """Return that an orientation leaves or stays too, from which share on that matters, and its share."""
+    """Return that an orientation leaves or stays too, from which share on that matters, and its share.
+
+    Parameters
+    ----------
+    seldom : SeldomPart
+
+    Returns
+    -------
+    str
+    """
     own = f"{100.0 * seldom.share:.2g} % of the parts come so, {100.0 * seldom.share_high:.2g} % at the most"
     of = counted(seldom.parts, "part")
     if seldom.break_even is None:
@@ -135,7 +230,16 @@ def seldom_text(seldom: SeldomPart) -> str:
 
 
 def difference_text(difference: FillDifference) -> str:
-    """Return a fill that is worse than the others, with its cause, as a sentence."""
+    """Return a fill that is worse than the others, with its cause, as a sentence.
+
+    Parameters
+    ----------
+    difference : FillDifference
+
+    Returns
+    -------
+    str
+    """
     d = difference
     counts = f"{d.right} of {d.total} parts", f"{d.right_elsewhere} of {d.total_elsewhere}"
     chance = f"p = {d.chance:.1g}, Fisher's exact test"
@@ -155,5 +259,15 @@ def difference_text(difference: FillDifference) -> str:
 
 
 def leaving_texts(counts: LeavingCounts) -> dict[str, int]:
-    """Return how many parts left in each pose, by its text, the most first."""
+    """Return how many parts left in each pose, by its text.
+
+    Parameters
+    ----------
+    counts : LeavingCounts
+
+    Returns
+    -------
+    dict of str to int
+        The most first.
+    """
     return {pose.text: count for pose, count in counts}

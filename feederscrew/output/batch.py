@@ -23,7 +23,21 @@ LINES, BELOW = 8, 3  # of the reason why a part failed, and of what stands below
 
 
 def thumbnail(part: Part, record: Aspects, aspect: str | None = None) -> bytes:
-    """Draw a part with a mesh on one of its aspects as a PNG; without a name on the likeliest."""
+    """Draw a part on one of its aspects as a PNG.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    record : Aspects
+        Of that part.
+    aspect : str, optional
+        The likeliest without it.
+
+    Returns
+    -------
+    bytes
+    """
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     row = record.names.index(aspect or record.likeliest)
     return png_of_pixels(shading.thumbnail(solid, record, row, (WIDTH, HEIGHT)))

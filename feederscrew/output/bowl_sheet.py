@@ -54,10 +54,22 @@ def draw_sheets(
     study: MachineSheet, trial: Verified | None = None, mark: str | None = None,
     fields: SheetFields | None = None,
 ) -> Drawing:  # fmt: skip
-    """Return the drawing of a bowl on its sheets, of a MachineSheet with its order and its solid.
+    """Return the drawing of a bowl on its sheets.
 
-    ``trial`` is what a trial of the bowl has shown, ``mark`` stands across each sheet in place of the
-    trial's, ``fields`` are date and revision of the title block.
+    Parameters
+    ----------
+    study : MachineSheet
+        With its order and its solid.
+    trial : Verified, optional
+        What a trial of the bowl has shown.
+    mark : str, optional
+        Stands across each sheet in place of the trial's.
+    fields : SheetFields, optional
+        Date and revision of the title block.
+
+    Returns
+    -------
+    Drawing
     """
     order, whole = study.order, study.solid
     if order is None or whole is None:

@@ -56,7 +56,7 @@ class _Writer(RendererAgg):
 
 
 class Canvas(FigureCanvasAgg):
-    """What figures are drawn on; names of users enter them in many places, and are made harmless here."""
+    """Canvas of figures; names of users enter them in many places, and are made harmless here."""
 
     def get_renderer(self) -> RendererAgg:
         """Return the writer of this size, one for all texts of a figure."""
@@ -67,7 +67,7 @@ class Canvas(FigureCanvasAgg):
 
 
 class PixelCanvas(Canvas):
-    """What a picture is that was drawn already: its file has its pixels; axes would take 130 MB for them."""
+    """Picture that was drawn already: its file has its pixels; axes would take 130 MB for them."""
 
     image: Array  # (rows, columns, 3) uint8
 

@@ -69,9 +69,19 @@ TOOLING_PICTURES = (
 
 
 def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.Offer] = ()) -> str:
-    """Return the page of a DesignStudy and its Built as HTML that needs no other file.
+    """Return the page of a design as HTML that needs no other file.
 
-    ``papers`` are the other files of the design: some are shown, and those to build from have a link.
+    Parameters
+    ----------
+    study : DesignStudy
+    build : Built, optional
+        The machine below the bowl, and the bowl as a solid.
+    papers : sequence of Offer, optional
+        The other files of the design: some are shown, and those to build from have a link.
+
+    Returns
+    -------
+    str
     """
     d = designs.document(study)
     value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
@@ -164,7 +174,7 @@ def _first_seen(study: DesignStudy) -> list[tuple[str, str]]:
 
 
 def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
-    """What the status says, what is missing or what all was reached; the machine, the bowl, the risks."""
+    """Return the page's answer: the status, what is missing or reached; machine, bowl, risks."""
     if study.status in HELD:
         if study.condition:
             yield Notes((f"{study.status}: {study.condition}.",), loud=True)
@@ -194,7 +204,7 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
 
 
 def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer]) -> Iterator[Chapter]:
-    """What a shop builds from: the bowl, its tooling, springs and drive, and the files of them."""
+    """Return the documents that a shop builds from: bowl, tooling, springs, drive, and their files."""
     mark = marking.of_trial(designs.trial_of(study))
     views = solidbowl_views.blocks(build.drawn.solid if build.drawn else None, study.part, build.why, mark)
     yield Chapter(tuple(views), anchor="bowl", title="The bowl")
@@ -223,13 +233,23 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
 
 
 def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None = None) -> list[offer.Offer]:
-    """Offer the files of a DesignStudy.
+    """Offer the files of a design.
 
-    ``settings`` (Setting) are as the user gave them; ``build`` has the machine below the bowl, and the
-    bowl as a solid. Document, page and acceptance sheet; of a design with a bowl the bowl file, and
-    everything of the tooling, of the machine and of the bowl as a solid. Of one that is not proved, or
-    that delivers nothing, what was tried only: nothing to build from. Drawings of what falls short bear a
-    mark.
+    They are document, page and acceptance sheet; of a design with a bowl the bowl file, and everything of the
+    tooling, of the machine and of the bowl as a solid. Of one that is not proved, or that delivers nothing,
+    what was tried only: nothing to build from. Drawings of what falls short bear a mark.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    settings : sequence of Setting
+        As the user gave them.
+    build : Built, optional
+        The machine below the bowl, and the bowl as a solid.
+
+    Returns
+    -------
+    list of Offer
     """
     sheet, drawn = (None, None) if build is None else (build.sheet, build.drawn)
     files = [

@@ -39,7 +39,7 @@ LINE_TYPES = {  # ISO 128-2: name, its description, and its dashes [mm]
 
 @dataclass(frozen=True)
 class Pen:
-    """How the entities of a layer look."""
+    """Look of the entities of a layer."""
 
     colour: int = 7  # of AutoCAD's index, in the DXF file: 1 red, 3 green, 5 blue, 7 white or black, 8 grey
     ink: str = style.INK  # on paper
@@ -95,20 +95,44 @@ class Drawing:
         self.sheets[-1].append((layer, "line", points, False))
 
     def lines(self, pieces: Iterable[ArrayLike], layer: str = "EDGE") -> None:
-        """Draw open lines (2, 2) or (K, 2) [mm] each."""
+        """Draw open lines.
+
+        Parameters
+        ----------
+        pieces : iterable of (K, 2) float [mm]
+        layer : str, optional
+        """
         for piece in pieces:
             self.outline(piece, layer, is_closed=False)
 
     def box(self, left: float, low: float, right: float, high: float, layer: str = "FRAME") -> None:
-        """Draw a rectangle."""
+        """Draw a rectangle.
+
+        Parameters
+        ----------
+        left, low, right, high : float [mm]
+        layer : str, optional
+        """
         self.outline([(left, low), (right, low), (right, high), (left, high)], layer)
 
     def circle(self, middle: ArrayLike, radius: float, layer: str = "EDGE") -> None:
-        """Draw a circle [mm]."""
+        """Draw a circle.
+
+        Parameters
+        ----------
+        middle : (2,) float [mm]
+        radius : float [mm]
+        layer : str, optional
+        """
         self._record(self.space.add_circle(self._in_file(middle), radius, dxfattribs=self._look(layer)))
 
     def hatch(self, rings: Sequence[ArrayLike]) -> None:
-        """Draw the cut face of closed outlines, holes among them."""
+        """Draw the cut face of closed outlines, holes among them.
+
+        Parameters
+        ----------
+        rings : sequence of (K, 2) float [mm]
+        """
         hatch = self.space.add_hatch(dxfattribs=self._look("SECTION"))
         hatch.set_pattern_fill("ANSI31", scale=1.0)
         for ring in rings:
@@ -121,7 +145,22 @@ class Drawing:
         self, x: float, y: float, words: str, size: float = NUMBER_HEIGHT_MM, align: str = "left",
         turn: float = 0.0, bold: bool = False, layer: str = "TEXT",
     ) -> None:  # fmt: skip
-        """Write one line; ``align`` is 'left', 'center' or 'right' of the place, ``turn`` is in degrees."""
+        """Write one line.
+
+        Parameters
+        ----------
+        x, y : float [mm]
+            Its place.
+        words : str
+        size : float [mm], optional
+            Height of the letters.
+        align : str, optional
+            'left', 'center' or 'right' of the place.
+        turn : float [deg], optional
+            Counter-clockwise.
+        bold : bool, optional
+        layer : str, optional
+        """
         entity = self.space.add_text(
             words, height=size, rotation=turn, dxfattribs=self._look(layer) | {"style": "SHEET"}
         )
@@ -133,7 +172,26 @@ class Drawing:
         self, left: float, top: float, widths: Sequence[float], rows: Sequence[Sequence[str]],
         size: float = TABLE_LETTER_HEIGHT_MM, line: float = 4.6,
     ) -> float:  # fmt: skip
-        """Draw a table whose first row is its head; return the height of its lower border [mm]."""
+        """Draw a table.
+
+        Parameters
+        ----------
+        left, top : float [mm]
+            Its upper left corner.
+        widths : sequence of float [mm]
+            Of the columns.
+        rows : sequence of sequence of str
+            The first is its head.
+        size : float [mm], optional
+            Height of the letters.
+        line : float [mm], optional
+            Height of a row.
+
+        Returns
+        -------
+        float [mm]
+            Height of its lower border.
+        """
         right, low = left + sum(widths), top - line * len(rows)
         self.lines(([(left, top - line * k), (right, top - line * k)] for k in range(len(rows) + 1)), "TABLE")
         edges = left + np.concatenate([[0.0], np.cumsum(widths)])
@@ -149,9 +207,18 @@ class Drawing:
         self, start: ArrayLike, end: ArrayLike, offset: ArrayLike, scale: float = 1.0, text: str = "<>",
         decimals: int = 2,
     ) -> None:  # fmt: skip
-        """Dimension the distance of two places [mm]: its line is moved off by a vector (2,) square to it.
+        """Dimension the distance of two places.
 
-        ``text`` has '<>' for the number, which is measured: the distance over the ``scale``.
+        Parameters
+        ----------
+        start, end : (2,) float [mm]
+        offset : (2,) float [mm]
+            By which its line is moved off, square to it.
+        scale : float [1], optional
+            Of what is drawn: the number is the distance over it.
+        text : str, optional
+            With '<>' for the number.
+        decimals : int, optional
         """
         start, end, offset = (np.asarray(p, float) for p in (start, end, offset))
         x, y = end - start
@@ -164,14 +231,34 @@ class Drawing:
     def ordinate(
         self, place: ArrayLike, end: ArrayLike, origin: ArrayLike, upright: bool, scale: float = 1.0
     ) -> None:
-        """Dimension a place from an origin, along X or ``upright`` along Y; the number stands at ``end``."""
+        """Dimension a place from an origin, along one axis.
+
+        Parameters
+        ----------
+        place : (2,) float [mm]
+        end : (2,) float [mm]
+            Where the number stands.
+        origin : (2,) float [mm]
+        upright : bool
+            Along Y; else along X.
+        scale : float [1], optional
+            Of what is drawn.
+        """
         x, y = np.asarray(end, float) - np.asarray(place, float)
         places = {"feature_location": self._in_file(place), "origin": self._in_file(origin)}
         add = self.space.add_ordinate_y_dim if upright else self.space.add_ordinate_x_dim
         self._measure(add, scale, 2, offset=(float(x), float(y)), **places)
 
     def angle(self, middle: ArrayLike, radius: float, start: float, end: float) -> None:
-        """Dimension an angle [deg] counter-clockwise about a middle, on an arc of a radius [mm]."""
+        """Dimension an angle counter-clockwise about a middle, on an arc.
+
+        Parameters
+        ----------
+        middle : (2,) float [mm]
+        radius : float [mm]
+            Of the arc.
+        start, end : float [deg]
+        """
         ends = {"start_angle": start, "end_angle": end, "radius": 0.8 * radius, "distance": 0.2 * radius}
         self._measure(self.space.add_angular_dim_cra, 1.0, 2, center=self._in_file(middle), text="<>", **ends)
 
@@ -179,13 +266,37 @@ class Drawing:
         self, middle: ArrayLike, radius: float, turn: float, scale: float = 1.0, diameter: bool = False,
         text: str = "<>", decimals: int = 2,
     ) -> None:  # fmt: skip
-        """Dimension a radius, or a diameter, of a circle at an angle [deg]."""
+        """Dimension a radius, or a diameter, of a circle.
+
+        Parameters
+        ----------
+        middle : (2,) float [mm]
+        radius : float [mm]
+        turn : float [deg]
+            At which the dimension stands.
+        scale : float [1], optional
+            Of what is drawn.
+        diameter : bool, optional
+        text : str, optional
+            With '<>' for the number.
+        decimals : int, optional
+        """
         add = self.space.add_diameter_dim if diameter else self.space.add_radius_dim
         size = {"radius": radius, "angle": turn, "text": text}
         self._measure(add, scale, decimals, center=self._in_file(middle), **size)
 
     def mark(self, words: str, low: ArrayLike = (0.0, 0.0), size: tuple[float, float] = A3) -> None:
-        """Write a mark from corner to corner of the present sheet, on a layer of its own; '' for none."""
+        """Write a mark from corner to corner of the present sheet, on a layer of its own.
+
+        Parameters
+        ----------
+        words : str
+            '' for none.
+        low : (2,) float [mm], optional
+            Lower left corner.
+        size : (float, float) [mm], optional
+            Width and height of the sheet.
+        """
         if words:
             height, turn = marking.diagonal(size, words)
             middle = np.asarray(low, float) + 0.5 * np.asarray(size)
@@ -199,7 +310,16 @@ class Drawing:
         return dxf.document_bytes(self.document)
 
     def pdf(self, title: str) -> bytes:
-        """Return the sheets as the pages of a PDF without a date."""
+        """Return the sheets as the pages of a PDF without a date.
+
+        Parameters
+        ----------
+        title : str
+
+        Returns
+        -------
+        bytes
+        """
         file = io.BytesIO()
         with PdfPages(file, metadata={"Title": title, "CreationDate": None}) as pages:
             for sheet in range(len(self.sheets)):
@@ -207,7 +327,16 @@ class Drawing:
         return file.getvalue()
 
     def svg(self, low: ArrayLike, high: ArrayLike) -> str:
-        """Return what lies between two corners [mm] of the first sheet as an SVG file of true size."""
+        """Return what lies between two corners of the first sheet as an SVG file of true size.
+
+        Parameters
+        ----------
+        low, high : (2,) float [mm]
+
+        Returns
+        -------
+        str
+        """
         import matplotlib
 
         file = io.StringIO()
@@ -218,7 +347,17 @@ class Drawing:
         return text[text.index("<svg ") :]
 
     def figure(self, sheet: int = 0, low: ArrayLike = (0.0, 0.0), high: ArrayLike = A3) -> Figure:
-        """Return a sheet between two corners [mm] as a figure of true size."""
+        """Return a sheet between two corners as a figure of true size.
+
+        Parameters
+        ----------
+        sheet : int, optional
+        low, high : (2,) float [mm], optional
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
         low, high = np.asarray(low, float), np.asarray(high, float)
         figure = Figure(figsize=tuple((high - low) / INCH_MM), facecolor="white")
         axes = figure.add_axes((0, 0, 1, 1), xlim=(low[0], high[0]), ylim=(low[1], high[1]))
@@ -254,7 +393,16 @@ class Drawing:
         return figure
 
     def texts(self, sheet: int = 0) -> list[str]:
-        """Return what is written on a sheet, numbers of dimensions among it."""
+        """Return what is written on a sheet, numbers of dimensions among it.
+
+        Parameters
+        ----------
+        sheet : int, optional
+
+        Returns
+        -------
+        list of str
+        """
         from matplotlib.text import Text
 
         return [text.get_text() for text in self.figure(sheet).findobj(Text) if text.get_text()]
@@ -304,7 +452,18 @@ class Drawing:
 
 
 def spread(targets: ArrayLike, gap: float) -> Floats:
-    """Return places (N,) near the wanted ones, in their order, of which no two are nearer than ``gap``."""
+    """Return places near the wanted ones, in their order, that stand apart.
+
+    Parameters
+    ----------
+    targets : (N,) float [mm]
+    gap : float [mm]
+        No two places are nearer.
+
+    Returns
+    -------
+    (N,) float [mm]
+    """
     targets = np.asarray(targets, float)
     order = np.argsort(targets, kind="stable")
     steps = np.arange(len(order)) * gap

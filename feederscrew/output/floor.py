@@ -332,7 +332,16 @@ def plan(
 
 
 def polygon(axes: "style.Axes", points: Points, color: str | None = None, **look: Any) -> None:
-    """Draw a polygon [mm] filled, as a part or in a colour of its own."""
+    """Draw a polygon filled, as a part or in a colour of its own.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    points : (K, 2) float [mm]
+    color : str, optional
+    **look : object
+        As of ``matplotlib.patches.Polygon``.
+    """
     edges = {"facecolor": PART, "edgecolor": style.INK, "linewidth": 1.4, "zorder": 2}
     edges |= {} if color is None else {"facecolor": color, "edgecolor": color}
     axes.add_patch(mpl_patches.Polygon(points, closed=True, **(edges | look)))
@@ -402,9 +411,18 @@ def arrow(
     axes: "style.Axes", start: XY, step: Vector, text: str, color: str, *, is_push: bool = False,
     side: int = 0,
 ) -> None:  # fmt: skip
-    """Draw a force arrow with its value: from ``start`` on or, ``is_push``, towards it from outside.
+    """Draw a force arrow with its value.
 
-    ``side`` writes the value to the left (-1) or right (1) of the middle instead of beyond the head.
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    start : (float, float) [mm]
+    step : (2,) float [mm]
+    text, color : str
+    is_push : bool, optional
+        Whether it ends at the start, from outside; else it begins there.
+    side : int, optional
+        Writes the value to the left (-1) or right (1) of the middle instead of beyond the head.
     """
     tail = np.asarray(start) - step if is_push else np.asarray(start)
     head, end = tail + step, -9.0 if is_push else 9.0

@@ -45,13 +45,29 @@ class ResultFolder:
         self._records()
 
     def write(self, name: str, content: str | bytes) -> None:
-        """Hold back one file, text or bytes, until ``keep``; '/' in the name makes folders."""
+        """Hold back one file, until ``keep``.
+
+        Parameters
+        ----------
+        name : str
+            '/' in it makes folders.
+        content : str or bytes
+        """
         if not _inside(name) or name == RECORD:
             raise ValueError(f"{name!r} is not a name for a result")
         self.staged[name] = tables.file_bytes(content)
 
     def has_file(self, command: str, name: str) -> bool:
-        """Return whether an earlier run of a command has left a file of that name here."""
+        """Tell whether an earlier run of a command has left a file of a name here.
+
+        Parameters
+        ----------
+        command, name : str
+
+        Returns
+        -------
+        bool
+        """
         return name in self._records().get(command, {}).get("files", [])
 
     def keep(
@@ -60,8 +76,15 @@ class ResultFolder:
     ) -> None:  # fmt: skip
         """Put every file in place and record the run; a command's files of an earlier run are replaced.
 
-        ``arguments`` are as typed, ``effective`` the parameters that led to the numbers, ``warnings``
-        as given.
+        Parameters
+        ----------
+        command : str
+        arguments : sequence of str, optional
+            As typed.
+        effective : mapping of str to object, optional
+            The parameters that led to the numbers.
+        warnings : sequence of str, optional
+            As given.
         """
         record = {
             "version": __version__,
@@ -136,7 +159,18 @@ class ResultFolder:
 
 
 def check_place(folder: Path, mend: str = ANOTHER) -> None:
-    """Raise FeederError where a folder is a file, or cannot be made or written to."""
+    """Refuse a folder that is a file, or cannot be made or written to.
+
+    Parameters
+    ----------
+    folder : Path
+    mend : str, optional
+        Says what to do.
+
+    Raises
+    ------
+    FeederError
+    """
     nearest = next(p for p in (folder.absolute(), *folder.absolute().parents) if p.exists())
     if not nearest.is_dir():
         raise FeederError(nearest, "is a file, not a folder", mend)
@@ -183,7 +217,21 @@ def _lock(folder: Path) -> Iterator[None]:
 
 
 def write_rule(path: str | Path, targets: Iterable[str | Path], inputs: Iterable[str | Path]) -> None:
-    """Write one rule, to be included by a Makefile, as a whole file; FeederError if it cannot be written."""
+    """Write one rule, to be included by a Makefile, as a whole file.
+
+    Parameters
+    ----------
+    path : str or Path
+    targets : iterable of str or Path
+        Files that are made.
+    inputs : iterable of str or Path
+        Files that they are made from.
+
+    Raises
+    ------
+    FeederError
+        If it cannot be written.
+    """
     path = Path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -197,7 +245,17 @@ def write_rule(path: str | Path, targets: Iterable[str | Path], inputs: Iterable
 
 
 def rule(targets: Iterable[str | Path], inputs: Iterable[str | Path]) -> str:
-    """Return the text of the rule."""
+    """Return the text of a rule for make.
+
+    Parameters
+    ----------
+    targets, inputs : iterable of str or Path
+        As for ``write_rule``.
+
+    Returns
+    -------
+    str
+    """
     target_words, input_words = ([_escape(path) for path in paths] for paths in (targets, inputs))
     first = f"{' '.join(target_words)}: " + " \\\n  ".join(input_words)
     return "".join(f"{line.rstrip()}\n" for line in (first, *(f"{path}:" for path in input_words)))

@@ -24,7 +24,17 @@ LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": 0.7, "shrinkA": 1,
 
 
 def bowl(study: MachineSheet, trial: Verified | None = None) -> "style.Figure":
-    """Draw a bowl with its machine, a MachineSheet, and what a trial of it has shown; return a Figure."""
+    """Draw a bowl with its machine, and what a trial of it has shown.
+
+    Parameters
+    ----------
+    study : MachineSheet
+    trial : Verified, optional
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     page = style.page(MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX)
     words, moved = "The machine of this bowl", study.stroke
     if study.order is not None:

@@ -25,10 +25,21 @@ N_MM, GRAM_CM3 = units.factor("N/mm", "stiffness"), units.factor("g/cm3", "densi
 
 
 def quotation(study: MachineSheet, trial: Verified | None = None) -> list[dict[str, str]]:
-    """Return what a maker asks for, 'quantity' and 'value', of a MachineSheet: without an order the machine.
+    """Return what a maker asks for; without an order the machine.
 
     The condition under which the bowl holds comes first, then what one set of leaf springs cannot make, and
     both drives.
+
+    Parameters
+    ----------
+    study : MachineSheet
+    trial : Verified, optional
+        What a trial of the bowl has shown.
+
+    Returns
+    -------
+    list of dict of str to str
+        'quantity' and 'value'.
     """
     rows = [(trial.status, trial.condition)] if trial is not None and trial.condition else []
     rows += [("drive", words)] if (words := two_axis(study.bowl.drive)) else []
@@ -59,7 +70,18 @@ def two_axis(drive: Drive) -> str:
 
 
 def angles(study: MachineSheet, *, phase: bool = True) -> str:
-    """Return the angle of the motion at the springs and at the track, as text for titles and drawings."""
+    """Return the angle of the motion at the springs and at the track, as text for titles and drawings.
+
+    Parameters
+    ----------
+    study : MachineSheet
+    phase : bool, optional
+        Whether the phase of a two-axis drive is said too.
+
+    Returns
+    -------
+    str
+    """
     degrees = study.bowl.machine.spring_angle / DEG, study.bowl.drive.vibration_angle / DEG
     words = f"{degrees[0]:.3g}° at the springs, {degrees[1]:.3g}° to the track"
     led = phase and drive_sizing.is_two_axis(study.bowl.drive)

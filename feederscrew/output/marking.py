@@ -32,9 +32,18 @@ class SheetFields:
 
 
 def of_trial(trial: Verified | None, mark: str | None = None) -> str:
-    """Return the mark of a bowl whose trial falls short or holds under a condition; '' of any other.
+    """Return the mark of a bowl whose trial falls short or holds under a condition.
 
-    A ``mark`` that is given stands in its place.
+    Parameters
+    ----------
+    trial : Verified or None
+    mark : str, optional
+        Stands in its place.
+
+    Returns
+    -------
+    str
+        '' of any other.
     """
     if mark is not None or trial is None:
         return mark or ""
@@ -42,21 +51,48 @@ def of_trial(trial: Verified | None, mark: str | None = None) -> str:
 
 
 def marked_title(text: str, mark: str) -> str:
-    """Return the name of a body or the title of a file with a mark: 'bowl - FALLS SHORT - ...'."""
+    """Return the name of a body or the title of a file with a mark: 'bowl - FALLS SHORT - ...'.
+
+    Parameters
+    ----------
+    text, mark : str
+
+    Returns
+    -------
+    str
+    """
     return f"{text} - {mark}" if mark else text
 
 
 def file_name(name: str, mark: str) -> str:
-    """Return the name of a solid's file: 'bowl_falls_short.stl' of what falls short, all that a slicer shows.
+    """Return the name of a solid's file: 'bowl_falls_short.stl' of what falls short.
 
-    What holds under a condition keeps its name: it may be built.
+    That is all that a slicer shows. What holds under a condition keeps its name: it may be built.
+
+    Parameters
+    ----------
+    name, mark : str
+
+    Returns
+    -------
+    str
     """
     path = PurePosixPath(name)
     return name if mark in ("", CONDITION_MARK) else f"{path.stem}_falls_short{path.suffix}"
 
 
 def mark_step(data: bytes, mark: str) -> bytes:
-    """Return a STEP file whose head and products bear a mark, in letters of ASCII without an apostrophe."""
+    """Return a STEP file whose head and products bear a mark, in letters of ASCII without an apostrophe.
+
+    Parameters
+    ----------
+    data : bytes
+    mark : str
+
+    Returns
+    -------
+    bytes
+    """
     if not mark:
         return data
     end = f" - {mark}'".encode("ascii")
@@ -65,14 +101,39 @@ def mark_step(data: bytes, mark: str) -> bytes:
 
 
 def diagonal(sheet: Sequence[float] | Vector, mark: str) -> tuple[float, float]:
-    """Return the size of a mark's letters, in the unit of a sheet (width, height), and its turn [rad]."""
+    """Return how a mark stands from corner to corner of a sheet.
+
+    Parameters
+    ----------
+    sheet : (float, float) [any length]
+        Width and height.
+    mark : str
+
+    Returns
+    -------
+    size : float [any length]
+        Of its letters.
+    turn : float [rad]
+    """
     length = min(DIAGONAL_SHARE * float(np.hypot(*sheet)), SIDE_SHARE * max(sheet))
     width = 0.62  # of a bold letter over its size, in the mean
     return length / (width * len(mark)), float(np.arctan2(sheet[1], sheet[0]))
 
 
 def mark_figure(figure: "Figure | None", mark: str) -> "Figure | None":
-    """Write a mark from corner to corner of a figure or of None, and return it; '' leaves it as it is."""
+    """Write a mark from corner to corner of a figure, and return it.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure or None
+    mark : str
+        '' leaves it as it is.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        The figure given.
+    """
     if figure is None or not mark:
         return figure
     canvas: Any = figure.canvas
@@ -103,7 +164,17 @@ def _write(figure: "Figure", mark: str) -> None:
 
 
 def pictures(files: Iterable[offers.Offer], mark: str) -> list[offers.Offer]:
-    """Return offers whose pictures bear a mark; the others as they are."""
+    """Return offers whose pictures bear a mark; the others as they are.
+
+    Parameters
+    ----------
+    files : iterable of Offer
+    mark : str
+
+    Returns
+    -------
+    list of Offer
+    """
 
     def mark_picture(offer: offers.Offer) -> offers.Offer:
         return offers.picture(

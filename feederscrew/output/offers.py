@@ -1,4 +1,4 @@
-"""What a subject offers of its study: files by name, each made only when it is asked for."""
+"""Files that a subject offers of its study, by name, each made only when it is asked for."""
 
 import contextlib
 import sys
@@ -30,12 +30,12 @@ class Offer:
 
     @property
     def is_picture(self) -> bool:
-        """Whether it is left out where no pictures are wanted."""
+        """Tell whether it is left out where no pictures are wanted."""
         return self.name.endswith(".png")
 
     @property
     def is_drawn(self) -> bool:
-        """Whether it is a page or what a page shows: these have work in common, and none with the others."""
+        """Tell whether it is a page or shown on one: these share work, and none with the others."""
         return self.name.endswith((".html", ".png", ".svg")) and not self.is_apart
 
 

@@ -67,7 +67,18 @@ def pose_finder(part: Part, aspects: Aspects) -> Callable[[str], Pose | None]:
 
 
 def picture(lying: Posture, heading: float) -> bytes:
-    """Return the PNG of a Posture at a heading [rad] against the wall, an arrow ahead of it."""
+    """Return the picture of a posture against the wall, an arrow ahead of it.
+
+    Parameters
+    ----------
+    lying : Posture
+    heading : float [rad]
+
+    Returns
+    -------
+    bytes
+        PNG.
+    """
     points = on_track(lying, heading)
     faces = np.asarray(lying.solid.faces) if lying.solid is not None else np.zeros((0, 3), int)
     points, faces = shading.reduced_mesh(points, faces, MOST_FACETS)
@@ -81,7 +92,17 @@ def picture(lying: Posture, heading: float) -> bytes:
 
 
 def on_track(lying: Posture, heading: float) -> Floats:
-    """Return the corners (V, 3) [m] of a Posture at a heading [rad]: ahead, inwards, up from its foot."""
+    """Return the corners of a posture on the track: ahead, inwards, up from its foot.
+
+    Parameters
+    ----------
+    lying : Posture
+    heading : float [rad]
+
+    Returns
+    -------
+    (V, 3) float [m]
+    """
     points = np.array(lying.surface)
     return np.column_stack([turned(points[:, :2], heading), points[:, 2]])
 

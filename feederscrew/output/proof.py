@@ -1,4 +1,4 @@
-"""What the trial of a design has shown, beside what other commands compute of it."""
+"""Findings of a design's trial, beside what other commands compute of it."""
 
 from typing import Any, TypeGuard
 
@@ -13,7 +13,21 @@ FileTrial = Verified | VoidTrial | None  # that a bowl file tells of
 
 
 def warnings(trial: FileTrial, part: Part | None, bowl: Bowl, wanted_name: str | None = None) -> list[str]:
-    """Say what the trial of a bowl file has shown of ``wanted_name``, 'A' or 'A@2', or why it is void."""
+    """Return what the trial of a bowl file has shown, or why it is void, a sentence each.
+
+    Parameters
+    ----------
+    trial : Verified, VoidTrial or None
+        Of the bowl file.
+    part : Part or None
+    bowl : Bowl
+    wanted_name : str, optional
+        'A' or 'A@2', that is counted now.
+
+    Returns
+    -------
+    list of str
+    """
     if holds(trial, part, bowl, wanted_name):
         return [trial.sentence]
     if trial is None:
@@ -25,7 +39,21 @@ def warnings(trial: FileTrial, part: Part | None, bowl: Bowl, wanted_name: str |
 def holds(
     trial: FileTrial, part: Part | None, bowl: Bowl, wanted_name: str | None = None
 ) -> TypeGuard[Verified]:
-    """Return whether a bowl file has a trial that is still of this part, this bowl and what is wanted."""
+    """Tell whether a bowl file has a trial that is still of this part, this bowl and what is wanted.
+
+    Parameters
+    ----------
+    trial : Verified, VoidTrial or None
+        Of the bowl file.
+    part : Part or None
+    bowl : Bowl
+    wanted_name : str, optional
+        'A' or 'A@2', that is counted now.
+
+    Returns
+    -------
+    bool
+    """
     return trial is not None and not any(trial.void(part, bowl, __version__, wanted_name))
 
 
@@ -35,7 +63,22 @@ def with_trial(
     """Return a document with the trial's figures beside its own ``parts_per_minute``; the lower rate leads.
 
     A trial leads in any case where it counted several aspects as one, since the rule counts one orientation,
-    and where by the rule nothing leaves. Without a trial that holds the document stays as it is.
+    and where by the rule nothing leaves.
+
+    Parameters
+    ----------
+    document : dict of str to object
+    trial : Verified, VoidTrial or None
+        Of the bowl file.
+    part : Part or None
+    bowl : Bowl
+    wanted_name : str, optional
+        'A' or 'A@2', that is counted now.
+
+    Returns
+    -------
+    dict of str to object
+        As given without a trial that holds.
     """
     if not holds(trial, part, bowl, wanted_name):
         return document if trial is None else document | {"verified": None}

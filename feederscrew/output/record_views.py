@@ -274,7 +274,7 @@ def _report_files(study: "ReportStudy") -> list[Offer]:
 
 @dataclass(frozen=True)
 class RecordView:
-    """How a record is shown: its answer in a line, and what offers the files of its command."""
+    """View of a record: its answer in a line, and the function that offers the files of its command."""
 
     line: Callable[[Any], str] | None = None
     offers: str = ""  # module of ``output`` and its function, '' of a record that is no study

@@ -234,7 +234,7 @@ def tips(case: ReportStudy) -> Chapter:
 
 
 def headings(case: ReportStudy) -> Chapter:
-    """How the part lies along the wall."""
+    """Return how the part lies along the wall."""
     study = case.headings
     result = study.table()
     lead = Text(
@@ -619,7 +619,15 @@ def _first_seen(case: ReportStudy) -> list[tuple[str, str]]:
 
 
 def write(folder: ResultFolder, page: Page, format: str) -> None:
-    """Write one HTML file for the format 'html', or for 'md' Markdown with its pictures beside it."""
+    """Write a page into a folder.
+
+    Parameters
+    ----------
+    folder : ResultFolder
+    page : Page
+    format : str
+        'html' for one HTML file, 'md' for Markdown with its pictures beside it.
+    """
     if format == "html":
         folder.write("report.html", html(page))
         return

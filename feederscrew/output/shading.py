@@ -80,10 +80,22 @@ class Rays:
         TriangleMesh(self._scene, self._single, self.faces.astype(np.int32))
 
     def hits(self, origins: Array, direction: Vector) -> tuple[Array, Array, Array]:
-        """Return what parallel rays from origins (N, 3) [size] about the centre of mass meet first.
+        """Return what parallel rays meet first.
 
-        Distances (N,) [size], infinite where nothing is met; outward unit normals (N, 3), smooth over
-        curved sides, there zero; and the facets (N,) met, or ``MISSED``.
+        Parameters
+        ----------
+        origins : (N, 3) float [size]
+            About the centre of mass.
+        direction : (3,) float [1]
+
+        Returns
+        -------
+        distances : (N,) float [size]
+            Infinite where nothing is met.
+        normals : (N, 3) float [1]
+            Outward, smooth over curved sides; zero where nothing is met.
+        facets : (N,) int
+            MISSED where nothing is met.
         """
         origins = np.ascontiguousarray(origins, dtype=SINGLE_PRECISION)
         directions = np.broadcast_to(np.asarray(direction, dtype=SINGLE_PRECISION), origins.shape)
@@ -110,11 +122,29 @@ class Camera:
     towards_viewer: Vector  # (3,) towards the viewer
 
     def project(self, points: Points) -> Array:
-        """Project (N, 3) points to (N, 2), across and up the image, in the points' unit."""
+        """Return where points are on the image: across and up.
+
+        Parameters
+        ----------
+        points : (N, 3) float [any length]
+
+        Returns
+        -------
+        (N, 2) float [any length]
+        """
         return np.asarray(points) @ np.column_stack([self.right, self.up])
 
     def origins(self, across: Array, up: Array) -> Array:
-        """Return the ray starts (..., 3) of image positions (...), in sizes of the solid."""
+        """Return the ray starts of image positions.
+
+        Parameters
+        ----------
+        across, up : (...) float [size]
+
+        Returns
+        -------
+        (..., 3) float [size]
+        """
         u, v = (np.asarray(places, SINGLE_PRECISION)[..., None] for places in (across, up))
         axes = self.right, self.up, self.towards_viewer
         right, above, to_viewer = (axis.astype(SINGLE_PRECISION) for axis in axes)
@@ -134,14 +164,39 @@ class Camera:
         return solid.hits(self.origins(across, up).reshape(-1, 3), -self.towards_viewer)
 
     def sees(self, solid: Rays, points: Array, slack: float = 0.01, away: float = AWAY) -> Bools:
-        """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
+        """Return which points the solid does not hide.
+
+        Parameters
+        ----------
+        solid : Rays
+        points : (N, 3) float [size]
+        slack : float [size], optional
+            By which a point may lie behind the surface.
+        away : float [size], optional
+            How far towards the viewer is looked for what hides a point.
+
+        Returns
+        -------
+        (N,) bool
+        """
         starts = points + away * self.towards_viewer
         distances = solid.hits(starts, -self.towards_viewer)[0]
         return distances > away - slack
 
 
 def corner_normals(points: Points, faces: Triangles) -> Array | None:
-    """Return the unit normal (F, 3, 3) at each corner, averaged over its curved side; None of many facets."""
+    """Return the unit normal at each corner of each facet, averaged over its curved side.
+
+    Parameters
+    ----------
+    points : (V, 3) float [any length]
+    faces : (F, 3) int
+
+    Returns
+    -------
+    (F, 3, 3) float [1] or None
+        None of very many facets.
+    """
     if len(faces) > MOST_FACETS:
         return None
     a, b, c = np.moveaxis(points[faces], 1, 0)
@@ -187,7 +242,20 @@ class Stance:
 
 
 def stance(points: Points, down: Vector, height: float) -> Stance:
-    """Put points (V, 3) [size] on the floor, ``height`` [size] below, on the aspect of a normal ``down``."""
+    """Return the stance of a solid on the floor, on the aspect of a normal.
+
+    Parameters
+    ----------
+    points : (V, 3) float [size]
+        About the centre of mass.
+    down : (3,) float [1]
+    height : float [size]
+        Of the centre of mass over the floor.
+
+    Returns
+    -------
+    Stance
+    """
     # floor axes x, from the file axis that is most across ``down``, and y
     axis = np.eye(3)[np.argmin(np.abs(np.round(down, 9)))]
     x = axis - (axis @ down) * down
@@ -209,7 +277,20 @@ def stance(points: Points, down: Vector, height: float) -> Stance:
 
 
 def stance_along(points: Points, down: Vector, height: float, along: Vector) -> Stance:
-    """Return the stance whose floor axis ``along``, a unit vector, is turned out of the picture's plane."""
+    """Return the stance whose floor axis is turned out of the picture's plane.
+
+    Parameters
+    ----------
+    points : (V, 3) float [size]
+    down : (3,) float [1]
+    height : float [size]
+    along : (3,) float [1]
+        The floor axis, a unit vector.
+
+    Returns
+    -------
+    Stance
+    """
     across, up = np.cross(along, down), -down
     c, s = np.cos(STANCE_TURN_RAD), np.sin(STANCE_TURN_RAD)
     right, ahead = c * along + s * across, c * across - s * along
@@ -242,7 +323,7 @@ def _box(image: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """Where a picture lies in the image plane, in sizes of the solid."""
+    """Window of a picture in the image plane, in sizes of the solid."""
 
     left: float
     bottom: float
@@ -265,7 +346,21 @@ class Shot:
 
 
 def picture(solid: Rays, stance: Stance, frame: Shot, colour: Array = STEEL_COLOUR) -> Array:
-    """Render the solid on white paper with its shadow: (rows, columns, 3) from 0 to 1, the top row first."""
+    """Render the solid on white paper with its shadow.
+
+    Parameters
+    ----------
+    solid : Rays
+    stance : Stance
+    frame : Shot
+        What of the image plane is seen.
+    colour : (3,) float [1], optional
+
+    Returns
+    -------
+    (rows, columns, 3) float [1]
+        The top row first.
+    """
     # darkness of the cells of the floor, darkest at the contact
     axes, lowest, highest = stance.floor_axes, stance.plan.min(axis=0), stance.plan.max(axis=0)
     cell = 1.6 * (highest - lowest).max() / FLOOR_GRID
@@ -290,7 +385,19 @@ def picture(solid: Rays, stance: Stance, frame: Shot, colour: Array = STEEL_COLO
 
 
 def one_solid(solid: Rays, camera: Camera, paint: Callable[[Array, Array], Array]) -> Draw:
-    """Return what ``bands`` draw of a solid: ``paint`` gives the colours (N, 3) of normals and facets."""
+    """Return what ``bands`` draw of a solid.
+
+    Parameters
+    ----------
+    solid : Rays
+    camera : Camera
+    paint : callable
+        From normals (N, 3) and facets (N,) to colours (N, 3).
+
+    Returns
+    -------
+    callable
+    """
 
     def draw(across: Array, up: Array, colours: Array, neighbours: Neighbours | None) -> Surfaces:
         depths, normals, facets = camera.meet_at(solid, across, up)
@@ -377,13 +484,35 @@ def _neighbours(pixels: Bools, each: int) -> tuple[tuple[Array, Array], ...]:
 
 
 def average_samples(samples: Array, each: int) -> Array:
-    """Average the samples of each pixel, ``each`` a side; (rows, columns, 3) from 0 to 1."""
+    """Average the samples of each pixel.
+
+    Parameters
+    ----------
+    samples : (rows, columns, 3) float [1]
+    each : int
+        Samples a side of a pixel.
+
+    Returns
+    -------
+    (rows / each, columns / each, 3) float [1]
+    """
     rows, columns = (length // each for length in samples.shape[:2])
     return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
 
 
 def lit(normals: Array, camera: Camera, colour: Array) -> Array:
-    """Return the colour of matt surfaces (N, 3) under the lights; from behind it is that from the front."""
+    """Return the colour of matt surfaces under the lights; from behind it is that from the front.
+
+    Parameters
+    ----------
+    normals : (N, 3) float [1]
+    camera : Camera
+    colour : (3,) float [1]
+
+    Returns
+    -------
+    (N, 3) float [1]
+    """
     axes = np.column_stack([camera.right, camera.up, camera.towards_viewer]).astype(SINGLE_PRECISION)
     by_camera = normals @ axes
     by_camera *= np.where(by_camera[:, 2:] < 0.0, SINGLE_PRECISION(-1.0), SINGLE_PRECISION(1.0))
@@ -429,7 +558,20 @@ def _widen(flags: Bools, pairs: Pairs) -> Array:
 
 
 def reduced_mesh(vertices: Points, faces: Triangles, most: int = 200_000) -> tuple[Points, Triangles]:
-    """Return a mesh (V, 3), (F, 3) of at most so many facets: corners of one grid cell become one."""
+    """Return a mesh of fewer facets: corners of one grid cell become one.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [any length]
+    faces : (F, 3) int
+    most : int, optional
+        Facets that there may be.
+
+    Returns
+    -------
+    vertices : (V', 3) float [any length]
+    faces : (F', 3) int
+    """
     cells, lowest = 2.0**10, vertices.min(axis=0)  # across the part, at first
     extent = np.ptp(vertices, axis=0).max()
     reduced, corners = faces, vertices
@@ -445,7 +587,18 @@ def reduced_mesh(vertices: Points, faces: Triangles, most: int = 200_000) -> tup
 
 
 def encode_base64(array: Array, kind: str) -> str:
-    """Return an array's bytes, of a numpy ``kind``, as text in base64."""
+    """Return an array's bytes as text in base64.
+
+    Parameters
+    ----------
+    array : array
+    kind : str
+        Of numpy, '<f4'.
+
+    Returns
+    -------
+    str
+    """
     return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
 
 
@@ -455,10 +608,20 @@ def short(value: float) -> float:
 
 
 def scene_of_part(part: "Part", to_viewer: Vector) -> dict[str, Any]:
-    """Return what a scene of the viewer tells of a part with a mesh, and of the viewer's place.
+    """Return what a scene of the viewer tells of a part, and of the viewer's place.
 
-    For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about the
-    centre of mass; ``radius``; ``facets`` shown, of ``all``; ``azimuth`` and ``elevation`` [deg].
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    to_viewer : (3,) float [1]
+
+    Returns
+    -------
+    dict of str to object
+        As JSON has it: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm
+        about the centre of mass; ``radius``; ``facets`` shown, of ``all``; ``azimuth`` and ``elevation``
+        [deg].
     """
     points = part.corners / MM
     vertices, faces = reduced_mesh(points, np.asarray(part.faces))
@@ -474,12 +637,30 @@ def scene_of_part(part: "Part", to_viewer: Vector) -> dict[str, Any]:
 
 
 def track(vertices: Points, faces: Triangles) -> dict[str, Any]:
-    """Return a section of track (V, 3) [m] for a scene of the viewer."""
+    """Return a section of track for a scene of the viewer.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+
+    Returns
+    -------
+    dict of str to object
+        As JSON has it.
+    """
     return {"positions": encode_base64(vertices / MM, "<f4"), "index": encode_base64(faces, "<u4")}
 
 
 def centre_of_mass(axes: "Axes", radius: float, place: tuple[float, float] = (0.0, 0.0)) -> None:
-    """Draw the quartered circle through whatever is in front of it, ``radius`` in data units."""
+    """Draw the quartered circle through whatever is in front of it.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    radius : float [data unit]
+    place : (float, float) [data unit], optional
+    """
     look = {"facecolor": "white", "edgecolor": "black", "linewidth": 0.8, "zorder": 5}
     axes.add_patch(mpl_patches.Circle(place, radius, **look))
     look = {"color": "black", "linewidth": 0, "zorder": 6}
@@ -488,7 +669,15 @@ def centre_of_mass(axes: "Axes", radius: float, place: tuple[float, float] = (0.
 
 
 def contact(axes: "Axes", solid: Rays, standing: Stance, polygon: Array) -> None:
-    """Draw the contact polygon (K, 3) [size]: whole where it is seen, dashed where the part hides it."""
+    """Draw the contact polygon: whole where it is seen, dashed where the part hides it.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    solid : Rays
+    standing : Stance
+    polygon : (K, 3) float [size]
+    """
     camera = standing.camera
     face = {"facecolor": style.ACCENT, "alpha": 0.16, "zorder": 2}
     axes.add_patch(mpl_patches.Polygon(camera.project(polygon), closed=True, **face))
@@ -507,7 +696,16 @@ def contact(axes: "Axes", solid: Rays, standing: Stance, polygon: Array) -> None
 
 
 def rolling_axis(axes: "Axes", solid: Rays, standing: Stance, direction: Vector) -> None:
-    """Draw the axis a part rolls about, a unit vector, through its centre of mass; none where it is NaN."""
+    """Draw the axis a part rolls about, through its centre of mass.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    solid : Rays
+    standing : Stance
+    direction : (3,) float [1]
+        A unit vector; nothing is drawn where it is NaN.
+    """
     if not np.isfinite(direction).all():
         return
     along = solid.points @ direction
@@ -516,7 +714,16 @@ def rolling_axis(axes: "Axes", solid: Rays, standing: Stance, direction: Vector)
 
 
 def scale_bar(axes: "Axes", right: float, y: float, pixel: float) -> None:
-    """Draw a bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
+    """Draw a bar of a round number of millimetres.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    right, y : float [data unit]
+        Where it ends.
+    pixel : float [m]
+        One data unit.
+    """
     length = style.round_length(110.0 * pixel * 1e3)
     left = right - length * 1e-3 / pixel
     axes.plot([left, right], [y, y], color=style.INK, linewidth=1.6, solid_capstyle="butt")
@@ -527,7 +734,16 @@ def scale_bar(axes: "Axes", right: float, y: float, pixel: float) -> None:
 
 
 def marks_legend(axes: "Axes", left: float, y: float, *, rolling: bool) -> None:
-    """Draw what the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
+    """Draw what the marks mean, in one line of text.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    left, y : float [data unit]
+        Where it begins.
+    rolling : bool
+        Whether an axis is drawn.
+    """
     centre_of_mass(axes, 9.0, (left + 9.0, y))
     axes.text(left + 26, y, "centre of mass", fontsize=7, color=style.INK, va="center")
     axes.plot([left + 170, left + 198], [y, y], **CONTACT_LINE)
@@ -540,10 +756,25 @@ def marks_legend(axes: "Axes", left: float, y: float, *, rolling: bool) -> None:
 def pair_picture(
     track: Mesh, part: Mesh, centre: Vector, camera: Camera, half: float, columns: int, rows: int
 ) -> tuple[Array, Shot, float]:
-    """Render a part on a track, each (V, 3) [m] and (F, 3), ``half`` [m] to either side of a centre.
+    """Render a part on a track.
 
-    Returned are the image (rows, columns, 3) from 0 to 1, the top row first, where it lies in the image
-    plane in units of ``size``, and ``size`` [m].
+    Parameters
+    ----------
+    track, part : ((V, 3) float [m], (F, 3) int)
+    centre : (3,) float [m]
+        Of the picture.
+    camera : Camera
+    half : float [m]
+        Seen to either side of the centre.
+    columns, rows : int
+
+    Returns
+    -------
+    image : (rows, columns, 3) float [1]
+        The top row first.
+    shot : Shot
+        Where it lies in the image plane, in units of ``size``.
+    size : float [m]
     """
     alone, whole = Rays(*part, centre), Rays(*join_meshes([track, part]), centre)
     half = half / whole.size
@@ -569,7 +800,20 @@ def pair_picture(
 
 
 def shown_share(track: Mesh, part: Mesh, centre: Vector, camera: Camera, half: float) -> float:
-    """Return the share [1] of what is to be seen of a part that the track does not hide, as in a picture."""
+    """Return the share of what is to be seen of a part that the track does not hide, as in a picture.
+
+    Parameters
+    ----------
+    track, part : ((V, 3) float [m], (F, 3) int)
+    centre : (3,) float [m]
+    camera : Camera
+    half : float [m]
+        Seen to either side of the centre.
+
+    Returns
+    -------
+    float [1]
+    """
     alone, whole = Rays(*part, centre), Rays(*join_meshes([track, part]), centre)
     side = np.linspace(-half, half, 40) / whole.size
     across, up = (places.ravel() for places in np.meshgrid(side, side))
@@ -595,13 +839,38 @@ def _part_alone(alone: Rays, camera: Camera, size: float, across: Array, up: Arr
 
 
 def thumbnail(solid: Rays, aspects: "Aspects", row: int, size: tuple[int, int]) -> Array:
-    """Return the picture (height, width, 3) [1] of a solid on the aspect of a row; ``size`` in pixels."""
+    """Return the picture of a solid on an aspect.
+
+    Parameters
+    ----------
+    solid : Rays
+    aspects : Aspects
+    row : int
+        Of the aspect.
+    size : (int, int)
+        Width and height in pixels.
+
+    Returns
+    -------
+    (height, width, 3) float [1]
+    """
     standing = stance(outer_points(solid.points), aspects.normals[row], aspects.heights[row] / solid.size)
     return _draw_solid(solid, standing, size)
 
 
 def on_its_lowest(solid: Rays, size: tuple[int, int]) -> Array:
-    """Return the picture (height, width, 3) [1] of a solid on the lowest side of its file."""
+    """Return the picture of a solid on the lowest side of its file.
+
+    Parameters
+    ----------
+    solid : Rays
+    size : (int, int)
+        Width and height in pixels.
+
+    Returns
+    -------
+    (height, width, 3) float [1]
+    """
     down, height = np.array([0.0, 0.0, -1.0]), -float(solid.points[:, 2].min())
     return _draw_solid(solid, stance(outer_points(solid.points), down, height), size)
 

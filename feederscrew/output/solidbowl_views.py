@@ -24,7 +24,17 @@ SURFACE_OFFSET_SIZES = 2e-3  # of the solid's size: a place is moved off the sur
 
 
 def figure(whole_bowl: BowlSolid, part: Part) -> "Figure":
-    """Return the figure of a bowl with parts on its track."""
+    """Return the figure of a bowl with parts on its track.
+
+    Parameters
+    ----------
+    whole_bowl : BowlSolid
+    part : Part
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     solid = whole_bowl.with_lugs
     view = camera(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG)
     points, faces = parts(solid, part)
@@ -50,7 +60,18 @@ def figure(whole_bowl: BowlSolid, part: Part) -> "Figure":
 
 
 def parts(solid: BowlSolid, part: Part) -> Mesh:
-    """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
+    """Return the parts along the track of a bowl as one mesh.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+    part : Part
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+    """
     own = part.corners
     placed = [riding.place_rider(solid.plan, rider, own, s) for rider, s in solid.riders]
     riders = [(points, np.asarray(part.faces)) for points in placed]
@@ -58,7 +79,20 @@ def parts(solid: BowlSolid, part: Part) -> Mesh:
 
 
 def blocks(solid: BowlSolid | None, part: Part, why: str = "", mark: str = "") -> list[Block]:
-    """Return what a page shows of a BowlSolid: the solid to be turned, or why there is none."""
+    """Return the blocks of a page on a bowl as a solid: the solid to be turned, or why there is none.
+
+    Parameters
+    ----------
+    solid : BowlSolid or None
+    part : Part
+    why : str, optional
+        Why there is none.
+    mark : str, optional
+
+    Returns
+    -------
+    list of Block
+    """
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
     text = f"{2.0 * solid.plan.path.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
@@ -89,7 +123,16 @@ def blocks(solid: BowlSolid | None, part: Part, why: str = "", mark: str = "") -
 
 
 def camera(azimuth: float, elevation: float) -> Camera:
-    """Return the camera that looks from an azimuth and an elevation [deg]."""
+    """Return the camera that looks from a direction.
+
+    Parameters
+    ----------
+    azimuth, elevation : float [deg]
+
+    Returns
+    -------
+    Camera
+    """
     a, e = np.radians(azimuth), np.radians(elevation)
     to_viewer = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
     right = np.array([-np.sin(a), np.cos(a), 0.0])
@@ -97,10 +140,17 @@ def camera(azimuth: float, elevation: float) -> Camera:
 
 
 def lines(vertices: Points, faces: Triangles, view: Camera) -> Floats:
-    """Return the visible edges (N, 2, 2) of a surface (V, 3), (F, 3), across and up the view.
+    """Return the visible edges of a closed surface, across and up the view.
 
-    Drawn are sharp edges, those of the outline, and those at which not exactly two facets meet, as where a
-    file leaves a crack.
+    Parameters
+    ----------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+    view : Camera
+
+    Returns
+    -------
+    (N, 2, 2) float [m]
     """
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)

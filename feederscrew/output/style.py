@@ -34,7 +34,16 @@ SPARE_COLOURS = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
 def figure(width: float = 6.4, height: float = 4.0) -> Any:
-    """Return a white figure [in] that lays out its axes by itself, of ``DPI`` pixels an inch."""
+    """Return a white figure that lays out its axes by itself, of ``DPI`` pixels an inch.
+
+    Parameters
+    ----------
+    width, height : float [in], optional
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     layout = layout_engine.ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08)
     drawn = canvas.ShownFigure(figsize=(width, height), dpi=DPI, layout=layout, facecolor="white")
     canvas.Canvas(drawn)
@@ -44,9 +53,20 @@ def figure(width: float = 6.4, height: float = 4.0) -> Any:
 def chart(
     width: float = 6.4, height: float = 4.0, *, ax: "Axes | None" = None, **labels: Any
 ) -> tuple[Any, Any]:
-    """Return such a figure and its only Axes, or a user's own ``ax`` and its figure.
+    """Return a figure and its only Axes, or a user's own Axes and its figure.
 
-    ``labels`` are as ``tidy`` takes them.
+    Parameters
+    ----------
+    width, height : float [in], optional
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+    **labels : object
+        As ``tidy`` takes them.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+    axes : matplotlib.axes.Axes
     """
     if ax is not None:
         return ax.figure, tidy(ax, **labels)
@@ -55,14 +75,33 @@ def chart(
 
 
 def page(width: float, height: float) -> Any:
-    """Return a white figure of so many pixels whose axes are placed by hand."""
+    """Return a white figure whose axes are placed by hand.
+
+    Parameters
+    ----------
+    width, height : float [pixel]
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     drawn = canvas.ShownFigure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
     canvas.Canvas(drawn)
     return drawn
 
 
 def sheet(width: float, height: float) -> tuple[Any, Any]:
-    """Return a page of so many pixels, and Axes over the whole of it in pixels from its lower left corner."""
+    """Return a page, and Axes over the whole of it in pixels from its lower left corner.
+
+    Parameters
+    ----------
+    width, height : float [pixel]
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+    axes : matplotlib.axes.Axes
+    """
     drawn = page(width, height)
     axes = drawn.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
@@ -98,7 +137,22 @@ class Panels:
 
 
 def inset(page: "Figure", sheet_axes: "Axes", box: Sequence[float], **look: Any) -> Any:
-    """Return Axes in a box of pixels (left, bottom, width, height) of a sheet with its Axes."""
+    """Return Axes in a box of a sheet.
+
+    Parameters
+    ----------
+    page : matplotlib.figure.Figure
+    sheet_axes : matplotlib.axes.Axes
+        As ``sheet`` returns them.
+    box : sequence of float [pixel]
+        Left, bottom, width, height.
+    **look : object
+        As of ``Figure.add_axes``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
     (_, width), (_, height) = sheet_axes.get_xlim(), sheet_axes.get_ylim()
     return page.add_axes((box[0] / width, box[1] / height, box[2] / width, box[3] / height), **look)
 
@@ -112,9 +166,19 @@ def pixels(image: Array) -> Any:
 
 
 def tidy(axes: "Axes", *, title: str = "", x: str = "", y: str = "", grid: Grid = "both") -> Any:
-    """Give one Axes the house look and return it: labels, a faint grid behind the data, no box.
+    """Give Axes the house look and return them: labels, a faint grid behind the data, no box.
 
-    ``title``, ``x`` and ``y`` have units in square brackets; ``grid`` is 'x', 'y', 'both' or 'none'.
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    title, x, y : str, optional
+        With units in square brackets.
+    grid : str, optional
+        'x', 'y', 'both' or 'none'.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
     """
     axes.set_title(title, loc="left", fontsize=10, color=INK, fontweight="bold")
     axes.set_xlabel(x, fontsize=9, color=INK)
@@ -129,7 +193,16 @@ def tidy(axes: "Axes", *, title: str = "", x: str = "", y: str = "", grid: Grid 
 
 
 def named_ticks(axes: "Axes", places: ArrayLike, names: Sequence[str], length: float = 0.0) -> None:
-    """Write names under an x axis, slanting where they would touch each other; ``length`` [pt] of ticks."""
+    """Write names under an x axis, slanting where they would touch each other.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    places : (N,) float [data unit]
+    names : sequence of str
+    length : float [pt], optional
+        Of the ticks.
+    """
     slanting = len(names) * max(map(len, names), default=0) > 50  # letters that stand side by side
     look: Look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
     axes.set_xticks(places, names, **look)
@@ -140,7 +213,19 @@ def numbers(
     axes: "Axes", x: Iterable[float], heights: Iterable[float], texts: Iterable[float], upright: bool = False,
     **look: Any,
 ) -> None:  # fmt: skip
-    """Write numbers with one decimal over the ends of bars at ``x``; none where it is NaN."""
+    """Write numbers with one decimal over the ends of bars.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    x, heights : iterable of float [data unit]
+    texts : iterable of float [any]
+        The numbers; none is written where it is NaN.
+    upright : bool, optional
+        Whether they are turned upright.
+    **look : object
+        As of ``note``.
+    """
     look = {"ha": "center", "va": "bottom", "fontsize": 6.5, "rotation": 90 if upright else 0} | look
     for at, height, value in zip(x, heights, texts):
         if np.isfinite(value):
@@ -148,7 +233,18 @@ def numbers(
 
 
 def own_point(axes: "Axes", place: Place, text: str, shift: Place, **look: Any) -> None:
-    """Mark the point of the user's own bowl on a map, and write beside it, moved by ``shift`` [pt]."""
+    """Mark the point of the user's own bowl on a map, and write beside it.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    place : (float, float) [data unit]
+    text : str
+    shift : (float, float) [pt]
+        By which the text is moved.
+    **look : object
+        As of ``Axes.annotate``.
+    """
     axes.plot(*place, "o", markersize=7, color=ACCENT, markeredgecolor="white", zorder=6)
     box = {"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0}
     look = {"color": ACCENT, "fontweight": "bold", "zorder": 6, "bbox": box} | look
@@ -156,14 +252,39 @@ def own_point(axes: "Axes", place: Place, text: str, shift: Place, **look: Any) 
 
 
 def note(axes: "Axes", text: str, place: Place, shift: Place = (0, 0), **look: Any) -> "Annotation":
-    """Write a text at a place of the data, moved by ``shift`` [pt], and return it."""
+    """Write a text at a place of the data, and return it.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    text : str
+    place : (float, float) [data unit]
+    shift : (float, float) [pt], optional
+        By which it is moved.
+    **look : object
+        As of ``Axes.annotate``.
+
+    Returns
+    -------
+    matplotlib.text.Annotation
+    """
     usual: Look = {"fontsize": 8, "color": INK, "textcoords": "offset points"}
     (x, y), (right, up) = place, shift
     return axes.annotate(text, (x, y), (right, up), **usual | look)
 
 
 def legend(figure: "Figure", where: str = "lower center", ax: "Axes | None" = None, **look: Any) -> None:
-    """Write the legend of a figure outside of its Axes, without a frame; into a user's own ``ax``."""
+    """Write the legend of a figure outside of its Axes, without a frame; into a user's own Axes.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    where : str, optional
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+    **look : object
+        As of ``Figure.legend``.
+    """
     if ax is not None:  # what else stands in that figure is not known
         ax.legend(**({"frameon": False, "fontsize": 7} | look | {"ncols": 1}))
         return
@@ -177,7 +298,18 @@ def round_length(most: float) -> float:
 
 
 def method(name: str, place: int = 0) -> tuple[str, str]:
-    """Return label and colour of a rule or profile; ``place`` picks a spare colour for an unknown one."""
+    """Return label and colour of a rule or profile.
+
+    Parameters
+    ----------
+    name : str
+    place : int, optional
+        Picks a spare colour for an unknown one.
+
+    Returns
+    -------
+    label, colour : str
+    """
     rule = registry.RULE_OF.get(name)
     if rule is not None:
         return rule.label, rule.colour

@@ -44,7 +44,22 @@ def chain(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats,
     wanted_row: int | None = None,
 ) -> Figure:  # fmt: skip
-    """Draw each orientation at the worst place of each device that it meets, the one wanted first."""
+    """Draw each orientation at the worst place of each device that it meets, the one wanted first.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    wanted_row : int, optional
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     placed = [device for device in devices if device.placed]
     rows, count = _rows(orientations, shares, wanted_row), max(len(placed), 1)
     room = min(max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count), 420)
@@ -113,7 +128,18 @@ def _would_return(
 
 
 def limits(study: ToolingStudy, words: str) -> Figure:
-    """Draw every orientation of a ToolingStudy with its limits and what isolates it, under ``words``."""
+    """Draw every orientation of a study with its limits and what isolates it.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    words : str
+        The title.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     orientations, shares = study.orientations, study.shares
     rows = _rows(orientations, shares, None)
     page = style.page(LIMITS_PAGE_WIDTH_PX, PAGE_HEAD_PX + ROW * len(rows) + PAGE_FOOT_PX)
@@ -316,7 +342,17 @@ def write_text(
     page: Figure, x: float, y: float, text: str, *, size: float = 9, colour: str = style.INK,
     weight: str = "normal",
 ) -> None:  # fmt: skip
-    """Write a line of text on a page, in pixels from its upper left corner."""
+    """Write a line of text on a page.
+
+    Parameters
+    ----------
+    page : matplotlib.figure.Figure
+    x, y : float [pixel]
+        From its upper left corner.
+    text : str
+    size : float [pt], optional
+    colour, weight : str, optional
+    """
     wide, high = page.get_size_inches() * style.DPI
     look: style.Look = {"fontsize": 0.82 * size, "color": colour, "fontweight": weight, "va": "center"}
     page.text(x / wide, 1.0 - y / high, text, **look)

@@ -71,7 +71,7 @@ HEADINGS_COLUMNS: tuple[Column[tuple[HeadingsStudy, wall.Headings]], ...] = (  #
 
 
 def _heading_of(stable: wall.Headings, rows: Ints) -> Floats:
-    """Return the headings [rad] of rows; NaN of none, -1."""
+    """Return the headings [rad] of rows; NaN of the row -1, which stands for no heading."""
     return np.append(stable.headings, np.nan)[np.maximum(rows, -1)]
 
 

@@ -7,7 +7,18 @@ ITALIC = "given"  # the mark of a cell that was not computed
 
 
 def markdown(page: kinds.Page, folder: str = "") -> str:
-    """Return a page as Markdown, without 3-D; its pictures and tables are in ``folder``: 'report/', or ''."""
+    """Return a page as Markdown, without 3-D.
+
+    Parameters
+    ----------
+    page : Page
+    folder : str, optional
+        Where its pictures and tables are: 'report/', or ''.
+
+    Returns
+    -------
+    str
+    """
     tiles = [f"- {tile.label} **{_plain(tile.value)}**: {_plain(tile.note)}" for tile in page.tiles]
     parts = [f"# {_plain(page.title)}", _plain(page.subtitle), "\n".join(tiles)]
     if page.warnings:

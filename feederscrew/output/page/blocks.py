@@ -1,4 +1,4 @@
-"""What a page is made of; the two writers turn each kind of block into HTML or Markdown."""
+"""Blocks of a page; the two writers turn each kind of block into HTML or Markdown."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class Notes:
 
 @dataclass(frozen=True)
 class Code:
-    """What one types."""
+    """Text that one types."""
 
     text: str
 
@@ -72,7 +72,7 @@ class ShareBar:
 
 @dataclass(frozen=True)
 class Pose:
-    """What a name like A@188 stands for: a small picture (PNG) and words."""
+    """Meaning of a name like A@188: a small picture (PNG) and words."""
 
     content: bytes
     words: str
@@ -201,6 +201,6 @@ class Page:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a reader must not overlook, each line once."""
+        """Return the lines that a reader must not overlook, each once."""
         lines = dict.fromkeys(line for section in self.sections for line in section.warnings)
         return tuple(line for line in lines if not isinstance(line, Detail))

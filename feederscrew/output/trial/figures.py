@@ -34,7 +34,18 @@ STAYS: dict[int, str] = {course.HANGING: "stays\nhanging"}  # of the matrix, bes
 
 
 def matrix(run: TrialRun, ax: "style.Axes | None" = None) -> Figure:
-    """Draw in which orientation parts of a TrialRun came, and in which they left or what became of them."""
+    """Draw in which orientation parts came, and in which they left or what became of them.
+
+    Parameters
+    ----------
+    run : TrialRun
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried_counts[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
     names = [item.name for item in run.orientations.states] + ["other"]
@@ -120,14 +131,37 @@ def label_of(fate: Fate | None) -> str:
 
 
 def unroll_path(path: Floats, radius: float) -> tuple[Floats, Floats]:
-    """Return lengths along the wall and distances from it (K,) [m] of a path (K, 8), as far as it goes."""
+    """Return a path unrolled, as far as it goes.
+
+    Parameters
+    ----------
+    path : (K, 8) float [s and m]
+        As of ``Runs.paths``.
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    along, off : (K',) float [m]
+        Lengths along the wall, and distances from it.
+    """
     followed = path[np.isfinite(path[:, 0])]
     x, y = followed[:, 1], radius - followed[:, 2]
     return radius * np.arctan2(x, y), radius - np.hypot(x, y)
 
 
 def solids(station: Stage, plate: int = 0) -> list[Points]:
-    """Return the rings (K, 2) [m] of what is solid of a plate, in its frame: for the track the bowl's."""
+    """Return the rings of what is solid of a plate, in its frame: for the track the bowl's.
+
+    Parameters
+    ----------
+    station : Stage
+    plate : int, optional
+
+    Returns
+    -------
+    list of (K, 2) float [m]
+    """
     row = station.plates[plate]
     borders = station.borders[row.begin : row.end]
     starts, ends = (np.column_stack([borders[f"{end}_x"], borders[f"{end}_y"]]) for end in ("start", "end"))

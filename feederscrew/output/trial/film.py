@@ -63,10 +63,19 @@ def require_writer(path: str | os.PathLike[str]) -> None:
 
 
 def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
-    """Write a film of ten seconds of the first run of a trial; its ending is the format: gif, mp4, webm.
+    """Write a film of ten seconds of the first run of a trial.
 
-    The queue is seen if the study has its poses: ``trial(..., frames=QUEUE_FRAMES)``. Raises FeederError as
-    ``require_writer`` does, or if the file cannot be written.
+    Parameters
+    ----------
+    path : str or path
+        Its ending is the format: gif, mp4, webm.
+    study : TrialStudy
+        The queue is seen if it has its poses: ``trial(..., frames=QUEUE_FRAMES)``.
+
+    Raises
+    ------
+    FeederError
+        As ``require_writer``, or if the file cannot be written.
     """
     from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 
@@ -101,7 +110,18 @@ def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
 
 
 def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
-    """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue."""
+    """Yield the frames of a film: single parts, then the queue.
+
+    Parameters
+    ----------
+    part : Part
+    run : TrialRun
+
+    Yields
+    ------
+    Frame
+        Image (rows, columns, 3), caption, and time.
+    """
     queue = run.queue if run.queue is not None and len(run.queue.poses) else None
     frames = round(SECONDS * FRAMES_PER_S) - (0 if queue is None else QUEUE_FRAMES)
     rides = shown.rides_to_show(part, run)
@@ -300,7 +320,17 @@ def _speed(times: float) -> str:
 
 
 def stills(part: Part, run: TrialRun) -> Figure:
-    """Draw six moments of one part that passes the device that decides, and of one that is lost there."""
+    """Draw six moments of one part that passes the device that decides, and of one that is lost there.
+
+    Parameters
+    ----------
+    part : Part
+    run : TrialRun
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     rides, (wide, high) = shown.rides_to_show(part, run), STILL_SIZE
     panels = style.Panels(IN_A_ROW, wide, [high] * (STILLS // IN_A_ROW), LINE, TITLE, 0, RIM, GAP)
     width, block = panels.page  # of one part
@@ -329,9 +359,19 @@ def stills(part: Part, run: TrialRun) -> Figure:
 
 
 def still_times(ride: DeviceRide, radius: float) -> Floats:
-    """Return moments (STILLS,) [s] of a ride of a part of a radius [m], evenly along way, fall and turns.
+    """Return moments of a ride, evenly along way, fall and turns.
 
     One is when the sensor looks, one in the middle of the pulse of air, or as the part is gone before it.
+
+    Parameters
+    ----------
+    ride : DeviceRide
+    radius : float [m]
+        Of the part.
+
+    Returns
+    -------
+    (STILLS,) float [s]
     """
     path = ride.path
     turns = Rotation.from_quat(path[:, [5, 6, 7, 4]])

@@ -113,7 +113,20 @@ def _air_at(
 
 
 def section(station: Stage, track: Track, height: float) -> Mesh:
-    """Return the track with cuts, gates and its wall of ``height`` [m] as a mesh in the bowl's frame."""
+    """Return the track with cuts, gates and its wall as a mesh in the bowl's frame.
+
+    Parameters
+    ----------
+    station : Stage
+    track : Track
+    height : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+    """
     meshes = []
     for k, row in enumerate(station.plates):  # each plate as a body as deep as it is, ended at the wall
         area = shapely.Polygon()
@@ -145,10 +158,22 @@ def section(station: Stage, track: Track, height: float) -> Mesh:
 
 
 def fittings(stage: Stage, radius: float, size: float) -> list[Mesh]:
-    """Return sensors and nozzles as bodies in the bowl's frame [m], of a wall's radius and a part's size.
+    """Return sensors and nozzles as bodies in the bowl's frame.
 
-    A nozzle ends at its mouth in the wall. A sensor is a box: over the track, or beside its free edge
-    where it sees parts from the bowl's axis. It is a sign, not the size of a real one.
+    A nozzle ends at its mouth in the wall. A sensor is a box: over the track, or beside its free edge where
+    it sees parts from the bowl's axis. It is a sign, not the size of a real one.
+
+    Parameters
+    ----------
+    stage : Stage
+    radius : float [m]
+        Of the wall.
+    size : float [m]
+        Of the part.
+
+    Returns
+    -------
+    list of ((V, 3) float [m], (F, 3) int)
     """
     bodies = []
     for jet in stage.air.jets:
@@ -170,7 +195,17 @@ def fittings(stage: Stage, radius: float, size: float) -> list[Mesh]:
 
 
 def air_cones(stage: Stage, track_width: float) -> list[Mesh]:
-    """Return the air of each nozzle of a stretch of track as a cone, as wide as the trial has it."""
+    """Return the air of each nozzle of a stretch of track as a cone, as wide as the trial has it.
+
+    Parameters
+    ----------
+    stage : Stage
+    track_width : float [m]
+
+    Returns
+    -------
+    list of ((V, 3) float [m], (F, 3) int)
+    """
     cones = []
     for jet in stage.air.jets:
         mouth, long = (_vector(jet, "mouth"), _vector(jet, "towards")), min(jet.reach, 1.5 * track_width)
