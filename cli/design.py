@@ -158,7 +158,7 @@ def design(
     with hold_interrupts():
         from feederscrew import bowl as bowls
         from feederscrew.bowl.verified import Status
-        from feederscrew.designing import loop
+        from feederscrew.designing import calls, loop
         from feederscrew.designing.record import DesignRequest
         from feederscrew.output import designs
 
@@ -176,6 +176,8 @@ def design(
         with out.folder_of(solid, inputs, settings=settings) as folder:
             with _stoppable(out) as search:
                 study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
+            call = out.arguments if is_shown else calls.call_words(request, solid, settings)
+            study = dataclasses.replace(study, call=call)
             study = _write(out, folder, study, settings)
             if is_shown:
                 out.show(designs.summary(study), designs.document(study))

@@ -16,6 +16,7 @@ from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.verified import HELD
 from feederscrew.designing import families, loop
+from feederscrew.designing.calls import call_words
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.nearest import nearest_from_study
@@ -183,6 +184,7 @@ def design(
         return replace(family, members=tuple(members))
     shared = the_shares(aspect_shares)
     study = loop.design(arguments.a_part(part), plain, kept_keys, request, shares=shared, tell=progress)
+    study = replace(study, call=call_words(request, study.part, kept_settings))
     return with_machine(study, build_machine(study, kept_settings))
 
 

@@ -173,8 +173,9 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
         return _study_of(search, candidate, state.shares)
     source = "" if state.shares is None else state.shares.aspects.source(search.request.rule)
     return DesignStudy(
-        search.part, search.request, None, None, None, attempts=tuple(state.attempts), source=source
-    )
+        search.part, search.request, None, None, None, attempts=tuple(state.attempts), source=source,
+        arrivals=search.aspect_shares,
+    )  # fmt: skip
 
 
 def _likeliest(search: Search) -> Candidate | None:
@@ -416,6 +417,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         cuts=proposal.cuts,
         before=proposal.before,
         attempts=tuple(search.state.attempts),
+        arrivals=search.aspect_shares,
         source=shares.aspects.source(request.rule),
         static_rate=calm_drive.speed(bowl) * gain / float((weights * oriented.lengths).sum()),
         slowed=calm_drive.velocity_kept(bowl),
@@ -461,17 +463,20 @@ def alternatives(
                     chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
                     chain_words=words,
                     sees=tuple(device.sees for device in sensors),
-                    why="; ".join(study.shortfalls) if study.status not in HELD else "",
+                    reasons=study.shortfalls if study.status not in HELD else (),
                 )
             )
         elif tried:
             best = max(tried, key=lambda one: (one.clean, one.efficiency, one.rate))
             faults = ", ".join(texts.fault_texts(best.faults, 2)) or "too slow in its short trial"
-            best_of.append(Alternative(number, Status.NONE, chain=best.chain, why=f"{best.wanted}: {faults}"))
+            why = (f"{best.wanted}: {faults}",)
+            best_of.append(Alternative(number, Status.NONE, chain=best.chain, reasons=why))
         elif number in classes:
-            why = "no chain of this class tells what is wanted from the rest"
-            best_of.append(Alternative(number, Status.NONE, why=why))
+            why = ("no chain of this class tells what is wanted from the rest",)
+            best_of.append(Alternative(number, Status.NONE, reasons=why))
         else:
-            why = "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped"
-            best_of.append(Alternative(number, Status.NOT_TRIED, why=why))
+            why = (
+                "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped",
+            )
+            best_of.append(Alternative(number, Status.NOT_TRIED, reasons=why))
     return tuple(best_of)

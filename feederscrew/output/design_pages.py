@@ -1,5 +1,6 @@
 """The page and the files of ``feeder design``, of one part and of a family of parts."""
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
@@ -8,18 +9,21 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.reading import Setting
-from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
+from feederscrew.bowl.verified import AMONG, DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
 from feederscrew.designing import texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
+from feederscrew.designing.next_tries import next_tries
 from feederscrew.designing.record import DesignStudy
 from feederscrew.output import designs, machine, marking, poses, solidbowl, solidbowl_views, tables, tooling
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import LOWER_BOUND
+from feederscrew.output.next_tries import reason
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Block,
     Chapter,
+    Code,
     CsvSheet,
     Folded,
     Heading,
@@ -154,23 +158,42 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     return html(
         Page(
             study.part.name, f"design of a bowl: {study.status}", tuple(chapters), "design",
-            poses.opening(study.part, aspects, _first_seen(study)), poses.pose_finder(study.part, aspects),
+            poses.opening(study.part, aspects, first_seen(study)), poses.pose_finder(study.part, aspects),
         )
     )  # fmt: skip
 
 
-def _first_seen(study: DesignStudy) -> list[tuple[str, str]]:
-    """The orientation that was wanted and what left in its place, each with what became of it."""
-    tried = study.attempts[-1] if study.attempts else None
-    wanted = study.wanted or ("" if tried is None else tried.wanted)
+def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
+    """What was wanted, with what became of it, then what left in its place, or what to try instead."""
+    wanted = (study.wanted or "").split(AMONG)[0]
     if study.delivers:
         words = "leaves correctly oriented"
-    else:
-        faults = () if tried is None else texts.fault_texts(tried.faults, 1)
-        words = "; ".join(("wanted", *faults))
-    instead = texts.leaving_texts(study.left_instead)
-    others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
-    return [(wanted, words), *((name, f"left in its place: {instead[name]}") for name in others[:1])]
+        instead = texts.leaving_texts(study.left_instead)
+        others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
+        seen = [(name, f"left in its place: {instead[name]}") for name in others[:1]]
+        return [(wanted, words), *seen]
+    tried = study.wanted_trials
+    seen = [
+        (one.wanted, texts.wanted_trials_text("wanted", one.trials, one.ends, one.others))
+        for one in sorted(tried, key=lambda one: one.wanted != wanted)[:2]
+    ]
+    aspects = {name.partition("@")[0] for name, _ in seen}
+    instead_of_it = (one for one in next_tries(study) if one.aspect and one.aspect not in aspects)
+    return [*seen, *((one.aspect, f"to try: {reason(one)}") for one in itertools.islice(instead_of_it, 1))]
+
+
+def _what_to_try(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
+    """What was wanted and where it was lost, then the calls that may hold, to be pasted."""
+    tried = study.wanted_trials
+    if tried and not study.delivers:
+        lost = (texts.wanted_trials_text(one.wanted, one.trials, one.ends, one.others) for one in tried)
+        yield Text("What was wanted, and where it was lost:")
+        yield Notes(tuple(lost))
+    if d["next"]:
+        yield Heading("What to try")
+    for entry in d["next"]:
+        yield Text(f"{entry['why'][0].upper()}{entry['why'][1:]}:")
+        yield Code(entry["command"])
 
 
 def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
@@ -186,7 +209,12 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
             "the draws sort."
         )
     else:
-        yield Text(f"Status: {study.status}. {study.why}.")
+        yield from _what_to_try(study, d)
+        yield Heading("Why it does not hold")
+        yield Text(f"Status: {study.status}.")
+        yield Notes(study.reason_lines)
+        if study.nearest is not None:
+            yield Text(f"The nearest that holds: {study.nearest.sentence}.")
     if d["machine"]:
         yield Text(f"The machine: {designs.machine_text(d['machine'])}.")
     yield Table(tables.quantities(designs.outcome(d, study.devices)))
