@@ -45,7 +45,10 @@ OPTIONS: dict[str, Callable[[DesignRequest], str | None]] = {
     "--rule": lambda request: request.rule,
     "--seed": lambda request: f"{request.seed}",
 }
-FLAGS: dict[str, Callable[[DesignRequest], bool]] = {"--alternatives": lambda request: request.alternatives}
+FLAGS: dict[str, Callable[[DesignRequest], bool]] = {
+    "--alternatives": lambda request: request.alternatives,
+    "--quick": lambda request: request.quick,
+}
 FORMER = {"--budget": "--trials"}  # options by a name that they once had
 
 

@@ -101,7 +101,7 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
         for track in tracks
         for row in track.rows
         for recipe in proposals.recipes_of(cost_class, search.request)
-        if not recipe.turns or _share(search, track, row) < proposals.RARE_ORIENTATION
+        if not recipe.turns or share_of(search, track, row) < proposals.RARE_ORIENTATION
     ]
     ideas += [idea for track in tracks for idea in _rails_ideas(search, track, cost_class)]
     order = itertools.count()  # of equal ones the first
@@ -186,7 +186,7 @@ def _often(search: Search) -> list[tuple[BankedTrack, int]]:
         (track, row)
         for track in search.state.tracks[:1]
         for row in track.rows
-        if _share(search, track, row) >= least
+        if share_of(search, track, row) >= least
     ]
 
 
@@ -227,6 +227,9 @@ def _proposal(search: Search, idea: _Idea) -> Proposal | None:
     for other in easier:
         key = (*idea.place, other)
         if key not in state.proposed:
+            if state.proposals_left <= 0:  # of a quick look
+                return None
+            state.proposals_left -= 1
             state.proposed[key] = _propose(search, idea.track, idea.row, other)
         if state.proposed[key] is None:
             return None
@@ -259,7 +262,7 @@ def _tracks(search: Search) -> list[BankedTrack]:
     # also of what may hang: infinite
     placed = [(track, row) for track in state.tracks for row in track.rows]
     enough = any(_promise(search, track, row, LYING) >= search.request.target for track, row in placed)
-    turns = any(_share(search, track, row) < proposals.RARE_ORIENTATION for track, row in placed)
+    turns = any(share_of(search, track, row) < proposals.RARE_ORIENTATION for track, row in placed)
     if not enough and not turns:
         state.most_trials = state.start + policy.rare_trials
     return state.tracks
@@ -289,7 +292,7 @@ def _bound(search: Search, idea: _Idea) -> float:
     flat = track.plain_bowl.bowl.track.bank <= policy.hanging_bank
     rank = track.rank if recipe.outcome == OutcomeKind.LYING else 1.0 if flat else policy.bank_rank**2
     simplicity = (policy.turning_rank if recipe.turns else 1.0) * (policy.hole_rank if recipe.holes else 1.0)
-    share = _share(search, track, idea.row) ** policy.share_power
+    share = share_of(search, track, idea.row) ** policy.share_power
     least, part_of_margin = policy.no_margin_rank, min(recipe.margin / proposals.MARGINS[0], 1.0)
     margin = least + (1.0 - least) * part_of_margin
     return rate * rank * simplicity * share * margin * policy.left_out_rank**idea.left_out
@@ -348,12 +351,41 @@ def _promise(search: Search, track: BankedTrack, row: int, recipe: proposals.Rec
     if recipe.outcome != OutcomeKind.LYING and find_head(track.orientations.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = short_trials.GAP * float((track.weights * track.orientations.lengths).sum())
-    share = 1.0 if recipe.turns else _share(search, track, row)
+    share = 1.0 if recipe.turns else share_of(search, track, row)
     return share * track.fastest / pitch
 
 
-def _share(search: Search, track: BankedTrack, row: int) -> float:
-    """Share [1] in which an orientation comes, with those that count as it."""
+def rate_at_most(track: BankedTrack, share: float) -> float:
+    """Return the rate [1/s] that no chain exceeds: parts that touch, at the fastest drive.
+
+    Parameters
+    ----------
+    track : BankedTrack
+        Of its orientations lengths l and weights w are taken: a part takes sum(w l) of the track.
+    share : float [1]
+        Of the parts that may leave as wanted.
+
+    Returns
+    -------
+    float [1/s]
+        share v / sum(w l), with the velocity v of the fastest drive.
+    """
+    return share * track.fastest / float((track.weights * track.orientations.lengths).sum())
+
+
+def share_of(search: Search, track: BankedTrack, row: int) -> float:
+    """Return the share [1] in which an orientation comes, with those that count as it.
+
+    Parameters
+    ----------
+    search : Search
+    track : BankedTrack
+    row : int
+
+    Returns
+    -------
+    float [1]
+    """
     equivalent = equivalent_rows(track.orientations.lying, row, search.request.up)
     return float(track.weights[[row, *equivalent]].sum())
 
@@ -372,7 +404,7 @@ def _propose(search: Search, track: BankedTrack, row: int, recipe: proposals.Rec
             track.orientations, search.request, recipe,
         )  # fmt: skip
 
-    share = _share(search, track, row)
+    share = share_of(search, track, row)
     proposal = at_drive_for(share)
     if proposal is None:
         return None
@@ -666,9 +698,9 @@ def try_calmer(search: Search, candidate: Candidate) -> Candidate | None:
 
 def _screen(search: Search, candidate: Candidate) -> Candidate:
     """A clean candidate after some draws of part, friction, drive and cuts; denied where one fails."""
-    if not candidate.attempt.clean or candidate.attempt.rate < search.request.target:
-        return candidate
     request = search.request
+    if not candidate.attempt.clean or candidate.attempt.rate < request.target or request.quick:
+        return candidate
     robust = robust_run(
         search.part, candidate.bowl, candidate.orientations, candidate.weights, candidate.proposal.rows,
         draws=min(search.policy.screening_draws, request.draws), tolerance=request.tolerance, run=request.run,

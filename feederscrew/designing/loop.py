@@ -18,6 +18,7 @@ from feederscrew.designing import (
     nearest,
     proposals,
     queues,
+    quick,
     short_trials,
     texts,
 )
@@ -68,12 +69,13 @@ def design(
 ) -> DesignStudy:
     """Design a bowl that brings a part, from a mesh, at a rate, and try it.
 
-    ``plain`` is what the user gave, completed by the defaults: its devices and ``kept_keys``, names of keys,
-    are kept. ``shares`` are what arrives where the user says so, else what lies on the moving floor of the
-    designed bowl. Called are ``tell`` with what is being tried, a sentence; ``before`` before anything is
-    compiled, and before the first trial is told; ``progress`` with what is done ('trial', 'draws', 'queue'),
-    how many of how many, the seconds gone and a guess of those to go. ``with_nearest``: the nearest that
-    holds is looked for where the design does not. Raises FeederError if the part has no surface or very many
+    ``plain`` is what the user gave, completed by the defaults: its devices and ``kept_keys``, names of
+    keys, are kept. ``shares`` are what arrives where the user says so, else what lies on the moving floor
+    of the designed bowl. A request that is ``quick`` ends with the first chain, which is not proved.
+    Called are ``tell`` with what is being tried, a sentence; ``before`` before anything is compiled, and
+    before the first trial is told; ``progress`` with what is done ('trial', 'draws', 'queue'), how many
+    of how many, the seconds gone and a guess of those to go. ``with_nearest``: the nearest that holds is
+    looked for where the design does not. Raises FeederError if the part has no surface or very many
     facets, fits no bowl, or has no such aspect.
     """
     check_request(part, plain, request, shares)
@@ -85,6 +87,12 @@ def design(
     proofs: Proofs = []
     classes: list[int] = []
     try:
+        if request.quick:
+            first_one = quick.first_chain(search)
+            bare = (
+                _best(search, proofs) if first_one is None else _study_of(search, first_one, search.arrivals)
+            )
+            return quick.completed(bare, search, first_one)
         for cost_class in proposals.COST_CLASSES:
             classes.append(cost_class)
             first = len(proofs)  # the best chains of a class, until one holds or enough of them do not

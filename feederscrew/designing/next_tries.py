@@ -74,7 +74,7 @@ def next_tries(study: DesignStudy) -> tuple[NextTry, ...]:
     if study.status in HELD:
         return ()
     if study.status is Status.NOT_PROVED:
-        return (NextTry(TryKind.PROOF, study.request),)
+        return (NextTry(TryKind.PROOF, replace(study.request, quick=False)),)
     tries: dict[DesignRequest, NextTry] = {}
     for one in _ways(study):
         if one.request != study.request:

@@ -74,6 +74,7 @@ class DesignRequest:
     alternatives: bool = False  # whether dearer cost classes are searched too where one holds
     agreed_jams: float = AGREED_JAMS  # [1/s] that the buyer tolerates
     proof: ProofKind = ProofKind.USUAL  # of the design that holds
+    quick: bool = False  # a bound on the rate and a first chain, and nothing is proved
 
     @property
     def run(self) -> RunSettings:
@@ -193,6 +194,18 @@ class WantedTrials:
 
 
 @dataclass(frozen=True)
+class QuickAnswer:
+    """What a design without a proof says of the rate, for a quotation."""
+
+    wanted: str  # orientation of which it speaks: that of the chain, or the one that may bring most
+    share: float  # [1] of the parts that come so
+    fastest: float  # [m/s] of the fastest drive
+    rate_at_most: float  # [1/s] of that orientation at the fastest drive, were all others returned
+    short_trial: float | None  # [1/s] that the short trial of the chain would deliver; None without a chain
+    clean: bool  # whether only what is wanted left that trial
+
+
+@dataclass(frozen=True)
 class NearestDesign:
     """What holds where a design does not, as it was tried; or that nothing that was tried holds."""
 
@@ -299,6 +312,7 @@ class DesignStudy(ReadableRecord):
     row: FedRow | None = None  # how parts were fed into its queues; None of what was not followed
     long_ride: LongRide | None = None  # from the track's entry to the tooling; None of what was not proved
     arrivals: tuple[tuple[str, float], ...] = ()  # aspects, and the share [1] in which they come: first most
+    quick: QuickAnswer | None = None  # of a design that is not proved because it was not asked for
     call: tuple[str, ...] = ()  # words of the command line that asked for it; () of the library
 
     @property
@@ -403,8 +417,8 @@ class DesignStudy(ReadableRecord):
 
     @property
     def status(self) -> Status:
-        """The verdict; what the user stopped is no evidence, neither for a design nor against it."""
-        if self.partial:
+        """The verdict; what was stopped, or not run, is no evidence, neither for a design nor against it."""
+        if self.partial or self.request.quick:
             return Status.NOT_PROVED
         if self.bowl is None or not self.delivered[0] > 0.0:
             return Status.FALLS_SHORT if self.bowl is not None and self.queues else Status.NONE
@@ -442,7 +456,8 @@ class DesignStudy(ReadableRecord):
     @property
     def delivers(self) -> bool:
         """Whether any wanted part has left its queues, and it was not stopped: what may be built from."""
-        return self.bowl is not None and not self.partial and self.delivered[0] > 0.0
+        is_proved = self.status is not Status.NOT_PROVED
+        return self.bowl is not None and is_proved and self.delivered[0] > 0.0
 
     @property
     def shortfalls(self) -> tuple[str, ...]:
@@ -530,7 +545,7 @@ class DesignStudy(ReadableRecord):
     @property
     def _cause(self) -> tuple[Cause, str]:
         """The same with a sentence."""
-        if self.status in HELD or self.partial:
+        if self.status in (*HELD, Status.NOT_PROVED):
             return Cause.UNKNOWN, ""
         if self.machine_lacks:
             return Cause.DRIVE, "the springs that are drawn do not make the drive that was tried"
@@ -585,6 +600,8 @@ class DesignStudy(ReadableRecord):
             return self.condition
         if self.partial:
             return "; ".join(("stopped before all was tried", *self.proved_so_far))
+        if self.request.quick:
+            return "; ".join(("a quick look, without draws and queues", *self.proved_so_far))
         return "; ".join((self.reasons, *(() if self.nearest is None else (self.nearest.text,))))
 
     @property

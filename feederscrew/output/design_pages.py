@@ -72,6 +72,12 @@ TOOLING_PICTURES = (
 )
 
 
+QUICK_WORDS = (
+    "This is a quick look for a quotation. The chain is the first of a few short trials, and its bound says "
+    "what no chain exceeds. No draw and no queue was run: nothing is proved, and nothing is built from it."
+)
+
+
 def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.Offer] = ()) -> str:
     """Return the page of a design as HTML that needs no other file.
 
@@ -90,14 +96,17 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     d = designs.document(study)
     value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
     purity = "-" if d["purity"] is None else f"{100.0 * d['purity']:.3g} %"
-    purity_low = f"seen at the worst fill; {LOWER_BOUND} {100.0 * d['purity_low']:.3g} %"
-    rates = f"{low:.3g} to {high:.3g} (95 %) at the worst fill, asked {d['target_per_minute']:.3g}"
-    tiles = (
-        Tile("status", d["status"], d["wanted"] or "no orientation"),
-        Tile("parts per minute", f"{value:.3g}", rates),
-        Tile("purity", purity, purity_low),
-        Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
-    )
+    tiles: tuple[Tile, ...] = (Tile("status", d["status"], d["wanted"] or "no orientation"),)
+    if study.status is Status.NOT_PROVED:
+        tiles += _quick_tiles(d["quick"])
+    else:
+        purity_low = f"seen at the worst fill; {LOWER_BOUND} {100.0 * d['purity_low']:.3g} %"
+        rates = f"{low:.3g} to {high:.3g} (95 %) at the worst fill, asked {d['target_per_minute']:.3g}"
+        tiles += (
+            Tile("parts per minute", f"{value:.3g}", rates),
+            Tile("purity", purity, purity_low),
+            Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
+        )
     chapters = [Chapter(tuple(_answer(study, d)), tiles, study.warnings, "answer", "The answer")]
     if build is not None and study.delivers:
         chapters += _to_build(study, build, offer.by_name(papers))
@@ -163,6 +172,20 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     )  # fmt: skip
 
 
+def _quick_tiles(quick: Mapping[str, Any] | None) -> tuple[Tile, ...]:
+    """The bound on the rate and the short trial of a quick look."""
+    if quick is None:
+        return ()
+    bound = Tile("at most per minute", f"{quick['at_most_per_minute']:.3g}", f"{quick['wanted']}, not proved")
+    if quick["short_trial_per_minute"] is None:
+        return (bound,)
+    word = "clean" if quick["clean"] else "not clean"
+    trial = Tile(
+        "its short trial, per minute", f"{quick['short_trial_per_minute']:.3g}", f"{word}, not proved"
+    )
+    return bound, trial
+
+
 def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
     """What was wanted, with what became of it, then what left in its place, or what to try instead."""
     wanted = (study.wanted or "").split(AMONG)[0]
@@ -210,9 +233,10 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
         )
     else:
         yield from _what_to_try(study, d)
-        yield Heading("Why it does not hold")
+        is_quick = study.request.quick
+        yield Heading("What this answer is" if is_quick else "Why it does not hold")
         yield Text(f"Status: {study.status}.")
-        yield Notes(study.reason_lines)
+        yield Notes((QUICK_WORDS, *study.proved_so_far) if is_quick else study.reason_lines, loud=is_quick)
         if study.nearest is not None:
             yield Text(f"The nearest that holds: {study.nearest.sentence}.")
     if d["machine"]:
@@ -280,12 +304,13 @@ def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None 
     list of Offer
     """
     sheet, drawn = (None, None) if build is None else (build.sheet, build.drawn)
-    files = [
-        offer.document("design.json", designs.document, study),
-        offer.table("design_trials.csv", designs.attempts, study),
-    ]
+    files = [offer.document("design.json", designs.document, study)]
+    if not study.request.quick:  # its table of trials would bear no mark
+        files.append(offer.table("design_trials.csv", designs.attempts, study))
     if study.bowl is not None:
         files.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
+    if study.request.quick:
+        return [*files, offer.text("design.html", page, study, build)]
     if study.status == Status.NOT_PROVED:
         return files
     files += [

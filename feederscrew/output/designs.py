@@ -108,6 +108,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "cause": study.cause or None,
         "nearest": nearest(study),
         "next": next_tries.entries(study),
+        "quick": _quick(study),
         "left_instead": texts.leaving_texts(study.left_instead),
         "differences": [
             {
@@ -131,6 +132,26 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "queues": [filled_entry(filled) for filled in study.queues],
         "attempts": attempts(study).rows(),
     }
+
+
+def _quick(study: DesignStudy) -> dict[str, Any] | None:
+    """Return what a quick look says of the rate as a dict; None of a design that was to be proved."""
+    if study.quick is None:
+        return None
+    names = "wanted share fastest_mm_s=fastest at_most_per_minute=rate_at_most"
+    quick = study.quick
+    short = None if quick.short_trial is None else quick.short_trial / PER_MINUTE
+    return {**row_of(quick, names), "short_trial_per_minute": short, "clean": quick.clean}
+
+
+def _quick_rows(quick: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return rows of what a quick look says of the rate."""
+    came = f"{quick['wanted']}, {100.0 * quick['share']:.3g} % of the parts, at the fastest drive"
+    rows = [("at most [1/min]", f"{quick['at_most_per_minute']:.3g} ({came})")]
+    if quick["short_trial_per_minute"] is not None:
+        word = "clean" if quick["clean"] else "not clean"
+        rows.append(("its short trial [1/min]", f"{quick['short_trial_per_minute']:.3g}, {word}"))
+    return rows
 
 
 def _condition(study: DesignStudy) -> dict[str, Any] | None:
@@ -343,6 +364,7 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
         up = ", at any heading"
     rows.append(("leaves as", (d["wanted"] or "-") + up))
     rows.append(("asked for [1/min]", f"{d['target_per_minute']:.4g}"))
+    rows += _quick_rows(d["quick"]) if d.get("quick") else []
     if d["status"] not in (Status.NOT_PROVED, Status.NONE):  # else there are no figures of a queue
         value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
         purity, purity_low, hourly = (d[name] for name in ("purity", "purity_low", "jams_per_hour_high"))
@@ -476,7 +498,8 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
         mend = "this is a fault of feeder: report it with the command you gave"
         raise FeederError(name, f"is not the bowl that was tried: {'; '.join(wrong)}", mend)
     if study.status == Status.NOT_PROVED:
-        lines += ["# Nothing is verified: it was stopped before all was tried."]
+        why = "a quick look runs no draw and no queue" if study.request.quick else "it was stopped"
+        lines += [f"# Nothing is verified: {why}."]
     elif (tried := trial_of(study)) is None:
         lines += ["# Nothing is verified: no part has left a queue."]
     else:
