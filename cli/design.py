@@ -67,6 +67,10 @@ REQUEST = (  # what shall leave, and what may be used
         "--alternatives",
         "Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
     ),
+    options.flag(
+        "--quick",
+        "A bound on the rate and a first chain within 30 s, for a quotation: not proved.",
+    ),
     options.quantity(
         "--agreed-jams",
         "rate",
@@ -124,14 +128,17 @@ def design(
     and through draws of part, friction, drive and cuts. Chains of steel come first, then steady air, then
     cameras with a valve: the first that holds is taken. The answer is one of holds, holds if parts arrive
     single (two of them hook), falls short and none, with the numbers it rests on. What falls short says
-    where, with the nearest design that would hold. The exit status is 3 where the bowl holds if parts arrive
-    single, and else 0 of a run that came to its end.
+    where, with the nearest design that would hold, and ends in commands to try. The exit status is 3
+    where the bowl holds if parts arrive single, and else 0 of a run that came to its end.
 
     The drive is the calmest on one set of leaf springs that is fast enough, at the frequency of the mains
     (machine.mains) or twice that. What --config says of track, drive, machine and friction is kept. Its
     devices stay before those of the design.
     The same seed gives the same answer whatever the number of jobs. Ctrl-C ends it
     with exit status 130 as not proved: it says what was counted so far, and writes no papers to build from.
+
+    --quick looks for a quotation: a bound on the rate, and the first chain of at most six short trials. No
+    draw and no queue is run, so its answer is always not proved, on every paper, and the exit status is 0.
 
     Of several parts each is designed for one track and one chain of devices, as far as they go: what is
     changed from one to the next is listed in family/changeover.csv and on the page family/family.html. Each
@@ -154,11 +161,13 @@ def design(
             raise click.UsageError(f"--{name.replace('_', '-')} is of one part - design that one alone")
     if more_parts and is_list:
         raise click.UsageError("--batch goes with one list - or name the parts without it")
+    if more_parts and request_options["quick"]:
+        raise click.UsageError("--quick is of one part - design that one alone")
     orientation.check_heading(request_options)
     with hold_interrupts():
         from feederscrew import bowl as bowls
         from feederscrew.bowl.verified import Status
-        from feederscrew.designing import loop
+        from feederscrew.designing import calls, loop
         from feederscrew.designing.record import DesignRequest
         from feederscrew.output import designs
 
@@ -176,6 +185,8 @@ def design(
         with out.folder_of(solid, inputs, settings=settings) as folder:
             with _stoppable(out) as search:
                 study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
+            call = out.arguments if is_shown else calls.call_words(request, solid, settings)
+            study = dataclasses.replace(study, call=call)
             study = _write(out, folder, study, settings)
             if is_shown:
                 out.show(designs.summary(study), designs.document(study))
@@ -220,6 +231,7 @@ def _batch(
     if lacks:
         raise click.UsageError(f"{lacks.line} has no target, nor has the call - add --target 40/min")
     inputs, rows = bowls.identity(part["source"]) | bowls.identity(path), []
+    is_stopped = False
     out.check_folder("designs", inputs)
     for order in orders:
         values = own | {"target": order.target or own["target"], "aspect": order.aspect}
@@ -232,12 +244,13 @@ def _batch(
             rows.append(lists.order_row(order, values["target"], failed))
             continue
         rows.append(lists.order_row(order, values["target"], designs.document(study)))
-        if study.partial:
+        is_stopped = study.partial
+        if is_stopped:
             break
     with out.folder("designs", inputs, bowls.texts(settings)) as folder:
         out.write(folder, [offers.table("designs.csv", lists.order_table, rows)])
     out.show(lists.order_table(rows), {"designs": rows})
-    if rows[-1]["status"] == "not proved":
+    if is_stopped:
         return exit_status()
     if any(row["status"] == lists.FAILED for row in rows):
         return 1
@@ -266,25 +279,34 @@ def _write(
     out: Output, folder: "ResultFolder | None", study: "DesignStudy", settings: Sequence["Setting"]
 ) -> "DesignStudy":
     """Write the files of one design; return it with the limits that its machine is out of."""
+    from feederscrew.bowl.verified import Status
     from feederscrew.designing import design
     from feederscrew.output import design_pages, designs
 
-    built = design.Built() if study.partial else design.build_machine(study, settings)
+    is_proved = study.status is not Status.NOT_PROVED
+    built = design.build_machine(study, settings) if is_proved else design.Built()
     study = design.with_machine(study, built)
     if study.bowl is not None:  # read back and compared, whether or not it is kept
         designs.bowl_file(study, settings, built.sheet)
     out.warn(*study.warnings, *([f"no solid of the bowl is made: {built.why}"] if built.why else []))
-    if not (study.partial and _keeps_earlier(out, folder, "design.html")):
+    if is_proved or not _keeps_earlier(out, folder, "design.html"):
         out.write(folder, design_pages.offers(study, settings, built), jobs=study.request.jobs)
     return study
 
 
 def _keeps_earlier(out: Output, folder: "ResultFolder | None", page: str) -> bool:
     """Leave a folder as it is where it holds a design that was proved to its end; whether it does."""
-    if folder is None or not folder.has_file("design", page):
+    from feederscrew.bowl.verified import Status
+
+    command, document = "design", page.replace(".html", ".json")
+    if folder is None or not folder.has_file(command, page):
+        return False
+    if folder.document(document).get("status") == Status.NOT_PROVED:  # an earlier quick look
         return False
     folder.untouched = True
-    out.warn(f"{folder.path} keeps the files of an earlier design: nothing of the stopped one is written")
+    out.warn(
+        f"{folder.path} keeps the files of an earlier design: nothing of one that is not proved is written"
+    )
     return True
 
 

@@ -127,6 +127,8 @@ class Verified:
     def counts(self, wanted: str) -> bool:
         """Tell whether an aspect or an orientation is what the trial counted.
 
+        A trial of 'A' counted that aspect at any heading.
+
         Parameters
         ----------
         wanted : str
@@ -140,8 +142,9 @@ class Verified:
         up = {*more, *(name.strip().casefold() for name in self.up.split(",") if name.strip())}
         name = wanted.casefold()
         aspect = name.rpartition("@")[0] or name
-        equal = first if "@" in name else first.rpartition("@")[0] or first
-        return name == equal or aspect in up or name in up
+        first_aspect = first.rpartition("@")[0] or first
+        equal = name == first if "@" in name and "@" in first else aspect == first_aspect
+        return equal or aspect in up or name in up
 
     @property
     def sentence(self) -> str:

@@ -16,11 +16,12 @@ from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.verified import HELD
 from feederscrew.designing import families, loop
+from feederscrew.designing.calls import call_words
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.nearest import nearest_from_study
 from feederscrew.designing.record import DesignRequest, DesignStudy, ProofKind
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine import checks, drive_sizing
 from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.part.record import Part
@@ -50,6 +51,8 @@ class DesignSearch:
     # 'usual', or 'long': what holds is followed until the agreed jams are shown, three hours of bowl time at
     # each fill for 1 an hour; runs are kept, and a proof that was stopped goes on
     proof: str = DesignRequest.proof
+    # a bound on the rate and a first chain for a quotation: nothing is proved, and the status says so
+    quick: bool = DesignRequest.quick
 
 
 class DesignOptions(TypedDict, total=False):
@@ -138,7 +141,7 @@ def design(
         Of ``shares``; what lies on the moving floor of the designed bowl without it.
     search : DesignSearch, optional
         Rule, number of short trials and of draws, whether dearer chains are proved too, the jams that a
-        buyer tolerates, and whether these are shown ('long').
+        buyer tolerates, and whether these are shown ('long'). With ``quick`` nothing is proved.
     seed : int
         Of everything that is drawn.
     jobs : int
@@ -149,9 +152,9 @@ def design(
     Returns
     -------
     DesignStudy
-        Its ``status`` is one of four words, 'not proved' where the user stopped it; its ``bowl`` has the
-        devices. Of several parts a FamilyStudy: its ``members``, whether all is ``shared``, and the worst
-        ``status``.
+        Its ``status`` is one of four words, 'not proved' where the user stopped it or asked for a
+        ``quick`` look; its ``bowl`` has the devices. Of several parts a FamilyStudy: its ``members``,
+        whether all is ``shared``, and the worst ``status``.
     """
     looked = check.kind("search", search or DesignSearch(), DesignSearch, "give a DesignSearch")
     request = DesignRequest(
@@ -170,6 +173,7 @@ def design(
         draws=arguments.whole("draws", looked.draws),
         agreed_jams=arguments.amount("agreed_jams", looked.agreed_jams, "rate", MIN_POSITIVE),
         proof=check.choice("proof", looked.proof, ProofKind),
+        quick=bool(looked.quick),
         seed=arguments.whole("seed", seed, 0),
         jobs=arguments.whole("jobs", jobs),
     )
@@ -177,12 +181,17 @@ def design(
     kept_keys = frozenset(setting.key.name for setting in plain.settings if setting.is_own)
     kept_settings = settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
+        if request.quick:
+            raise ArgumentError("search", "a quick look is at one part", "design each part alone")
         parts = [arguments.a_part(given_part) for given_part in part]
         family = families.family(parts, plain, kept_keys, request, tell=progress)
         members = (with_machine(member, build_machine(member, kept_settings)) for member in family.members)
         return replace(family, members=tuple(members))
     shared = the_shares(aspect_shares)
     study = loop.design(arguments.a_part(part), plain, kept_keys, request, shares=shared, tell=progress)
+    study = replace(study, call=call_words(request, study.part, kept_settings))
+    if request.quick:
+        return study
     return with_machine(study, build_machine(study, kept_settings))
 
 

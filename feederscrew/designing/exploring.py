@@ -4,7 +4,7 @@ import functools
 import heapq
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -76,12 +76,16 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
         if own_class > number:  # the user's own devices are dearer
             continue
         share = search.policy.budget_shares[proposals.COST_CLASSES.index(number)]
+        state.cost_class = number
         state.reach = state.start + math.ceil(share * (search.request.budget - state.start))
         tracks = _tracks(search)
+        for candidate in [other for other in state.waiting if other.attempt.cost_class == number]:
+            state.waiting.remove(candidate)
+            yield candidate
         for track in tracks if number == max(1, own_class) else ():
             bare = proposals.propose_no_device(track.orientations, track.weights, search.request, own_devices)
             if bare is not None and not _was_tried(search, track, bare) and not search.is_spent:
-                yield from _try_and_mend(search, track.plain_bowl, bare, track.weights)
+                yield from _try_and_mend(search, track, bare)
         yield from _chains(search, tracks, number)
 
 
@@ -97,7 +101,7 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
         for track in tracks
         for row in track.rows
         for recipe in proposals.recipes_of(cost_class, search.request)
-        if not recipe.turns or _share(search, track, row) < proposals.RARE_ORIENTATION
+        if not recipe.turns or share_of(search, track, row) < proposals.RARE_ORIENTATION
     ]
     ideas += [idea for track in tracks for idea in _rails_ideas(search, track, cost_class)]
     order = itertools.count()  # of equal ones the first
@@ -117,7 +121,7 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
                 search.through(start).lying, track.weights, idea.row, search.plain.devices, search.request,
                 cost_class,
             )  # fmt: skip
-            yield from _try_rails(search, track.plain_bowl, rails, track.weights)
+            yield from _try_rails(search, track, rails)
             continue
         proposal = idea.proposal or _proposal(search, idea)
         if proposal is None or _was_tried(search, idea.track, proposal):
@@ -132,13 +136,72 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
         heads = [head for own, head in state.lost_behind if own == idea.place]
         if proposal.purity < policy.purity or any(proposal.chain[: len(head)] == head for head in heads):
             continue
-        yield from _try_and_mend(search, idea.track.plain_bowl, proposal, idea.track.weights)
+        yield from _try_and_mend(search, idea.track, proposal)
         excluded = idea.recipe.excluded_kinds
         more = tuple(kind for kind in state.avoided_kinds.get(idea.place, ()) if kind not in excluded)
         if more and idea.left_out < policy.left_out:
             recipe = replace(idea.recipe, excluded_kinds=(*excluded, *more))
             other = _Idea(idea.track, idea.row, recipe, left_out=idea.left_out + 1)
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
+
+
+def _others_first(search: Search, name: str) -> Iterator[Candidate]:
+    """Try each orientation that comes often once, before one that was tried some times is tried again.
+
+    Yields those that are clean and fast enough, of the cost class that is searched or a cheaper one; what is
+    dearer waits for its class. One of which nothing was clean, and one that no chain tells from the rest, is
+    looked at once.
+    """
+    state, policy = search.state, search.policy
+    if state.tried[name] < policy.tries_before_others:
+        return
+    for track, row in _often(search):
+        other = track.orientations.lying[row].name
+        if other in state.looked_at or state.tried[other] or search.is_spent:
+            continue
+        state.looked_at.add(other)
+        idea = _first_idea(search, track, row)
+        if idea is None or idea.proposal is None:
+            continue
+        state.reach += 1  # no other chain is left out for it
+        state.most_trials += 1
+        tried = try_proposal(search, track.plain_bowl, idea.proposal, track.weights)
+        candidate = _screen(search, tried)
+        if not candidate.attempt.clean:
+            state.failures.append(candidate)
+            continue
+        state.clean.append(candidate)
+        if candidate.attempt.rate < search.request.target:
+            continue
+        if candidate.attempt.cost_class > state.cost_class:
+            state.waiting.append(candidate)
+        else:
+            yield candidate
+
+
+def _often(search: Search) -> list[tuple[BankedTrack, int]]:
+    """Rows that come often enough to be tried once, with the track of the first bank, most frequent first."""
+    least = search.policy.often_share
+    return [
+        (track, row)
+        for track in search.state.tracks[:1]
+        for row in track.rows
+        if share_of(search, track, row) >= least
+    ]
+
+
+def _first_idea(search: Search, track: BankedTrack, row: int) -> _Idea | None:
+    """The cheapest chain that isolates a row and was not tried; None without one."""
+    for cost_class in proposals.COST_CLASSES:
+        recipes = proposals.recipes_of(cost_class, search.request)
+        ideas = [_Idea(track, row, recipe) for recipe in recipes if not recipe.turns]
+        for idea in sorted(ideas, key=lambda idea: -_bound(search, idea)):
+            proposal = _proposal(search, idea)
+            if proposal is None or proposal.purity < search.policy.purity:
+                continue
+            if not _was_tried(search, track, proposal):
+                return replace(idea, proposal=proposal)
+    return None
 
 
 def _rails_ideas(search: Search, track: BankedTrack, cost_class: int) -> list[_Idea]:
@@ -164,6 +227,9 @@ def _proposal(search: Search, idea: _Idea) -> Proposal | None:
     for other in easier:
         key = (*idea.place, other)
         if key not in state.proposed:
+            if state.proposals_left <= 0:  # of a quick look
+                return None
+            state.proposals_left -= 1
             state.proposed[key] = _propose(search, idea.track, idea.row, other)
         if state.proposed[key] is None:
             return None
@@ -191,15 +257,30 @@ def _tracks(search: Search) -> list[BankedTrack]:
         if state.shares is None:
             state.shares = entry_shares(search, start)
         orientations, weights = weigh_orientations(search, start)
-        rows = proposals.promising_rows(orientations, weights, search.request)[: proposals.PROPOSED_ROWS]
+        rows = _rows_to_try(orientations, weights, search)
         state.tracks.append(BankedTrack(plain_bowl, orientations, weights, rows, policy.bank_rank**number))
     # also of what may hang: infinite
     placed = [(track, row) for track in state.tracks for row in track.rows]
     enough = any(_promise(search, track, row, LYING) >= search.request.target for track, row in placed)
-    turns = any(_share(search, track, row) < proposals.RARE_ORIENTATION for track, row in placed)
+    turns = any(share_of(search, track, row) < proposals.RARE_ORIENTATION for track, row in placed)
     if not enough and not turns:
         state.most_trials = state.start + policy.rare_trials
     return state.tracks
+
+
+def _rows_to_try(orientations: Orientations, weights: Floats, search: Search) -> list[int]:
+    """The rows for which chains are proposed: the most frequent, and one of each aspect that comes often.
+
+    Else headings of one aspect would leave out the side that comes next.
+    """
+    rows = proposals.promising_rows(orientations, weights, search.request)
+    aspects = [one.aspect for one in orientations.lying]
+    chosen = rows[: proposals.PROPOSED_ROWS]
+    for row in rows[proposals.PROPOSED_ROWS :]:
+        share = sum(w for w, aspect in zip(weights.tolist(), aspects, strict=True) if aspect == aspects[row])
+        if aspects[row] not in {aspects[k] for k in chosen} and share >= search.policy.often_share:
+            chosen.append(row)
+    return chosen
 
 
 def _bound(search: Search, idea: _Idea) -> float:
@@ -211,7 +292,7 @@ def _bound(search: Search, idea: _Idea) -> float:
     flat = track.plain_bowl.bowl.track.bank <= policy.hanging_bank
     rank = track.rank if recipe.outcome == OutcomeKind.LYING else 1.0 if flat else policy.bank_rank**2
     simplicity = (policy.turning_rank if recipe.turns else 1.0) * (policy.hole_rank if recipe.holes else 1.0)
-    share = _share(search, track, idea.row) ** policy.share_power
+    share = share_of(search, track, idea.row) ** policy.share_power
     least, part_of_margin = policy.no_margin_rank, min(recipe.margin / proposals.MARGINS[0], 1.0)
     margin = least + (1.0 - least) * part_of_margin
     return rate * rank * simplicity * share * margin * policy.left_out_rank**idea.left_out
@@ -270,12 +351,41 @@ def _promise(search: Search, track: BankedTrack, row: int, recipe: proposals.Rec
     if recipe.outcome != OutcomeKind.LYING and find_head(track.orientations.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = short_trials.GAP * float((track.weights * track.orientations.lengths).sum())
-    share = 1.0 if recipe.turns else _share(search, track, row)
+    share = 1.0 if recipe.turns else share_of(search, track, row)
     return share * track.fastest / pitch
 
 
-def _share(search: Search, track: BankedTrack, row: int) -> float:
-    """Share [1] in which an orientation comes, with those that count as it."""
+def rate_at_most(track: BankedTrack, share: float) -> float:
+    """Return the rate [1/s] that no chain exceeds: parts that touch, at the fastest drive.
+
+    Parameters
+    ----------
+    track : BankedTrack
+        Of its orientations lengths l and weights w are taken: a part takes sum(w l) of the track.
+    share : float [1]
+        Of the parts that may leave as wanted.
+
+    Returns
+    -------
+    float [1/s]
+        share v / sum(w l), with the velocity v of the fastest drive.
+    """
+    return share * track.fastest / float((track.weights * track.orientations.lengths).sum())
+
+
+def share_of(search: Search, track: BankedTrack, row: int) -> float:
+    """Return the share [1] in which an orientation comes, with those that count as it.
+
+    Parameters
+    ----------
+    search : Search
+    track : BankedTrack
+    row : int
+
+    Returns
+    -------
+    float [1]
+    """
     equivalent = equivalent_rows(track.orientations.lying, row, search.request.up)
     return float(track.weights[[row, *equivalent]].sum())
 
@@ -294,7 +404,7 @@ def _propose(search: Search, track: BankedTrack, row: int, recipe: proposals.Rec
             track.orientations, search.request, recipe,
         )  # fmt: skip
 
-    share = _share(search, track, row)
+    share = share_of(search, track, row)
     proposal = at_drive_for(share)
     if proposal is None:
         return None
@@ -368,18 +478,20 @@ def weigh_orientations(search: Search, bowl: Bowl) -> tuple[Orientations, Floats
     return orientations, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
 
 
-def _try_and_mend(
-    search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: Floats
-) -> Iterator[Candidate]:
+def _try_and_mend(search: Search, track: BankedTrack, proposal: Proposal) -> Iterator[Candidate]:
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough.
 
     One that one draw alone denies is taken where nothing mends it: the draws of its proof are more.
     """
     state, policy = search.state, search.policy
+    plain_bowl, weights = track.plain_bowl, track.weights
     lost, before, nearly = 0, None, None
     for _ in range(policy.mends + 1):
+        yield from _others_first(search, track.orientations.lying[proposal.row].name)
+        if search.is_spent:
+            return
         candidate = _screen(search, try_proposal(search, plain_bowl, proposal, weights))
-        calmed = _find_calmer(search, candidate)
+        calmed = yield from _find_calmer(search, candidate)
         if calmed.attempt.clean:
             state.clean.append(calmed)
             if calmed.attempt.rate >= search.request.target:
@@ -401,7 +513,7 @@ def _try_and_mend(
         if changed is None or chain_key(plain_bowl.bowl.track, changed, lying) in state.chains:
             break
         proposal = changed
-    chosen = _find_livelier(search, candidate) or nearly
+    chosen = (yield from _find_livelier(search, candidate)) or nearly
     if chosen is not None:
         yield chosen
         return
@@ -418,15 +530,14 @@ def _try_and_mend(
             state.lost_behind.append((place, proposal.chain[:count]))
 
 
-def _try_rails(
-    search: Search, plain_bowl: calm_drive.PlainBowl, rails: hanging.RailsSearch, weights: Floats
-) -> Iterator[Candidate]:
+def _try_rails(search: Search, track: BankedTrack, rails: hanging.RailsSearch) -> Iterator[Candidate]:
     """Try rails for a head and what changes them, from the best so far; each Candidate that is clean.
 
     The short trial decides on each; the static rule says only in which order. A chain that is clean and too
     slow is tried once more at the drive that its share of hanging parts asks for.
     """
     state, policy = search.state, search.policy
+    plain_bowl, weights = track.plain_bowl, track.weights
     best: Candidate | None = None
     drive: Bowl | None = None  # that of the best so far, where it is livelier than the target asks for
     pending, count = rails.start(), 0
@@ -464,7 +575,7 @@ def _try_rails(
             )
         elif count >= policy.rails_given_up and not best.attempt.efficiency > 0.0:
             return
-    if best is not None and (chosen := _find_livelier(search, best)) is not None:
+    if best is not None and (chosen := (yield from _find_livelier(search, best))) is not None:
         yield chosen
 
 
@@ -485,12 +596,14 @@ def devices_to(end: End, proposal: Proposal) -> int:
     return 0 if end.on_bare_track else placed[end.station - 1] + 1
 
 
-def _find_livelier(search: Search, candidate: Candidate) -> Candidate | None:
+def _find_livelier(search: Search, candidate: Candidate) -> Generator[Candidate, None, Candidate | None]:
     """The candidate at a livelier drive, where parts stay at a blade or at rails; None where none is clean.
 
     Where one draw alone denies that, it is taken as well.
     """
     for _ in range(search.policy.livelier_trials):
+        if stays_at_steel(candidate.proposal, candidate.attempt.faults):
+            yield from _others_first(search, candidate.orientations.lying[candidate.proposal.row].name)
         if search.is_spent or not stays_at_steel(candidate.proposal, candidate.attempt.faults):
             return None
         other = try_livelier(search, candidate)
@@ -548,7 +661,7 @@ def stays_at_steel(proposal: Proposal, faults: Iterable[Fault]) -> bool:
     return any(fault.stops_at(steel) for fault in faults)
 
 
-def _find_calmer(search: Search, first: Candidate) -> Candidate:
+def _find_calmer(search: Search, first: Candidate) -> Generator[Candidate, None, Candidate]:
     """The candidate at a calmer drive that is clean, where the one it had turns or loses what is wanted."""
     candidate = first
     for _ in range(search.policy.calmer_trials):
@@ -557,7 +670,8 @@ def _find_calmer(search: Search, first: Candidate) -> Candidate:
         moved_out = turned or bool(short_trials.lost_by_motion(candidate.trial))
         if candidate.attempt.clean or search.is_spent or not moved_out:
             break
-        other = try_calmer(search, candidate)
+        yield from _others_first(search, candidate.orientations.lying[candidate.proposal.row].name)
+        other = None if search.is_spent else try_calmer(search, candidate)
         if other is None:
             break
         search.state.most_trials += 1  # no other chain is left out for it
@@ -584,9 +698,9 @@ def try_calmer(search: Search, candidate: Candidate) -> Candidate | None:
 
 def _screen(search: Search, candidate: Candidate) -> Candidate:
     """A clean candidate after some draws of part, friction, drive and cuts; denied where one fails."""
-    if not candidate.attempt.clean or candidate.attempt.rate < search.request.target:
-        return candidate
     request = search.request
+    if not candidate.attempt.clean or candidate.attempt.rate < request.target or request.quick:
+        return candidate
     robust = robust_run(
         search.part, candidate.bowl, candidate.orientations, candidate.weights, candidate.proposal.rows,
         draws=min(search.policy.screening_draws, request.draws), tolerance=request.tolerance, run=request.run,
@@ -638,7 +752,11 @@ def try_proposal(
     bowl = replace(own, track=plain_bowl.bowl.track, devices=proposal.devices)
     orientations = search.orientations_along(bowl)
     search.state.chains.add(chain_key(bowl.track, proposal, orientations.lying))
-    search.begin_trial(f"{orientations.lying[proposal.row].name}, {texts.move_text(proposal.move)}")
+    if not proposal.hangs:  # rails are tried with every orientation at once
+        search.state.tried[orientations.lying[proposal.row].name] += 1
+    wanted = proposal.wanted_name(orientations)
+    name = orientations.lying[proposal.row].name if proposal.hangs else wanted
+    search.begin_trial(f"{name}, {texts.move_text(proposal.move)}")
     trial = _short(search, bowl, orientations, weights, proposal)
     faults = tuple(find_denials(trial))
     # which fault it shows: what loses the wanted orientation first, then what lets others leave
@@ -649,7 +767,7 @@ def try_proposal(
         cause = Cause.DEVICE if trial.loses_wanted or proposal.devices else Cause.PART
     state = orientations.states[trial.states[0]]
     attempt = Attempt(
-        wanted=state.name,
+        wanted=wanted,
         aspect="" if isinstance(state, Hanging) else state.aspect,
         chain=proposal.chain,
         move=proposal.move,

@@ -18,6 +18,7 @@ from feederscrew.designing import (
     nearest,
     proposals,
     queues,
+    quick,
     short_trials,
     texts,
 )
@@ -68,12 +69,13 @@ def design(
 ) -> DesignStudy:
     """Design a bowl that brings a part, from a mesh, at a rate, and try it.
 
-    ``plain`` is what the user gave, completed by the defaults: its devices and ``kept_keys``, names of keys,
-    are kept. ``shares`` are what arrives where the user says so, else what lies on the moving floor of the
-    designed bowl. Called are ``tell`` with what is being tried, a sentence; ``before`` before anything is
-    compiled, and before the first trial is told; ``progress`` with what is done ('trial', 'draws', 'queue'),
-    how many of how many, the seconds gone and a guess of those to go. ``with_nearest``: the nearest that
-    holds is looked for where the design does not. Raises FeederError if the part has no surface or very many
+    ``plain`` is what the user gave, completed by the defaults: its devices and ``kept_keys``, names of
+    keys, are kept. ``shares`` are what arrives where the user says so, else what lies on the moving floor
+    of the designed bowl. A request that is ``quick`` ends with the first chain, which is not proved.
+    Called are ``tell`` with what is being tried, a sentence; ``before`` before anything is compiled, and
+    before the first trial is told; ``progress`` with what is done ('trial', 'draws', 'queue'), how many
+    of how many, the seconds gone and a guess of those to go. ``with_nearest``: the nearest that holds is
+    looked for where the design does not. Raises FeederError if the part has no surface or very many
     facets, fits no bowl, or has no such aspect.
     """
     check_request(part, plain, request, shares)
@@ -85,6 +87,12 @@ def design(
     proofs: Proofs = []
     classes: list[int] = []
     try:
+        if request.quick:
+            first_one = quick.first_chain(search)
+            bare = (
+                _best(search, proofs) if first_one is None else _study_of(search, first_one, search.arrivals)
+            )
+            return quick.completed(bare, search, first_one)
         for cost_class in proposals.COST_CLASSES:
             classes.append(cost_class)
             first = len(proofs)  # the best chains of a class, until one holds or enough of them do not
@@ -173,8 +181,9 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
         return _study_of(search, candidate, state.shares)
     source = "" if state.shares is None else state.shares.aspects.source(search.request.rule)
     return DesignStudy(
-        search.part, search.request, None, None, None, attempts=tuple(state.attempts), source=source
-    )
+        search.part, search.request, None, None, None, attempts=tuple(state.attempts), source=source,
+        arrivals=search.aspect_shares,
+    )  # fmt: skip
 
 
 def _likeliest(search: Search) -> Candidate | None:
@@ -416,6 +425,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         cuts=proposal.cuts,
         before=proposal.before,
         attempts=tuple(search.state.attempts),
+        arrivals=search.aspect_shares,
         source=shares.aspects.source(request.rule),
         static_rate=calm_drive.speed(bowl) * gain / float((weights * oriented.lengths).sum()),
         slowed=calm_drive.velocity_kept(bowl),
@@ -461,17 +471,20 @@ def alternatives(
                     chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
                     chain_words=words,
                     sees=tuple(device.sees for device in sensors),
-                    why="; ".join(study.shortfalls) if study.status not in HELD else "",
+                    reasons=study.shortfalls if study.status not in HELD else (),
                 )
             )
         elif tried:
             best = max(tried, key=lambda one: (one.clean, one.efficiency, one.rate))
             faults = ", ".join(texts.fault_texts(best.faults, 2)) or "too slow in its short trial"
-            best_of.append(Alternative(number, Status.NONE, chain=best.chain, why=f"{best.wanted}: {faults}"))
+            why = (f"{best.wanted}: {faults}",)
+            best_of.append(Alternative(number, Status.NONE, chain=best.chain, reasons=why))
         elif number in classes:
-            why = "no chain of this class tells what is wanted from the rest"
-            best_of.append(Alternative(number, Status.NONE, why=why))
+            why = ("no chain of this class tells what is wanted from the rest",)
+            best_of.append(Alternative(number, Status.NONE, reasons=why))
         else:
-            why = "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped"
-            best_of.append(Alternative(number, Status.NOT_TRIED, why=why))
+            why = (
+                "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped",
+            )
+            best_of.append(Alternative(number, Status.NOT_TRIED, reasons=why))
     return tuple(best_of)

@@ -214,6 +214,7 @@ def nearest_from_study(
     return NearestDesign(
         rate=rate,
         change=change,
+        request=study.request,
         wanted=study.wanted,
         chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
         frequency=None if bowl is None else bowl.drive.frequency,
@@ -348,7 +349,9 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
         proposal = replace(candidate.proposal, equivalents=equivalents, any_heading=free_headings)
         states = wanted_states(candidate.orientations, proposal.rows)
         trial = replace(candidate.trial, states=states)
-        other, free = replace(candidate, proposal=proposal, trial=trial), search.beside(request)
+        attempt = replace(candidate.attempt, wanted=proposal.wanted_name(candidate.orientations))
+        other = replace(candidate, proposal=proposal, trial=trial, attempt=attempt)
+        free = search.beside(request)
         yield Variant(f"any heading of {aspect} counted, --up {','.join(request.up)}", other, free, False)
 
 

@@ -25,7 +25,7 @@ from feederscrew.tooling.devices.orientation_names import rows as rows_of
 from feederscrew.tooling.devices.pneumatics import PULSE
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
 from feederscrew.tooling.isolating.rails import RAIL
-from feederscrew.tooling.orientations import Orientation, neck
+from feederscrew.tooling.orientations import Hanging, Orientation, neck
 from feederscrew.tooling.verdicts import DeviceEncounter
 from feederscrew.trial.fills import LeavingCounts, PoseKind
 from feederscrew.trial.wanted import aspects_at_any_heading, equivalent_rows, wanted_rows, wanted_states
@@ -126,6 +126,12 @@ class Proposal:
     def states(self, orientations: Orientations) -> tuple[int, ...]:
         """Return the states in which what is wanted leaves, its own first."""
         return wanted_states(orientations, self.rows)
+
+    def wanted_name(self, orientations: Orientations) -> str:
+        """Return what leaves by name: 'A@188'; 'A' of an aspect that counts at any heading; 'hanging'."""
+        state = orientations.states[orientations.leaves_as[self.row]]
+        free = not isinstance(state, Hanging) and state.aspect in self.any_heading
+        return state.aspect if free else state.name
 
     @property
     def hangs(self) -> bool:

@@ -1,6 +1,8 @@
 """What is asked of a design, and what it stands on."""
 
 import enum
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -21,7 +23,7 @@ from feederscrew.designing.fill_verdicts import (
     longest_time,
     shows_purity,
 )
-from feederscrew.designing.findings import Cause, Fault, FaultKind, Hooking, Move, SeldomPart
+from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Hooking, Move, SeldomPart
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.records import ReadableRecord
@@ -72,6 +74,7 @@ class DesignRequest:
     alternatives: bool = False  # whether dearer cost classes are searched too where one holds
     agreed_jams: float = AGREED_JAMS  # [1/s] that the buyer tolerates
     proof: ProofKind = ProofKind.USUAL  # of the design that holds
+    quick: bool = False  # a bound on the rate and a first chain, and nothing is proved
 
     @property
     def run(self) -> RunSettings:
@@ -154,7 +157,52 @@ class Alternative:
     chain: tuple[str, ...] = ()  # 'gap: 9.5 mm'
     chain_words: tuple[str, ...] = ()  # the same as the trade names it
     sees: tuple[str, ...] = ()  # what each of its sensors sees
-    why: str = ""  # where it falls short, or why there is none; '' of one that holds
+    reasons: tuple[str, ...] = ()  # where it falls short, or why there is none; none of one that holds
+
+    @property
+    def why(self) -> str:
+        """The same in one line."""
+        return "; ".join(self.reasons)
+
+
+@dataclass(frozen=True)
+class WantedTrials:
+    """What became of one orientation in the short trials in which it was wanted."""
+
+    wanted: str  # 'A@2'; 'A' of an aspect that counts at any heading
+    aspect: str
+    trials: int
+    ends: tuple[End, ...]  # where its parts were lost, the place of most trials first
+    others: tuple[Fault, ...]  # what went wrong with other orientations, each once
+
+    @classmethod
+    def of(cls, attempts: Iterable[Attempt]) -> tuple["WantedTrials", ...]:
+        """Return those of some trials, one for each orientation, that of most trials first."""
+        by_name: dict[str, list[Attempt]] = {}
+        for attempt in attempts:
+            by_name.setdefault(attempt.wanted, []).append(attempt)
+        made = []
+        for name, own in by_name.items():
+            faults = [fault for attempt in own for fault in attempt.faults]
+            lost = [fault for fault in faults if fault.kind is FaultKind.LOST]
+            ends = Counter(end for fault in lost for end in dict.fromkeys(fault.ends))
+            others = (fault for fault in faults if fault.kind in (FaultKind.CARRIED, FaultKind.STAYS))
+            named = {(fault.kind, fault.orientation): fault for fault in others}
+            order = tuple(end for end, _ in ends.most_common())
+            made.append(cls(name, own[0].aspect, len(own), order, tuple(named.values())))
+        return tuple(sorted(made, key=lambda one: -one.trials))
+
+
+@dataclass(frozen=True)
+class QuickAnswer:
+    """What a design without a proof says of the rate, for a quotation."""
+
+    wanted: str  # orientation of which it speaks: that of the chain, or the one that may bring most
+    share: float  # [1] of the parts that come so
+    fastest: float  # [m/s] of the fastest drive
+    rate_at_most: float  # [1/s] of that orientation at the fastest drive, were all others returned
+    short_trial: float | None  # [1/s] that the short trial of the chain would deliver; None without a chain
+    clean: bool  # whether only what is wanted left that trial
 
 
 @dataclass(frozen=True)
@@ -177,6 +225,7 @@ class NearestDesign:
     parts_left: int = 0
     denied: tuple[str, ...] = ()  # what else was tried, and what came of it
     helps: tuple[str, ...] = ()  # what else was seen to help, or may
+    request: DesignRequest | None = None  # that it was tried for; None where none holds
 
     @property
     def text(self) -> str:
@@ -262,6 +311,9 @@ class DesignStudy(ReadableRecord):
     alternatives: tuple[Alternative, ...] = ()  # the best of each cost class, the cheapest first
     row: FedRow | None = None  # how parts were fed into its queues; None of what was not followed
     long_ride: LongRide | None = None  # from the track's entry to the tooling; None of what was not proved
+    arrivals: tuple[tuple[str, float], ...] = ()  # aspects, and the share [1] in which they come: first most
+    quick: QuickAnswer | None = None  # of a design that is not proved because it was not asked for
+    call: tuple[str, ...] = ()  # words of the command line that asked for it; () of the library
 
     @property
     def devices(self) -> tuple[Device, ...]:
@@ -365,8 +417,8 @@ class DesignStudy(ReadableRecord):
 
     @property
     def status(self) -> Status:
-        """The verdict; what the user stopped is no evidence, neither for a design nor against it."""
-        if self.partial:
+        """The verdict; what was stopped, or not run, is no evidence, neither for a design nor against it."""
+        if self.partial or self.request.quick:
             return Status.NOT_PROVED
         if self.bowl is None or not self.delivered[0] > 0.0:
             return Status.FALLS_SHORT if self.bowl is not None and self.queues else Status.NONE
@@ -404,17 +456,17 @@ class DesignStudy(ReadableRecord):
     @property
     def delivers(self) -> bool:
         """Whether any wanted part has left its queues, and it was not stopped: what may be built from."""
-        return self.bowl is not None and not self.partial and self.delivered[0] > 0.0
+        is_proved = self.status is not Status.NOT_PROVED
+        return self.bowl is not None and is_proved and self.delivered[0] > 0.0
 
     @property
     def shortfalls(self) -> tuple[str, ...]:
         """Where it does not do what was asked, a sentence each."""
         if self.bowl is None:
-            denied = (
-                f"{one.wanted}: {', '.join(texts.fault_texts(one.faults, 3)) or 'too slow'}"
-                for one in _asked_for(self)
+            return tuple(
+                texts.wanted_trials_text(one.wanted, one.trials, one.ends, one.others)
+                for one in self.wanted_trials[:3]
             )
-            return tuple(dict.fromkeys(denied))[:3]
         lines = list[str]()
         for queue in self.undecided_fills if not self.refused_fills else self.refused_fills:
             lines += self._lacks_of(queue)
@@ -430,6 +482,11 @@ class DesignStudy(ReadableRecord):
                 f"{self.robust.held} of {self.robust.draws} draws of part, friction and drive sort{worst}"
             )
         return (*lines, *self.machine_lacks)
+
+    @property
+    def wanted_trials(self) -> tuple[WantedTrials, ...]:
+        """What became of each orientation that was asked for in its short trials."""
+        return WantedTrials.of(_asked_for(self))
 
     def fills_of(self, state: FillState) -> tuple[FilledQueue, ...]:
         """Return the queues of the fills of one state, for the rate that is asked for."""
@@ -488,7 +545,7 @@ class DesignStudy(ReadableRecord):
     @property
     def _cause(self) -> tuple[Cause, str]:
         """The same with a sentence."""
-        if self.status in HELD or self.partial:
+        if self.status in (*HELD, Status.NOT_PROVED):
             return Cause.UNKNOWN, ""
         if self.machine_lacks:
             return Cause.DRIVE, "the springs that are drawn do not make the drive that was tried"
@@ -497,10 +554,8 @@ class DesignStudy(ReadableRecord):
                 return Cause.PART, "no device tells an orientation that was asked for from the others"
             best = max(_asked_for(self), key=lambda attempt: (attempt.efficiency, attempt.rate))
             if best.faults:
-                return (
-                    best.cause or Cause.PART,
-                    f"{best.wanted}: {', '.join(texts.fault_texts(best.faults, 2))}",
-                )
+                denied = f"{best.wanted}: {', '.join(texts.fault_texts(best.faults, 2))}"
+                return best.cause or Cause.PART, "" if self.bowl is None else denied  # said of each
             return Cause.ARRIVAL, (
                 f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most - ask for less, "
                 "or let other aspects count with --up"
@@ -545,15 +600,26 @@ class DesignStudy(ReadableRecord):
             return self.condition
         if self.partial:
             return "; ".join(("stopped before all was tried", *self.proved_so_far))
+        if self.request.quick:
+            return "; ".join(("a quick look, without draws and queues", *self.proved_so_far))
         return "; ".join((self.reasons, *(() if self.nearest is None else (self.nearest.text,))))
 
     @property
     def reasons(self) -> str:
         """Where it falls short, and the cause; '' of a design that holds or was stopped."""
+        return "; ".join(self.reason_lines)
+
+    @property
+    def reason_lines(self) -> tuple[str, ...]:
+        """The same, a sentence each, none of them twice."""
         cause, sentence = self._cause
+        if not cause:
+            return ()
         differences = map(texts.difference_text, self.differences)
-        lines = (*self.shortfalls, *differences, f"the cause is the {cause}: {sentence}")
-        return "; ".join(lines) if cause else ""
+        lines = dict.fromkeys((*self.shortfalls, *differences))
+        # a cause that was said already is named alone
+        named = f"the cause is the {cause}"
+        return (*lines, f"{named}: {sentence}" if sentence and sentence not in lines else named)
 
     @property
     def left_instead(self) -> LeavingCounts:

@@ -1,6 +1,7 @@
 """A search of a design: what it is asked, what it knows so far, how far it is, by which policy it goes on."""
 
 import functools
+from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
@@ -69,6 +70,11 @@ class SearchState:
     start: int = 0  # trials that were made before this search began
     reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
     most_trials: float = np.inf  # short trials that are worth it
+    cost_class: int = 1  # that is searched
+    tried: Counter[str] = field(default_factory=Counter)  # short trials of this search, by orientation
+    looked_at: set[str] = field(default_factory=set)  # orientations that had their turn before the others
+    waiting: list["Candidate"] = field(default_factory=list)  # clean, of a dearer class than is searched
+    proposals_left: float = np.inf  # chains that may still be looked for
     nearest_limit: int | None = None  # trials at most, where the nearest that holds is looked for
     # queues of the designs that were proved last, those of searches beside it too, by all that decides them
     queues: dict[RowKey, dict[FillLevel, PartsQueue]] = field(default_factory=dict)
@@ -176,6 +182,15 @@ class Search:
         if self.state.shares is None:
             raise ValueError("what arrives is not known before the tracks are")
         return self.state.shares
+
+    @property
+    def aspect_shares(self) -> tuple[tuple[str, float], ...]:
+        """The aspects that come along its first track, and their shares [1]: the most frequent first."""
+        shares: Counter[str] = Counter()
+        for track in self.state.tracks[:1]:
+            for orientation, weight in zip(track.orientations.lying, track.weights.tolist(), strict=True):
+                shares[orientation.aspect] += weight
+        return tuple(shares.most_common())
 
     def through(self, bowl: Bowl) -> Orientations:
         """Return what becomes of each orientation on the track and through the devices of a bowl."""

@@ -102,6 +102,29 @@ def fault_texts(faults: Iterable[Fault], most: int | None = None) -> list[str]:
     return [fault_text(fault) for fault in tuple(faults)[:most]]
 
 
+def wanted_trials_text(wanted: str, trials: int, ends: Iterable[End], others: Iterable[Fault]) -> str:
+    """Return what became of one orientation in its trials: 'A@270, 4 trials: lost (returned at gap)'.
+
+    Parameters
+    ----------
+    wanted : str
+        Name of the orientation.
+    trials : int
+        Short trials in which it was wanted.
+    ends : iterable of End
+        Where its parts were lost.
+    others : iterable of Fault
+        What went wrong with other orientations.
+
+    Returns
+    -------
+    str
+    """
+    lost = ends_text(ends)
+    lines = [f"lost ({lost})"] if lost else fault_texts(others, 2)
+    return f"{wanted}, {counted(trials, 'trial')}: {', '.join(lines) or 'too slow'}"
+
+
 def percent(value: float, ends: tuple[float, float]) -> str:
     """Return a share in percent, with its interval: '98.2 % (95.1 to 99.4)'.
 

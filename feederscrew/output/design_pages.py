@@ -1,5 +1,6 @@
 """The page and the files of ``feeder design``, of one part and of a family of parts."""
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
@@ -8,18 +9,21 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.reading import Setting
-from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
+from feederscrew.bowl.verified import AMONG, DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
 from feederscrew.designing import texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
+from feederscrew.designing.next_tries import next_tries
 from feederscrew.designing.record import DesignStudy
 from feederscrew.output import designs, machine, marking, poses, solidbowl, solidbowl_views, tables, tooling
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import LOWER_BOUND
+from feederscrew.output.next_tries import reason
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Block,
     Chapter,
+    Code,
     CsvSheet,
     Folded,
     Heading,
@@ -68,6 +72,12 @@ TOOLING_PICTURES = (
 )
 
 
+QUICK_WORDS = (
+    "This is a quick look for a quotation. The chain is the first of a few short trials, and its bound says "
+    "what no chain exceeds. No draw and no queue was run: nothing is proved, and nothing is built from it."
+)
+
+
 def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.Offer] = ()) -> str:
     """Return the page of a design as HTML that needs no other file.
 
@@ -86,14 +96,17 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     d = designs.document(study)
     value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
     purity = "-" if d["purity"] is None else f"{100.0 * d['purity']:.3g} %"
-    purity_low = f"seen at the worst fill; {LOWER_BOUND} {100.0 * d['purity_low']:.3g} %"
-    rates = f"{low:.3g} to {high:.3g} (95 %) at the worst fill, asked {d['target_per_minute']:.3g}"
-    tiles = (
-        Tile("status", d["status"], d["wanted"] or "no orientation"),
-        Tile("parts per minute", f"{value:.3g}", rates),
-        Tile("purity", purity, purity_low),
-        Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
-    )
+    tiles: tuple[Tile, ...] = (Tile("status", d["status"], d["wanted"] or "no orientation"),)
+    if study.status is Status.NOT_PROVED:
+        tiles += _quick_tiles(d["quick"])
+    else:
+        purity_low = f"seen at the worst fill; {LOWER_BOUND} {100.0 * d['purity_low']:.3g} %"
+        rates = f"{low:.3g} to {high:.3g} (95 %) at the worst fill, asked {d['target_per_minute']:.3g}"
+        tiles += (
+            Tile("parts per minute", f"{value:.3g}", rates),
+            Tile("purity", purity, purity_low),
+            Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
+        )
     chapters = [Chapter(tuple(_answer(study, d)), tiles, study.warnings, "answer", "The answer")]
     if build is not None and study.delivers:
         chapters += _to_build(study, build, offer.by_name(papers))
@@ -154,23 +167,56 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     return html(
         Page(
             study.part.name, f"design of a bowl: {study.status}", tuple(chapters), "design",
-            poses.opening(study.part, aspects, _first_seen(study)), poses.pose_finder(study.part, aspects),
+            poses.opening(study.part, aspects, first_seen(study)), poses.pose_finder(study.part, aspects),
         )
     )  # fmt: skip
 
 
-def _first_seen(study: DesignStudy) -> list[tuple[str, str]]:
-    """The orientation that was wanted and what left in its place, each with what became of it."""
-    tried = study.attempts[-1] if study.attempts else None
-    wanted = study.wanted or ("" if tried is None else tried.wanted)
+def _quick_tiles(quick: Mapping[str, Any] | None) -> tuple[Tile, ...]:
+    """The bound on the rate and the short trial of a quick look."""
+    if quick is None:
+        return ()
+    bound = Tile("at most per minute", f"{quick['at_most_per_minute']:.3g}", f"{quick['wanted']}, not proved")
+    if quick["short_trial_per_minute"] is None:
+        return (bound,)
+    word = "clean" if quick["clean"] else "not clean"
+    trial = Tile(
+        "its short trial, per minute", f"{quick['short_trial_per_minute']:.3g}", f"{word}, not proved"
+    )
+    return bound, trial
+
+
+def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
+    """What was wanted, with what became of it, then what left in its place, or what to try instead."""
+    wanted = (study.wanted or "").split(AMONG)[0]
     if study.delivers:
         words = "leaves correctly oriented"
-    else:
-        faults = () if tried is None else texts.fault_texts(tried.faults, 1)
-        words = "; ".join(("wanted", *faults))
-    instead = texts.leaving_texts(study.left_instead)
-    others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
-    return [(wanted, words), *((name, f"left in its place: {instead[name]}") for name in others[:1])]
+        instead = texts.leaving_texts(study.left_instead)
+        others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
+        seen = [(name, f"left in its place: {instead[name]}") for name in others[:1]]
+        return [(wanted, words), *seen]
+    tried = study.wanted_trials
+    seen = [
+        (one.wanted, texts.wanted_trials_text("wanted", one.trials, one.ends, one.others))
+        for one in sorted(tried, key=lambda one: one.wanted != wanted)[:2]
+    ]
+    aspects = {name.partition("@")[0] for name, _ in seen}
+    instead_of_it = (one for one in next_tries(study) if one.aspect and one.aspect not in aspects)
+    return [*seen, *((one.aspect, f"to try: {reason(one)}") for one in itertools.islice(instead_of_it, 1))]
+
+
+def _what_to_try(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
+    """What was wanted and where it was lost, then the calls that may hold, to be pasted."""
+    tried = study.wanted_trials
+    if tried and not study.delivers:
+        lost = (texts.wanted_trials_text(one.wanted, one.trials, one.ends, one.others) for one in tried)
+        yield Text("What was wanted, and where it was lost:")
+        yield Notes(tuple(lost))
+    if d["next"]:
+        yield Heading("What to try")
+    for entry in d["next"]:
+        yield Text(f"{entry['why'][0].upper()}{entry['why'][1:]}:")
+        yield Code(entry["command"])
 
 
 def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
@@ -186,7 +232,13 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
             "the draws sort."
         )
     else:
-        yield Text(f"Status: {study.status}. {study.why}.")
+        yield from _what_to_try(study, d)
+        is_quick = study.request.quick
+        yield Heading("What this answer is" if is_quick else "Why it does not hold")
+        yield Text(f"Status: {study.status}.")
+        yield Notes((QUICK_WORDS, *study.proved_so_far) if is_quick else study.reason_lines, loud=is_quick)
+        if study.nearest is not None:
+            yield Text(f"The nearest that holds: {study.nearest.sentence}.")
     if d["machine"]:
         yield Text(f"The machine: {designs.machine_text(d['machine'])}.")
     yield Table(tables.quantities(designs.outcome(d, study.devices)))
@@ -252,12 +304,13 @@ def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None 
     list of Offer
     """
     sheet, drawn = (None, None) if build is None else (build.sheet, build.drawn)
-    files = [
-        offer.document("design.json", designs.document, study),
-        offer.table("design_trials.csv", designs.attempts, study),
-    ]
+    files = [offer.document("design.json", designs.document, study)]
+    if not study.request.quick:  # its table of trials would bear no mark
+        files.append(offer.table("design_trials.csv", designs.attempts, study))
     if study.bowl is not None:
         files.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
+    if study.request.quick:
+        return [*files, offer.text("design.html", page, study, build)]
     if study.status == Status.NOT_PROVED:
         return files
     files += [

@@ -25,13 +25,14 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
-from feederscrew.output import part_facts, style, tables
+from feederscrew.output import next_tries, part_facts, style, tables
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -106,6 +107,8 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "condition": _condition(study),
         "cause": study.cause or None,
         "nearest": nearest(study),
+        "next": next_tries.entries(study),
+        "quick": _quick(study),
         "left_instead": texts.leaving_texts(study.left_instead),
         "differences": [
             {
@@ -129,6 +132,26 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "queues": [filled_entry(filled) for filled in study.queues],
         "attempts": attempts(study).rows(),
     }
+
+
+def _quick(study: DesignStudy) -> dict[str, Any] | None:
+    """Return what a quick look says of the rate as a dict; None of a design that was to be proved."""
+    if study.quick is None:
+        return None
+    names = "wanted share fastest_mm_s=fastest at_most_per_minute=rate_at_most"
+    quick = study.quick
+    short = None if quick.short_trial is None else quick.short_trial / PER_MINUTE
+    return {**row_of(quick, names), "short_trial_per_minute": short, "clean": quick.clean}
+
+
+def _quick_rows(quick: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return rows of what a quick look says of the rate."""
+    came = f"{quick['wanted']}, {100.0 * quick['share']:.3g} % of the parts, at the fastest drive"
+    rows = [("at most [1/min]", f"{quick['at_most_per_minute']:.3g} ({came})")]
+    if quick["short_trial_per_minute"] is not None:
+        word = "clean" if quick["clean"] else "not clean"
+        rows.append(("its short trial [1/min]", f"{quick['short_trial_per_minute']:.3g}, {word}"))
+    return rows
 
 
 def _condition(study: DesignStudy) -> dict[str, Any] | None:
@@ -287,10 +310,12 @@ def summary(study: DesignStudy) -> Frame:
     """Return what is printed: the answer first, then what it stands on; long lines go on in the next row."""
     d = document(study)
     first, *rest = outcome(d, study.devices)
-    rows = [first, *([("why", study.reasons or d["why"])] if d["why"] else [])]
+    lines = study.reason_lines or ([d["why"]] if d["why"] else [])
+    rows = [first, *(("why" if place == 0 else "and", line) for place, line in enumerate(lines))]
     if study.nearest is not None:
         rows.append(("nearest that holds", study.nearest.sentence))
     rows += [*rest, *dimensions(d), *(("risk", text) for text in d["risks"])]
+    said = {*lines}  # what was said above is not said again of a class
     for option, entry in zip(study.alternatives, d["alternatives"]):
         words = [str(option.status)]
         if option.delivered and option.purity is not None and option.efficiency is not None:
@@ -298,11 +323,16 @@ def summary(study: DesignStudy) -> Frame:
             words[0] += f", yield {100.0 * option.efficiency:.3g} %"
         chain = "; ".join(option.chain_words or option.chain)
         needs = f"needs {units.listed(entry['needs'])}" if chain and entry["needs"] else ""
-        words += [text for text in (chain, needs, option.why) if text]
+        own = [line for line in option.reasons if line not in said]
+        said |= {*own}
+        words += [text for text in (chain, needs, *own) if text]
         kind = ("steel alone", "steady air", "a sensor with a valve")[option.cost_class - 1]
         rows.append((f"with {kind}", "; ".join(words)))
     rows.append(("trials, parts", f"{len(study.attempts)}, {d['trial_parts']}"))
-    return tables.quantities(line for row in rows for line in wrap_row(*row))
+    wrapped = [line for row in rows for line in wrap_row(*row)]
+    for label, entry in zip(next_tries.LABELS, d["next"], strict=False):
+        wrapped += [(label, entry["command"]), *wrap_row("", entry["why"])]  # a command stands in one line
+    return tables.quantities(wrapped)
 
 
 def wrap_row(name: str, value: str) -> list[tuple[str, str]]:
@@ -330,9 +360,12 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
     if drive := (d.get("bowl") or {}).get("drive_of_the_springs"):
         rows.append(("its drawn springs make", drive))
     up = f", counting {', '.join(d['up'])} at any heading" if d.get("up") else ""
+    if not up and d["wanted"] and d["outcome"] == OutcomeKind.LYING and "@" not in d["wanted"]:
+        up = ", at any heading"
     rows.append(("leaves as", (d["wanted"] or "-") + up))
     rows.append(("asked for [1/min]", f"{d['target_per_minute']:.4g}"))
-    if d["status"] != Status.NOT_PROVED:
+    rows += _quick_rows(d["quick"]) if d.get("quick") else []
+    if d["status"] not in (Status.NOT_PROVED, Status.NONE):  # else there are no figures of a queue
         value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
         purity, purity_low, hourly = (d[name] for name in ("purity", "purity_low", "jams_per_hour_high"))
         shares = ("-" if share is None else f"{100.0 * share:.4g}" for share in (purity, purity_low))
@@ -465,7 +498,8 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
         mend = "this is a fault of feeder: report it with the command you gave"
         raise FeederError(name, f"is not the bowl that was tried: {'; '.join(wrong)}", mend)
     if study.status == Status.NOT_PROVED:
-        lines += ["# Nothing is verified: it was stopped before all was tried."]
+        why = "a quick look runs no draw and no queue" if study.request.quick else "it was stopped"
+        lines += [f"# Nothing is verified: {why}."]
     elif (tried := trial_of(study)) is None:
         lines += ["# Nothing is verified: no part has left a queue."]
     else:

@@ -70,6 +70,25 @@ class ResultFolder:
         """
         return name in self._records().get(command, {}).get("files", [])
 
+    def document(self, name: str) -> dict[str, Any]:
+        """Return a JSON document that lies here already.
+
+        Parameters
+        ----------
+        name : str
+            Of the file.
+
+        Returns
+        -------
+        dict
+            Empty where there is none, or none that can be read.
+        """
+        try:
+            read = json.loads((self.path / name).read_text(encoding="utf-8"))
+        except (OSError, ValueError, RecursionError):
+            return {}
+        return read if isinstance(read, dict) else {}
+
     def keep(
         self, command: str, *, arguments: Sequence[str] = (), effective: Mapping[str, Any] | None = None,
         warnings: Sequence[str] = (),

@@ -23,6 +23,7 @@ shading = heavy("feederscrew.output.shading")
 tooling_views = heavy("feederscrew.output.tooling_views")
 
 ORIENTATION = re.compile(r"([^@\s]+)@(\d{1,3})")  # 'A@188': an aspect, a heading in whole degrees
+NAMED = re.compile(r"([^@\s]+?)(?:@(\d{1,3}))?")  # the same, or an aspect alone
 WIDTH_PX, HEIGHT_PX = 240, 180
 MOST_FACETS = 20_000  # of a part that is drawn so small
 AHEAD, ASIDE, THICK, WALL = 0.35, 0.25, 0.04, 0.45  # of the part's length: track before it, at its side, wall
@@ -140,7 +141,8 @@ def opening(part: Part, aspects: Aspects, named: Sequence[tuple[str, str]]) -> t
     aspects : Aspects
         Of that part.
     named : sequence of (str, str)
-        Names of orientations, 'A@188', each with what becomes of it; a name that is unknown is left out.
+        Names of orientations, 'A@188', or of aspects, 'A', each with what becomes of it; a name that is
+        unknown is left out. An aspect lies as its posture does, at no heading of its own.
 
     Returns
     -------
@@ -149,10 +151,10 @@ def opening(part: Part, aspects: Aspects, named: Sequence[tuple[str, str]]) -> t
     """
     poses, tracks, captions = list[dict[str, Any]](), list[dict[str, Any]](), []
     for name, words in named:
-        found = ORIENTATION.fullmatch(name)
+        found = NAMED.fullmatch(name)
         if part.vertices is None or found is None or found[1] not in aspects.names:
             continue
-        lying, heading = posture(part, aspects, found[1]), np.radians(float(found[2]))
+        lying, heading = posture(part, aspects, found[1]), np.radians(float(found[2] or 0.0))
         c, s, (x, y, z) = np.cos(heading), np.sin(heading), np.asarray(lying.axes)
         axes = np.array([c * x - s * y, s * x + c * y, z])
         turn = Rotation.from_matrix(axes).as_quat(canonical=True)

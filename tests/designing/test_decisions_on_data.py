@@ -214,10 +214,10 @@ def answer_to(monkeypatch, block):
         robust = RobustRun(20, 12, fault.counted_in_draws(8, 20))
         study = design_study(block.part, robust=robust)
         candidate = SimpleNamespace(
-            proposal=SimpleNamespace(cuts=(wiper,)), orientations=block.ways, bowl=study.bowl, trial=trial,
-            worst=robust.worst, attempt=SimpleNamespace(clean=False),
+            proposal=SimpleNamespace(cuts=(wiper,), row=0), orientations=block.ways, bowl=study.bowl,
+            trial=trial, worst=robust.worst, attempt=SimpleNamespace(clean=False),
         )  # fmt: skip
-        exploring._find_calmer(search, candidate)
+        list(exploring._find_calmer(search, candidate))
         loop._change_by_proof(search, study, candidate)
         return (*moves, nearest._by_motion(study), study.cause, study.status)
 

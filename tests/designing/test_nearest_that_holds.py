@@ -184,7 +184,7 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     monkeypatch.setattr(exploring, "_short", short)
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
     proposal = proposals.Proposal(0, (), (), Move(MoveKind.NO_DEVICE))
-    found = list(exploring._try_and_mend(search, PLAIN, proposal, weights))
+    found = list(exploring._try_and_mend(search, BankedTrack(PLAIN, ways, weights, [0], 1.0), proposal))
     first, second = search.state.attempts
     assert not found and len(search.state.clean) == 1  # clean, slower than 600 a minute
     assert first.cause == "drive" and not first.clean and second.clean and second.cause == ""
@@ -367,7 +367,7 @@ def test_the_cause_is_of_what_was_asked_for_and_of_nothing_that_holds():
         attempts=(back, back, attempt(9.0, (lost("B@0", TURNED_ON_TRACK),), Cause.DRIVE, wanted="B@0")),
     )  # fmt: skip
     assert made.cause == "device" and "B@0" not in made.reasons
-    assert made.shortfalls == ("A@0: A@0 is lost (returned at gap)",)
+    assert made.shortfalls == ("A@0, 2 trials: lost (returned at gap)",)
     assert study(10.0).cause == study(400.0, partial=True).cause == ""
     document = designs.document(study(10.0))
     assert document["cause"] is None and document["nearest"] is None
@@ -420,9 +420,9 @@ def classes(monkeypatch):
         device = make_device("gap", "test", limit=5e-3 + 1e-3 * len(asked), text=f"{5 + len(asked)} mm")
         return proposals.Proposal(row, (), (device,), PROPOSED)
 
-    def tried_out(search, made_bowl, proposal, weights):
+    def tried_out(search, track, proposal):
         search.state.attempts.append(attempt(faults=(carried("B@0"),), cost_class=1))
-        search.state.chains.add(exploring.chain_key(made_bowl.bowl.track, proposal, lying))
+        search.state.chains.add(exploring.chain_key(track.plain_bowl.bowl.track, proposal, lying))
         yield from ()
 
     monkeypatch.setattr(exploring, "_propose", proposed)

@@ -13,7 +13,7 @@ from feederscrew.designing import exploring, policy, proposals
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.policy import USUAL_POLICY, SearchPolicy
 from feederscrew.designing.record import DesignRequest, RobustRun
-from feederscrew.designing.search import Search
+from feederscrew.designing.search import BankedTrack, Search
 
 DESIGNS = Path(__file__).parents[2] / "docs" / "designs.csv"
 
@@ -65,12 +65,20 @@ def test_a_proposal_is_mended_as_often_as_the_policy_says(monkeypatch, block, me
             is_nearly_robust=lambda policy: False,
         )  # fmt: skip
 
+    def as_it_is(search, candidate):
+        yield from ()
+        return candidate
+
+    def none_livelier(search, candidate):
+        yield from ()
+
     monkeypatch.setattr(exploring, "try_proposal", tried)
     monkeypatch.setattr(exploring, "_screen", lambda search, candidate: candidate)
-    monkeypatch.setattr(exploring, "_find_calmer", lambda search, candidate: candidate)
-    monkeypatch.setattr(exploring, "_find_livelier", lambda search, candidate: None)
+    monkeypatch.setattr(exploring, "_find_calmer", as_it_is)
+    monkeypatch.setattr(exploring, "_find_livelier", none_livelier)
     monkeypatch.setattr(proposals, "mend_proposal", lambda proposal, *_: proposal)
     plain = exploring.calm_drive.PlainBowl(search.plain, frozenset())
+    track = BankedTrack(plain, block.ways, None, [0], 1.0)
     proposal = proposals.Proposal(0, (), (), Move(MoveKind.NO_DEVICE))
-    assert not list(exploring._try_and_mend(search, plain, proposal, None))
+    assert not list(exploring._try_and_mend(search, track, proposal))
     assert len(made) == trials

@@ -135,9 +135,7 @@ def test_hanging_is_searched_once_for_each_head_where_steel_is_asked_for(sleeve,
     request = DesignRequest(0.5, outcome=OutcomeKind.HANGING, rule="csa")
     search = Search.begin(sleeve, request, bowls.default())
     searched, lying_rows = [], []
-    monkeypatch.setattr(
-        exploring, "_try_rails", lambda s, b, rails, w: searched.append(rails.row) or iter(())
-    )
+    monkeypatch.setattr(exploring, "_try_rails", lambda s, t, rails: searched.append(rails.row) or iter(()))
     monkeypatch.setattr(exploring, "_propose", lambda s, t, row, recipe: lying_rows.append(recipe.outcome))
     assert not list(exploring.candidates(search, proposals.COST_CLASSES[0]))
     assert len(searched) >= len(search.state.tracks)  # of each bank, and what the static rule proposes

@@ -1,0 +1,203 @@
+"""What to try where a design does not do what was asked: other requests, the likeliest first."""
+
+import enum
+import math
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from feederscrew.bowl.verified import HELD, Status
+from feederscrew.designing.calm_drive import DriveKind
+from feederscrew.designing.findings import Cause
+from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
+from feederscrew.tooling.isolating.chain import OutcomeKind
+from feederscrew.units import MINUTE
+
+MOST_TRIES = 3
+SHARE_OF_TRIAL_RATE = 0.5  # [1] of what a clean short trial promises: queues bring less
+OFTEN_SHARE = 0.05  # [1] of the parts, from which an aspect is worth a design of its own
+MORE_TRIALS = 2  # times the budget, where nothing else is left
+
+
+class TryKind(enum.StrEnum):
+    """What is changed of what was asked; files print the word."""
+
+    PROOF = "proof"  # the same, to the end
+    LOWER_RATE = "lower rate"
+    ANOTHER_SIDE = "another side"
+    ANY_HEADING = "any heading"
+    MORE_DEVICES = "more kinds of devices"
+    ANY_OUTCOME = "lying or hanging"
+    ANY_DIAMETER = "any diameter"
+    ANOTHER_DRIVE = "another drive"
+    MORE_TRIALS = "more trials"
+    CALMER_DRIVE = "calmer drive"
+
+
+class Evidence(enum.StrEnum):
+    """What is known of a request to try; files print the word."""
+
+    HOLDS = "holds"  # its draws and its queues were run
+    CLEAN = "clean in a short trial"
+    UNTRIED = "not tried"
+
+
+@dataclass(frozen=True)
+class NextTry:
+    """A request that differs from the one of a design, and why it is worth a try."""
+
+    kind: TryKind
+    request: DesignRequest
+    evidence: Evidence = Evidence.UNTRIED
+    aspect: str = ""  # that counts then; '' where it is as before
+    share: float | None = None  # [1] of the parts that come on that aspect; None where it is not known
+    trials: int = 0  # short trials in which that aspect was wanted
+    rate: float | None = None  # [1/s] that its trials brought
+    settings: tuple[tuple[str, str], ...] = ()  # keys of the bowl and their values
+
+
+def next_tries(study: DesignStudy) -> tuple[NextTry, ...]:
+    """Return at most ``MOST_TRIES`` requests to try after a design, the likeliest to hold first.
+
+    What was proved to hold comes first, then what was clean in a short trial, what the request itself ruled
+    out, the aspects that were not tried or did best, another drive, and more trials.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    tuple of NextTry
+        Empty of a design that holds.
+    """
+    if study.status in HELD:
+        return ()
+    if study.status is Status.NOT_PROVED:
+        return (NextTry(TryKind.PROOF, replace(study.request, quick=False)),)
+    tries: dict[DesignRequest, NextTry] = {}
+    for one in _ways(study):
+        if one.request != study.request:
+            tries.setdefault(one.request, one)
+    return tuple(tries.values())[:MOST_TRIES]
+
+
+def _ways(study: DesignStudy) -> Iterator[NextTry]:
+    """Every request that may hold, the likeliest first."""
+    request, near = study.request, study.nearest
+    if near is not None and near.rate and near.request is not None:
+        yield _of_nearest(study)
+    yield from _clean_ways(study)
+    if request.without:
+        yield NextTry(TryKind.MORE_DEVICES, replace(request, without=()))
+    own = study.wanted_aspect
+    if own and (request.heading is not None or own in study.aspects_heading_off):
+        yield NextTry(TryKind.ANY_HEADING, _with_aspect(request, own), aspect=own)
+    if request.outcome is not OutcomeKind.ANY:
+        yield NextTry(TryKind.ANY_OUTCOME, replace(request, outcome=OutcomeKind.ANY))
+    if request.diameter is not None:
+        yield NextTry(TryKind.ANY_DIAMETER, replace(request, diameter=None))
+    if request.aspect is not None or request.up:
+        yield NextTry(TryKind.ANOTHER_SIDE, replace(request, aspect=None, heading=None, up=()))
+    sides = _sides(study)
+    yield from sides[:1]
+    if study.cause is Cause.ARRIVAL or study.cause is Cause.DRIVE:  # half the rate takes a calmer drive
+        lower = rounded_down(MINUTE * SHARE_OF_TRIAL_RATE * request.target) / MINUTE
+        yield NextTry(TryKind.LOWER_RATE, replace(request, target=lower))
+    if request.drive is DriveKind.LEAF_SPRING:
+        yield NextTry(TryKind.ANOTHER_DRIVE, replace(request, drive=DriveKind.TWO_AXIS))
+    yield from sides[1:]
+    yield NextTry(TryKind.MORE_TRIALS, replace(request, budget=MORE_TRIALS * request.budget))
+
+
+def _with_aspect(request: DesignRequest, aspect: str) -> DesignRequest:
+    """The request for an aspect at any heading."""
+    return replace(request, aspect=None, heading=None, up=(aspect,))
+
+
+def _of_nearest(study: DesignStudy) -> NextTry:
+    """The request for the nearest that holds, as it was proved."""
+    near, request = study.nearest, study.request
+    if near is None or near.rate is None or near.request is None:
+        raise ValueError("nothing near it holds")
+    other = replace(near.request, target=near.rate, budget=request.budget)
+    aspect = (near.wanted or "").partition("@")[0]
+    if other.up != request.up and other.up:
+        return NextTry(TryKind.ANY_HEADING, other, Evidence.HOLDS, aspect=other.up[-1], rate=near.rate)
+    if (other.aspect, other.up) == (request.aspect, request.up) and other.outcome is request.outcome:
+        return NextTry(TryKind.LOWER_RATE, other, Evidence.HOLDS, rate=near.rate)
+    # another way up than was asked for: it is named, as the same search would find it
+    hangs = not aspect or aspect.startswith("hanging")
+    named = replace(other, outcome=OutcomeKind.HANGING) if hangs else replace(other, aspect=aspect)
+    return NextTry(
+        TryKind.ANOTHER_SIDE, named, Evidence.HOLDS, aspect="" if hangs else aspect, rate=near.rate
+    )
+
+
+def _clean_ways(study: DesignStudy) -> Iterator[NextTry]:
+    """What got through a short trial too slowly, of each aspect at the rate of its fastest trial."""
+    request, fastest = study.request, dict[str, Attempt]()
+    for attempt in study.attempts:
+        if attempt.clean and attempt.rate > fastest.get(attempt.aspect, attempt).rate:
+            fastest[attempt.aspect] = attempt
+        elif attempt.clean:
+            fastest.setdefault(attempt.aspect, attempt)
+    for aspect, attempt in sorted(fastest.items(), key=lambda item: -item[1].rate):
+        lower = rounded_down(MINUTE * SHARE_OF_TRIAL_RATE * attempt.rate) / MINUTE
+        if not 0.0 < lower < request.target:
+            continue
+        own = _with_aspect(request, aspect) if aspect else replace(request, outcome=OutcomeKind.HANGING)
+        same = aspect in (request.aspect, *request.up) or not aspect
+        kind = TryKind.LOWER_RATE if same else TryKind.ANOTHER_SIDE
+        yield NextTry(
+            kind, replace(request if same else own, target=lower), Evidence.CLEAN, aspect=aspect,
+            share=dict(study.arrivals).get(aspect), trials=_trials(study)[aspect], rate=attempt.rate,
+        )  # fmt: skip
+
+
+def _trials(study: DesignStudy) -> Counter[str]:
+    """How often each aspect was wanted in a short trial."""
+    return Counter(attempt.aspect for attempt in study.attempts)
+
+
+def _sides(study: DesignStudy) -> list[NextTry]:
+    """Aspects that come often, each at any heading.
+
+    Those that were not tried come first, then those of which most parts left as wanted in the best of their
+    trials.
+    """
+    request, trials = study.request, _trials(study)
+    named = {name.casefold() for name in (request.aspect or "", *request.up)}
+    often = [(name, share) for name, share in study.arrivals if share >= OFTEN_SHARE]
+
+    def failure(one: tuple[str, float]) -> tuple[bool, float, int, float]:
+        name, share = one
+        best = max((each.efficiency for each in study.attempts if each.aspect == name), default=0.0)
+        return trials[name] > 0, -best / share, trials[name], -share
+
+    order = sorted(often, key=failure)
+    return [
+        NextTry(
+            TryKind.ANOTHER_SIDE, _with_aspect(request, name), aspect=name, share=share, trials=trials[name]
+        )
+        for name, share in order
+        if name.casefold() not in named
+    ]
+
+
+def rounded_down(rate: float) -> float:
+    """Return a rate [1/min] of two digits that is not above another one.
+
+    Parameters
+    ----------
+    rate : float [1/min]
+
+    Returns
+    -------
+    float [1/min]
+        0 of 0.
+    """
+    if not rate > 0.0:
+        return 0.0
+    step = 10.0 ** (math.floor(math.log10(rate)) - 1)
+    return float(f"{math.floor(rate / step + 1e-9) * step:.6g}")

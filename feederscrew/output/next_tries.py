@@ -1,0 +1,91 @@
+"""What to try after a design, as commands to paste, each with its reason."""
+
+from typing import Any
+
+from feederscrew.designing import next_tries as decisions
+from feederscrew.designing.calls import call_of, call_text, call_words
+from feederscrew.designing.next_tries import Evidence, NextTry, TryKind
+from feederscrew.designing.record import DesignStudy
+from feederscrew.units import PER_MINUTE, counted, listed
+
+LABELS = ("try first", "then", "or")  # of the commands, the likeliest first
+
+
+def entries(study: DesignStudy) -> list[dict[str, Any]]:
+    """Return what to try after a design, the likeliest to hold first.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    list of dict
+        Of each ``change`` (what is changed), ``evidence`` (what is known of it), ``why`` (a sentence),
+        ``words`` of the call, and ``command``, the same as one types it.
+    """
+    rows = []
+    call = study.call or call_words(study.request, study.part)
+    for one in decisions.next_tries(study):
+        words = call_of(one.request, study.request, call, one.settings)
+        rows.append(
+            {
+                "change": one.kind.value,
+                "evidence": one.evidence.value,
+                "why": reason(one),
+                "words": list(words),
+                "command": call_text(words),
+            }
+        )
+    return rows
+
+
+def reason(one: NextTry) -> str:
+    """Return why a request is worth a try, as a sentence.
+
+    Parameters
+    ----------
+    one : NextTry
+
+    Returns
+    -------
+    str
+    """
+    rate = "" if one.rate is None else f"{one.rate / PER_MINUTE:.3g}/min"
+    side = f"{one.aspect} up at any heading" if one.aspect else "that way up"
+    match one.kind:
+        case TryKind.PROOF:
+            text = "the same design, proved to its end"
+        case TryKind.LOWER_RATE if one.evidence is Evidence.HOLDS:
+            text = f"{rate} holds: its draws and queues were run"
+        case TryKind.LOWER_RATE if one.evidence is Evidence.CLEAN:
+            text = f"a short trial was clean at {rate}; a queue brings less"
+        case TryKind.LOWER_RATE:
+            text = "a lower rate takes a calmer drive, which turns and loses fewer parts"
+        case TryKind.ANOTHER_SIDE if one.evidence is Evidence.HOLDS:
+            text = f"{one.aspect or 'hanging'} holds at {rate}: its draws and queues were run"
+        case TryKind.ANOTHER_SIDE if one.evidence is Evidence.CLEAN:
+            text = f"{one.aspect} up was clean in a short trial at {rate}; a queue brings less"
+        case TryKind.ANOTHER_SIDE if one.aspect:
+            came = "" if one.share is None else f"{100.0 * one.share:.2g} % of the parts come so"
+            tried = f"tried in {counted(one.trials, 'short trial')}" if one.trials else "not tried yet"
+            text = f"{side}: {'; '.join(filter(None, (came, tried)))}"
+        case TryKind.ANOTHER_SIDE:
+            text = "whichever side delivers most"
+        case TryKind.ANY_HEADING:
+            proved = f", which holds at {rate}" if one.evidence is Evidence.HOLDS else ""
+            text = f"{one.aspect} counts at any heading{proved}"
+        case TryKind.MORE_DEVICES:
+            text = "every kind of device may be used"
+        case TryKind.ANY_OUTCOME:
+            text = "parts may leave lying or hanging"
+        case TryKind.ANY_DIAMETER:
+            text = "the bowl may have any diameter"
+        case TryKind.ANOTHER_DRIVE:
+            text = "a two-axis drive carries parts without throwing them"
+        case TryKind.MORE_TRIALS:
+            text = f"{one.request.budget} short trials"
+        case TryKind.CALMER_DRIVE:
+            keys = listed([f"{key} {text}" for key, text in one.settings])
+            text = f"a calmer drive ({keys})"
+    return text

@@ -1,0 +1,166 @@
+"""A design that does not hold ends in commands to paste: each asks for what it says, the likeliest first."""
+
+import re
+import shlex
+from dataclasses import fields, replace
+from html import unescape
+
+import numpy as np
+import pytest
+import shapes
+from design_counts import design_study, end_at, heading_off, lost, queue
+
+from feederscrew.bowl.verified import Status
+from feederscrew.designing.calls import call_of, call_words
+from feederscrew.designing.findings import Cause, Fault, FaultKind, Move, MoveKind
+from feederscrew.designing.next_tries import Evidence, TryKind, next_tries, rounded_down
+from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, NearestDesign
+from feederscrew.output import design_pages, designs, tables
+from feederscrew.trial.course import Fate
+from feederscrew_cli.design import design as design_command
+
+PART = shapes.part(shapes.box(20, 12, 5))
+ARRIVALS = (("A", 0.6), ("B", 0.3), ("C", 0.08), ("D", 0.02))
+NOTHING = Fault(FaultKind.NOTHING_LEAVES)
+TYPED = ("design", "my part.stl", "--target=60/min", "--set", "drive.frequency=50 Hz", "-o", "out")
+
+
+def attempt(wanted="A@270", rate=0.0, faults=None, **more):
+    ended = (NOTHING, lost(wanted, end_at(Fate.RETURNED, "gap"))) if faults is None else faults
+    made = Attempt(
+        wanted, wanted.partition("@")[0], ("gap: 9 mm",), Move(MoveKind.PROPOSED), 0.0, 0.1, 8,
+        0.0 if ended else 0.4, 1.0, 0.0, rate / 60.0, ended, Cause.DEVICE,
+    )  # fmt: skip
+    return replace(made, **more)
+
+
+def nothing(*attempts, request=None, **more):
+    """A design of which no chain got through its trial."""
+    asked = request or DesignRequest(1.0)
+    made = attempts or (attempt(),) * 4 + (attempt("A@54"), attempt("B@184"))
+    return DesignStudy(PART, asked, None, None, None, attempts=made, **{"arrivals": ARRIVALS} | more)
+
+
+def asked_by(words):
+    """The request that a call of the command asks for, as the command reads it."""
+    assert words[:2] == ["feeder", "design"]
+    params = design_command.make_context("design", words[2:]).params
+    names = {field.name for field in fields(DesignRequest)} & {*params}
+    return DesignRequest(**{name: params[name] for name in names - {"jobs"}})
+
+
+def near(rate=0.25, **request):
+    asked = DesignRequest(1.0, **request)
+    return NearestDesign(rate, "a calmer drive", wanted=request.pop("wanted", "A@0"), request=asked)
+
+
+CASES = {
+    "nothing": nothing(),
+    "typed": nothing(call=TYPED),
+    "one asked for": nothing(request=DesignRequest(1.0, aspect="A", heading=np.radians(54.0))),
+    "ruled out": nothing(
+        request=DesignRequest(0.7, without=("vision reject", "wiper"), diameter=(0.2, 0.4), outcome="lying")
+    ),
+    "clean and slow": nothing(attempt("C", 20.5, ()), attempt()),
+    "holds at less": nothing(nearest=near()),
+    "another way up": nothing(request=DesignRequest(1.0, aspect="A"), nearest=replace(near(), wanted="C@86")),
+    "any heading": nothing(nearest=near(up=("A",))),
+    "hanging": nothing(request=DesignRequest(1.0, aspect="A"), nearest=replace(near(), wanted="hanging")),
+    "stopped": nothing(partial=True, call=TYPED),
+    "impure": design_study(PART, queue(100, 200, left_instead=((heading_off("A"), 100),))),
+}
+
+
+@pytest.mark.parametrize("study", CASES.values(), ids=CASES)
+def test_each_command_asks_for_what_it_says(study):
+    entries, tries = designs.document(study)["next"], next_tries(study)
+    assert 1 <= len(entries) == len(tries) <= 3
+    assert len({entry["command"] for entry in entries}) == len(entries)
+    for entry, one in zip(entries, tries, strict=True):
+        assert shlex.split(entry["command"]) == entry["words"]
+        own = replace(one.request, jobs=1)
+        again = asked_by(entry["words"])
+        for field in fields(DesignRequest):
+            value = getattr(own, field.name)
+            assert getattr(again, field.name) == (
+                pytest.approx(value) if isinstance(value, float) else value
+            ), field.name
+        assert entry["why"] and entry["words"][-2:] == ["-o", "results"]
+
+
+@pytest.mark.parametrize(("name", "kinds"), [
+    # C comes often and was not tried; B once, A five times
+    ("nothing", (TryKind.ANOTHER_SIDE, TryKind.ANOTHER_DRIVE, TryKind.ANOTHER_SIDE)),
+    ("ruled out", (TryKind.MORE_DEVICES, TryKind.ANY_OUTCOME, TryKind.ANY_DIAMETER)),
+    ("clean and slow", (TryKind.ANOTHER_SIDE, TryKind.ANOTHER_SIDE, TryKind.LOWER_RATE)),
+    ("holds at less", (TryKind.LOWER_RATE, TryKind.ANOTHER_SIDE, TryKind.ANOTHER_DRIVE)),
+    ("another way up", (TryKind.ANOTHER_SIDE,) * 3),
+    ("any heading", (TryKind.ANY_HEADING, TryKind.ANOTHER_SIDE, TryKind.ANOTHER_DRIVE)),
+    ("stopped", (TryKind.PROOF,)),
+    ("impure", (TryKind.ANY_HEADING, TryKind.LOWER_RATE, TryKind.ANOTHER_DRIVE)),
+])  # fmt: skip
+def test_the_likeliest_comes_first(name, kinds):
+    assert tuple(one.kind for one in next_tries(CASES[name])) == kinds
+
+
+def test_sides_that_were_tried_least_come_first_and_rare_ones_do_not():
+    first, _, third = next_tries(CASES["nothing"])
+    assert (first.aspect, first.share, first.trials, third.aspect, third.trials) == ("C", 0.08, 0, "B", 1)
+    clean, side, _ = next_tries(CASES["clean and slow"])
+    # half of 20.5 a minute, rounded down to two digits
+    assert (clean.aspect, clean.evidence, 60.0 * clean.request.target) == ("C", Evidence.CLEAN, 10.0)
+    assert side.aspect == "B"
+    # of two sides of which nothing was clean, the one of which more parts left, for its share
+    some = replace(attempt("B@0"), efficiency=0.06), replace(attempt("C@86"), efficiency=0.04)
+    sides = [one.aspect for one in next_tries(nothing(attempt(), *some))]
+    assert sides == ["C", "", "B"]
+    held = next_tries(CASES["another way up"])[0]
+    assert (held.request.aspect, held.request.target, held.evidence) == ("C", 0.25, Evidence.HOLDS)
+    assert next_tries(CASES["hanging"])[0].request.outcome == "hanging"
+    assert [rounded_down(rate) for rate in (20.5, 9.99, 0.0, 123.0)] == [20.0, 9.9, 0.0, 120.0]
+
+
+def test_a_call_keeps_what_was_typed_and_changes_the_rest():
+    asked = DesignRequest(1.0)
+    words = call_of(replace(asked, target=0.5, up=("A", "B")), asked, TYPED)
+    assert words == (
+        "feeder", "design", "my part.stl", "--set", "drive.frequency=50 Hz", "--target", "30/min", "--up",
+        "A,B", "-o", "results",
+    )  # fmt: skip
+    former = ("design", "p.stl", "--budget", "8", "--target", "60/min", "--alternatives", "-oout")
+    words = call_of(replace(asked, budget=32), replace(asked, budget=8, alternatives=True), former)
+    assert words == ("feeder", "design", "p.stl", "--target", "60/min", "--trials", "32", "-o", "results")
+    assert call_words(replace(asked, up=("A",)), PART)[2:] == (
+        "--density", PART.material, "--target", "60/min", "--up", "A",
+    )  # fmt: skip
+
+
+def test_what_holds_has_nothing_to_try():
+    held = design_study(PART, *(queue(fill=fill) for fill in ("low", "normal", "high")))
+    assert held.status is Status.HOLDS and next_tries(held) == ()
+    assert designs.document(held)["next"] == []
+
+
+def test_the_answer_says_each_thing_once_and_ends_in_commands():
+    """The same fault of eight trials of three orientations is three lines; no command is broken."""
+    study = CASES["nothing"]
+    rows = list(zip(*designs.summary(study).values(), strict=True))
+    text = tables.text(designs.summary(study), "table")
+    assert text.count("returned at gap") == 3 and "A@270, 4 trials" in text
+    commands = [value for _, value in rows if str(value).startswith("feeder ")]
+    assert commands == [entry["command"] for entry in designs.document(study)["next"]]
+    assert [name for name, value in rows if value in commands] == ["try first", "then", "or"]
+    assert "0 (95 %" not in text  # no figures of a queue that was not followed
+
+
+def test_the_page_begins_with_the_pose_that_was_wanted_where_it_was_lost_and_what_to_try():
+    study = CASES["nothing"]
+    page = unescape(design_pages.page(study))
+    seen = design_pages.first_seen(study)
+    assert [name for name, _ in seen] == ["A@270", "A@54", "C"]
+    assert "returned at gap" in seen[0][1] and "to try" in seen[2][1]
+    plain = re.sub("<[^>]*>", "", page)
+    places = [plain.index(text) for text in ("A@270, 4 trials: lost", "What to try", "Why it does not hold")]
+    assert places == sorted(places)
+    for entry in designs.document(study)["next"]:
+        assert f"<pre>{entry['command']}</pre>" in page

@@ -1,0 +1,103 @@
+"""Every orientation that comes often is tried once before one of them is tried for the fifth time."""
+
+from collections import Counter
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shapes
+from design_counts import end_at, lost
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import calm_drive, exploring, proposals
+from feederscrew.designing.findings import Cause, Move, MoveKind
+from feederscrew.designing.record import Attempt, DesignRequest
+from feederscrew.designing.search import BankedTrack, Candidate, Search
+from feederscrew.tooling.devices.kinds import make_device
+from feederscrew.trial.course import Fate
+
+PART = shapes.part(shapes.box(20, 12, 5))
+BOWL = bowls.default()
+PLAIN = calm_drive.PlainBowl(BOWL, frozenset())
+# a cap with a pin: six headings of A, then B; C, the pin up, comes last of those that come often
+SHARES = {"A@270": 0.21, "A@125": 0.15, "A@54": 0.12, "A@1": 0.11, "A@180": 0.10, "A@9": 0.10, "B@4": 0.09}
+SHARES |= {"C@86": 0.08, "D@0": 0.04}
+
+
+@pytest.fixture
+def trials(monkeypatch):
+    """A search of which every trial is noted by its orientation, and none is clean but those named."""
+    names, clean = [], {}
+    lying = [SimpleNamespace(name=name, aspect=name[0], returned=False) for name in SHARES]
+    weights = np.array(list(SHARES.values()))
+    ways = SimpleNamespace(lying=lying)
+    search = Search.begin(PART, DesignRequest(1.0, budget=24), BOWL)
+    rows = exploring._rows_to_try(ways, weights, search)
+    search.state.tracks.append(BankedTrack(PLAIN, ways, weights, rows, 1.0))
+    monkeypatch.setattr(exploring.proposals, "propose_no_device", lambda *_: None)
+    monkeypatch.setattr(exploring.hanging, "head_rows", lambda *_: [])
+    monkeypatch.setattr(exploring, "_promise", lambda search, track, row, way: 10.0 * weights[row])
+    monkeypatch.setattr(exploring, "_screen", lambda search, candidate: candidate)
+    monkeypatch.setattr(exploring.short_trials, "lost_by_motion", lambda trial: [])
+    monkeypatch.setattr(exploring.proposals, "lost_at", lambda trial, kind: True)
+
+    def proposal_of(row, kind, value):
+        device = make_device(kind, "test", limit=value, text=f"{1e3 * value:.6g} mm")
+        return proposals.Proposal(row, (), (device,), Move(MoveKind.PROPOSED))
+
+    def proposed(search, track, row, way):
+        # the pin can only be told by a camera
+        if lying[row].aspect == "C" and way.cost_class < 3:
+            return None
+        return proposal_of(row, "gap", 5e-3 + 1e-4 * len(names))
+
+    def tried(search, plain_bowl, proposal, weights, driven=None):
+        name = lying[proposal.row].name
+        names.append(name)
+        search.state.tried[name] += 1
+        rate, cost_class = clean.get(name, (0.0, 1))
+        faults = () if rate else (lost(name, end_at(Fate.RETURNED, "gap", len(names))),)
+        attempt = Attempt(
+            name, name[0], proposal.chain, proposal.move, 0.0, 0.1, 2, 0.3, 1.0, 0.0, rate, faults,
+            Cause.DEVICE, cost_class=cost_class,
+        )  # fmt: skip
+        search.state.attempts.append(attempt)
+        trial = SimpleNamespace(rows=[], ends=(), efficiency=0.3)
+        return Candidate(proposal, BOWL, ways, weights, trial, attempt)
+
+    monkeypatch.setattr(exploring, "_propose", proposed)
+    monkeypatch.setattr(exploring, "try_proposal", tried)
+    monkeypatch.setattr(
+        exploring.proposals,
+        "mend_proposal",
+        lambda proposal, *_: proposal_of(proposal.row, "gap", 0.02 + 1e-3 * len(names)),
+    )
+    return SimpleNamespace(search=search, names=names, clean=clean)
+
+
+def test_no_orientation_has_five_trials_before_each_that_comes_often_has_one(trials):
+    assert not list(exploring.candidates(trials.search, 1))
+    tried, often = Counter(), {name for name, share in SHARES.items() if share >= 0.05}
+    looked_at = often - {"A@9"}  # six rows are proposed, and one of each aspect beside them
+    for name in trials.names:
+        assert tried[name] < 4 or looked_at <= {*tried}, (name, tried)
+        tried[name] += 1
+    assert max(tried.values()) > 4 and tried["C@86"] == 1 and "D@0" not in tried
+
+
+def test_what_is_clean_and_dearer_waits_for_its_class(trials):
+    trials.clean["C@86"] = 2.0, 3
+    assert not [one for one in exploring.candidates(trials.search, 1) if one.attempt.aspect == "C"]
+    assert "C@86" in trials.names
+    trials.search.state.attempts.clear()
+    first = next(exploring.candidates(trials.search, 3))
+    assert first.attempt.wanted == "C@86" and trials.search.state.waiting == []
+
+
+def test_a_wanted_orientation_that_counts_at_any_heading_goes_by_its_aspect(block):
+    row = block.names["A@0"]
+    one = proposals.Proposal(row, (), (), Move(MoveKind.NO_DEVICE))
+    assert one.wanted_name(block.ways) == "A@0"
+    assert replace(one, any_heading=("A",)).wanted_name(block.ways) == "A"
+    assert replace(one, any_heading=("B",)).wanted_name(block.ways) == "A@0"
