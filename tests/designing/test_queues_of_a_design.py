@@ -321,13 +321,16 @@ def test_what_stays_at_a_blade_is_tried_at_a_livelier_drive(monkeypatch, fault, 
     first = SimpleNamespace(
         bowl="calm", proposal=proposal, weights=None, attempt=SimpleNamespace(faults=(fault,)),
         plain_bowl=lambda search: None,
+        orientations=SimpleNamespace(lying=(SimpleNamespace(name="B@0"),)),
     )  # fmt: skip
     clean = SimpleNamespace(attempt=SimpleNamespace(clean=True, rate=2.0))
     search = Search.begin(None, DesignRequest(1.0), BOWL)
     monkeypatch.setattr(loop.exploring, "_screen", lambda search, candidate: candidate)
     monkeypatch.setattr(loop.exploring, "try_proposal", lambda *given: drives.append(given[-1]) or clean)
     monkeypatch.setattr(loop.calm_drive, "find_livelier", lambda made, own: bowls.default())
-    assert loop.exploring._find_livelier(search, first) is (clean if count else None)
+    with pytest.raises(StopIteration) as ended:
+        next(loop.exploring._find_livelier(search, first))
+    assert ended.value.value is (clean if count else None)
     assert len(drives) == len(search.state.clean) == count
 
 
