@@ -13,7 +13,10 @@ from shapely import affinity
 from feederscrew.bowl.reading import effective, record
 from feederscrew.bowl.record import Track
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl import facets
+from feederscrew.solidbowl import section as printed
+from feederscrew.solidbowl.closed_body import body, pieces
+from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
 from feederscrew.tooling.devices.kinds import KINDS, make_device
 from feederscrew.tooling.orientations import orientations
@@ -22,6 +25,7 @@ from feederscrew.trial import staging
 
 NEAR = 2e-5  # [m] within which edges agree
 BESIDE = 2e-3  # [m] of bare track to either side of a device that is compared
+WALL_HEIGHT = 4e-3  # [m] over the track, where the wall is met
 BORDER = 3e-5  # [m] beside the wall that is not compared: there a seam may be left
 SIZE = (20.0, 12.0, 5.0)  # [mm] of the part
 RULES = record(effective({})).sizing
@@ -142,8 +146,10 @@ def differences(seed, radius, consumers):
     track, every, chain, tooled = drawn(seed, radius)
     flat = bowl_of(tooled, every) if "bowl" in consumers else None
     assert [placed.device for placed in tooled.devices] == chain
+    slopes = []
     for number, placed in enumerate(tooled.devices):
         device, features = placed.device, placed.features
+        slopes += [(float(len(slopes)), one.climb, one.bank, one.wall) for one in features.slopes]
         tried = views.trial(staging.stage_device(device, track, every), 0.0, track)
         seen = {}
         if "print" in consumers:
@@ -162,6 +168,12 @@ def differences(seed, radius, consumers):
             ends = ends[0], features.drop.length
         rest = shapely.box(ends[0], BORDER, ends[1], track.width - BORDER)
         for name, view in seen.items():
+            if name != "drawing" and not features.slopes and placed.level == 0.0:
+                # where the wall stands over the track, as the trial leans it
+                *_, out, up = staging.tabulate_leans(slopes, track.climb, track.bank, SIZE[0] * MM, 1.0)[-1]
+                foot = shapely.box(-1.1e-3, -WALL_HEIGHT, -0.9e-3, WALL_HEIGHT)
+                face = view.over(WALL_HEIGHT).intersection(foot).bounds[3]
+                yield device.kind, name, "wall", abs(face - WALL_HEIGHT * out / up)
             yield device.kind, name, "floor", apart(tried.floor(0.0), view.floor(0.0), rest)
             if features.drop is not None:
                 drop, far = features.drop, features.drop.length or 4.0 * BESIDE
@@ -243,3 +255,27 @@ def test_a_chain_is_the_same_in_trial_print_bowl_and_drawing(seed):
     found = list(differences(seed, 0.15, {"print": None, "bowl": None, "drawing": None}))
     wrong = [(*names, f"{1e3 * size:.3f} mm") for *names, size in found if size > NEAR]
     assert not wrong
+
+
+@pytest.mark.needs("OCP")
+@pytest.mark.parametrize("seed", [2, 6, 7])
+def test_rays_meet_the_step_file_where_they_meet_the_print(seed):
+    *_, tooled = drawn(seed, 0.15)
+    exact, flat = (printed.section_body(tooled, kit) for kit in (exact_body, facets))
+    rng, radius, met = np.random.default_rng(seed), tooled.track.radius, 0
+    for s, y in zip(rng.uniform(2e-3, tooled.length - 2e-3, 60), rng.uniform(1e-4, tooled.width - 1e-4, 60)):
+        off = radius - y
+        above = np.array([off * np.sin(s / radius), radius - off * np.cos(s / radius), 0.05])
+        one, other = facets.below(flat, above), exact_body.below(exact, above / MM)
+        met += one is not None
+        assert (one is None) == (other is None)
+        assert one is None or abs(one - other * MM) <= NEAR
+    assert met > 20
+
+
+@pytest.mark.needs("OCP")
+def test_the_exact_bowl_has_the_volume_of_its_facets():
+    _, every, _, tooled = drawn(7, 0.15)
+    planned, _ = bowl_of(tooled, every)
+    exact, flat = (pieces(planned, kit)[0] for kit in (exact_body, facets))
+    assert exact_body.volume(exact) == pytest.approx(flat.volume(), rel=1e-3)
