@@ -22,11 +22,12 @@ from feederscrew.errors import FeederError
 from feederscrew.output import solid_files
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.solidbowl import cuts, facets, measuring, riding
+from feederscrew.solidbowl import facets, measuring, riding
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import ways_down
 from feederscrew.solidbowl.plan import MATERIAL_NAMES, SolidOptions, material, plan
 from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.tooled_track import lay_out
 from feederscrew.trial import course
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solidbowl"))
@@ -110,8 +111,8 @@ def _chain(rng, size, width, ridden):
 def made(one):
     """The solid of a drawn bowl, its orientations, and the bowl with the bank of its entry."""
     every = orientations(one.part, find(one.part), one.bowl.track)
-    track = cuts.banked_height(one.bowl.track, one.bowl.devices, every)
-    tooled = cuts.stretch(track, one.bowl.devices, every) if one.bowl.devices else None
+    tooled = lay_out(one.bowl.track, one.bowl.devices, every) if one.bowl.devices else None
+    track = one.bowl.track if tooled is None else tooled.track
     depth = one.turns * 2.0 * np.pi * track.radius * np.tan(track.climb)
     size = SimpleNamespace(diameter=2.0 * track.radius, depth=depth)
     planned = plan(size, track, material(one.asked.material, one.bowl.sizing), tooled, one.asked,

@@ -26,9 +26,9 @@ from feederscrew.output.tooling_drawing import EDGES, View
 from feederscrew.solidbowl import facets, segments, track
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.measuring import Measures, measures
-from feederscrew.solidbowl.plan import DOME, BowlPlan, Stretch, TrackPath
+from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
 from feederscrew.studies.bowl import MachineSheet, Order
-from feederscrew.tooling.track_sections import Station, extend_slot
+from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack
 from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
@@ -201,13 +201,13 @@ def _draw_side_views(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale:
     text = f"wall {sizes.wall / MM:.3g}, floor {sizes.floor / MM:.3g} at {DOME / DEG:.3g}°, track {plate:.3g}"
     text += f"; outlet {far:.4g} over the floor's edge"
     # a yoke of the inner rail, where A-A cuts the rails
-    plan, rails = solid.plan, _hanging_station(solid.plan)
+    plan, rails = solid.plan, _first_rails(solid.plan)
     angle = (plan.turned if plan.left else -plan.turned) % (2.0 * np.pi)
     s = float(plan.path.at(angle - 2.0 * np.pi if angle > 1e-9 else 0.0))
-    if rails is not None and rails.hole is not None and s >= plan.first + float(rails.hole[:, 0].min()):
+    if rails is not None and s >= plan.first + rails.span[0]:
         outer, top = float(plan.path.wall_radius(s)), float(plan.path.height(s)) - plan.material.plate
         deep, foot = top - plan.hanging, top - plan.hanging - track.YOKE
-        near, far_edge = (outer - edge for edge in rails.device.span)
+        near, far_edge = (outer - edge for edge in rails.features.slot)
         inner = outer - plan.width
         yoke = [
             (outer, top), (outer, foot), (inner, foot), (inner, top), (far_edge, top), (far_edge, deep),
@@ -237,10 +237,10 @@ def _draw_side_views(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale:
     drawing.text(335.0, 281.0, "not to scale", 2.2)
 
 
-def _hanging_station(plan: BowlPlan) -> Station | None:
-    """The station of the rails that parts hang between, or None."""
-    stations = plan.stretch.stations if plan.stretch is not None else ()
-    return next((station for station in stations if station.device.hangs and station.hole is not None), None)
+def _first_rails(plan: BowlPlan) -> PlacedDevice | None:
+    """The first rails that parts hang between, or None."""
+    devices = plan.stretch.devices if plan.stretch is not None else ()
+    return next((placed for placed in devices if placed.features.hangs), None)
 
 
 def _draw_springs(drawing: Drawing, bowl: Bowl, outlet: float) -> None:
@@ -424,11 +424,11 @@ def _stretches(path: TrackPath) -> Iterator[tuple[tuple[float, float], float]]:
 
 
 def _draw_devices(
-    drawing: Drawing, plan: BowlPlan, stretch: Stretch, part: str, fields: SheetFields | None, sheet: str
+    drawing: Drawing, plan: BowlPlan, stretch: TooledTrack, part: str, fields: SheetFields | None, sheet: str
 ) -> None:
     """Sheet 2: the tooled stretch unrolled, seen from above, with its dimensions and the list of devices."""
     length = stretch.length
-    if _hanging_station(plan) is not None:  # with the outlet
+    if _first_rails(plan) is not None:  # with the outlet
         to_end = length + plan.path.end - plan.first - length + plan.outlet
         length = min(to_end, 2.0 * length)
     scale = min(_scale(length / MM, 330.0), _scale(plan.width / MM, 45.0))
@@ -437,28 +437,22 @@ def _draw_devices(
     view = View((45.0, 215.0 - plan.width / MM * scale), scale, length)
     drawing.outline(view.placed([(0, 0), (length, 0), (length, plan.width), (0, plan.width)]), "TRACK")
     drawing.outline(view.placed([(0, -2e-3), (length, -2e-3), (length, -1e-9), (0, -1e-9)]), "WALL")
-    holes, stations = iter(stretch.cuts), []
-    last = max((cut.span[1] for cut in stretch.cuts if cut.hangs), default=np.inf)  # open at the outlet
-    for station in stretch.stations:
-        if station.edge is not None:
-            drawing.outline(view.placed(station.edge), station.device.layer)
-        elif station.hole is not None:
-            ring = np.array(next(holes).ring)
-            ring = extend_slot(ring, length) if ring[:, 0].max() >= last - 1e-9 else ring
-            ring[:, 1] = np.clip(ring[:, 1], 0.0, plan.width)
+    opened = stretch.opened_to(length)
+    for placed in opened.devices:
+        for layer, ring in tooling_drawing.edges(placed, plan.width):
+            drawing.outline(view.placed(ring), layer)
+        for opening in placed.openings:
+            ring = np.clip(opening.ring, [-np.inf, 0.0], [np.inf, plan.width])
             drawing.outline(view.placed(ring), "CUT")
-        if station.blade is not None:
-            drawing.outline(view.placed(station.blade), "GATE")
-        if station.hole is not None and station.hole[:, 0].max() >= last - 1e-9:
-            station = replace(station, hole=extend_slot(station.hole, length))
-        stations.append(station)
-    tooling_drawing.dimension_devices(drawing, stations, view, plan.width)
+        for ring in placed.footprints:
+            drawing.outline(view.placed(ring), "GATE")
+    tooling_drawing.dimension_devices(drawing, opened.devices, view, plan.width)
     drawing.length(view.placed([length, 0]), view.placed([length, plan.width]), (27.0, 0.0), scale)
-    tooling_drawing.draw_wall_bores(drawing, stations, view, 240.0)
+    tooling_drawing.draw_wall_bores(drawing, opened.devices, view, 240.0)
     behind = (plan.path.end - plan.first) / MM
     words = f"track unrolled: wall below, parts move to the right; D lies {behind:.5g} mm along the wall, "
     _draw_head(drawing, 25.0, 281.0, f"{words}{_angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
-    rows = tooling_drawing.device_rows(stretch.stations, lambda s: _angle_from_outlet(plan, s))
+    rows = tooling_drawing.device_rows(stretch.devices, plan.width, lambda s: _angle_from_outlet(plan, s))
     rows[0][4:6] = ["from [°] *", "to [°] *"]
     # changes of the track that are no device
     below = {ledge.start for ledge in stretch.ledges}
@@ -466,11 +460,11 @@ def _draw_devices(
     for ledge in stretch.ledges:
         level = f"ledge {ledge.width / MM:.4g} wide, track {ledge.drop / MM:.4g} lower"
         changes.append((f"{level}; to {ledge.end / MM:.5g} level", ledge.start, ledge.end + ledge.ramp))
-    for start, end, bank in stretch.leans:
+    for start, end, bank in stretch.banks:
         changes.append((f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
-    for start, end, lean, _ in stretch.grooves:
-        words = f"groove: the wall leans back by {np.degrees(lean):.3g}°"
-        changes.append((words, max(start, 0.0), end))
+    for groove in stretch.grooves:
+        words = f"groove: the wall leans back by {np.degrees(groove.lean):.3g}°"
+        changes.append((words, max(groove.start, 0.0), groove.end))
     for words, start, stop in changes:
         angles = [f"{_angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])

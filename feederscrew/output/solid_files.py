@@ -10,9 +10,9 @@ import numpy as np
 from feederscrew.arrays import Floats, Points, Triangles
 from feederscrew.output import marking
 from feederscrew.solidbowl.closed_body import BowlSolid
+from feederscrew.solidbowl.section import triangles
 from feederscrew.solidbowl.segments import Segment
-from feederscrew.tooling.solid import triangles
-from feederscrew.tooling.track_sections import TrackSection
+from feederscrew.tooling.tooled_track import TooledTrack
 from feederscrew.units import MM
 
 TYPES = (
@@ -40,8 +40,8 @@ def bowl_stl(solid: BowlSolid | Segment, mark: str = "") -> bytes:
     return binary_stl(solid.vertices[solid.faces], "feeder bowl: the bowl as a solid, in mm", mark)
 
 
-def section_stl(strip: TrackSection, mark: str = "") -> bytes:
-    """Return a bent TrackSection as binary STL in mm: wall tangent to X at the origin, track in Z = 0."""
+def section_stl(strip: TooledTrack, mark: str = "") -> bytes:
+    """Return a bent TooledTrack as binary STL in mm: wall tangent to X at the origin, track in Z = 0."""
     return binary_stl(triangles(strip), "feeder tooling: track section in mm", mark)
 
 

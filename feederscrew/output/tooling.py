@@ -19,7 +19,7 @@ from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating.chain import LEAST_SHARE, Design, in_mm
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.track_sections import TrackSection, build_section
+from feederscrew.tooling.tooled_track import TooledTrack, lay_out
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
@@ -338,8 +338,8 @@ def offers(
         files += [drawn, offer.text("tooling.yaml", bowl_file, study, settings)]
         return marking.pictures(files, NOT_PROVED.upper())
 
-    def section() -> TrackSection:
-        return build_section(study.bowl.track, devices, study.orientations)
+    def section() -> TooledTrack:
+        return lay_out(study.bowl.track, devices, study.orientations)
 
     files += [
         offer.picture("tooling.png", what, lambda: tooling_figures.chain(*chain)),
@@ -372,20 +372,20 @@ def solid_picture(
 
 
 def _draw_section(
-    kind: str, study: ToolingStudy, section: Callable[[], TrackSection], mark: str,
+    kind: str, study: ToolingStudy, section: Callable[[], TooledTrack], mark: str,
     fields: marking.SheetFields | None,
 ) -> str | bytes:  # fmt: skip
     """The drawing as 'dxf' or 'svg', with the outline of the part before the devices and at each."""
     strip, wanted = section(), study.orientations[_asked_for(study)[1]]
     outline = np.add(wanted.outline, [0.0, wanted.distance])
-    places = [station.start + 0.5 * station.length for station in strip.stations if station.hole is None]
+    places = [placed.start + 0.5 * placed.length for placed in strip.devices if not placed.openings]
     ghosts = [(outline, place) for place in (0.6 * wanted.length, *places)]
     titles = [("tooling for", study.part.name), ("leaves as", study.leaves_as)]
     look = {"thickness": study.bowl.sizing.sheet, "fields": fields, "titles": titles}
     return getattr(tooling_drawing, kind)(strip, ghosts, mark, **look)
 
 
-def _step(section: Callable[[], TrackSection], mark: str) -> bytes:
+def _step(section: Callable[[], TooledTrack], mark: str) -> bytes:
     from feederscrew.solidbowl.exact import exact_file
 
     return marking.mark_step(exact_file.section_file(section()), mark)

@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike
 from feederscrew.arrays import Floats
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
+from feederscrew.tooling.devices.features import box_ring
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
-from feederscrew.tooling.track_sections import Station, TrackSection
+from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack, bend_ring
 from feederscrew.units import DEG, MM
 
 VIEW_GAP_MM = 20.0  # [mm] between the views
@@ -41,6 +42,7 @@ DEVICE_PENS = {  # of the layers of devices
 }
 TEXT_GAP = 4.2  # [mm] of paper between two numbers
 NUMBERS = 11.0  # [mm] of paper from the wall to the numbers along it
+DRAWN_LINE_M = 2e-4  # [m] the width with which a line along or across the track is drawn
 CROSS = 2.0  # [mm] of paper: half of a sensor's cross
 DEVICE_LIST_COLUMNS_MM = 9.0, 56.0, 21.0, 19.0, 20.0, 17.0, 160.0  # [mm] of the list of devices
 LINE_LETTERS = 92  # of a line in the last column
@@ -73,10 +75,10 @@ def svg(*drawn: Any, **sheet: Any) -> str:
 
 
 def draw(
-    strip: TrackSection, ghosts: Sequence = (), mark: str = "", *, thickness: float | None = None,
+    strip: TooledTrack, ghosts: Sequence = (), mark: str = "", *, thickness: float | None = None,
     fields: marking.SheetFields | None = None, titles: Sequence[tuple[str, str]] = (),
 ) -> tuple[Drawing, Floats, Floats]:  # fmt: skip
-    """Draw a TrackSection 1:1: unrolled with dimensions, list of devices, as bent, openings of gates.
+    """Draw a TooledTrack 1:1: unrolled with dimensions, list of devices, as bent, openings of gates.
 
     ``ghosts`` are outlines (K, 2) [m] of parts from the wall, each with its place [m] along it. ``mark``
     stands across the drawing and among its notes, ``thickness`` [m] is that of the track's sheet,
@@ -92,15 +94,15 @@ def draw(
         drawing.outline(view.placed(ring), name)
     for ring, place in ghosts:
         drawing.outline(view.placed(np.add(ring, [place, 0.0])), "GHOST")
-    dimension_devices(drawing, strip.stations, view, strip.width)
-    top = draw_wall_bores(drawing, strip.stations, view, width + 28.0)
+    dimension_devices(drawing, strip.devices, view, strip.width)
+    top = draw_wall_bores(drawing, strip.devices, view, width + 28.0)
     low = -DRAWN_WALL_M / MM - NUMBERS - 20.0
     sheet = "" if thickness is None else f"; track of sheet {thickness / MM:.4g} mm"
     place = "unrolled: wall below, parts move to the right; from the datum D, the begin of the stretch"
     for line in (f"{place}{sheet}", SHOP, *([mark] if mark else [])):
         drawing.text(0.0, low, line, 3.0)
         low -= 5.0
-    rows = device_rows(strip.stations, lambda s: s / strip.track.radius / DEG)
+    rows = device_rows(strip.devices, strip.width, lambda s: s / strip.track.radius / DEG)
     low = drawing.table(0.0, low, DEVICE_LIST_COLUMNS_MM, rows)
     right = max(length, sum(DEVICE_LIST_COLUMNS_MM), _openings(drawing, strip))
     names = [*titles, ("scale", "1:1"), ("sizes", "mm"), *title_fields(fields)]
@@ -109,14 +111,14 @@ def draw(
     top += 6.0 + 5.0 * len(names)
     # the stretch as it lies in the bowl, below the list
     radius = strip.track.radius / MM
-    rings = [(f"BENT_{name}", strip.bent(ring)) for name, ring in plan]
-    rings += [("BENT_GHOST", strip.outline_in_bowl(*ghost)) for ghost in ghosts]
+    rings = [(f"BENT_{name}", bend_ring(ring, strip.track.radius)) for name, ring in plan]
+    rings += [("BENT_GHOST", _outline_in_bowl(ring, place, strip.track.radius)) for ring, place in ghosts]
     highest = max(float(ring[:, 1].max()) for _, ring in rings) / MM
     shift = np.array([0.0, low - VIEW_GAP_MM - highest])
     for name, ring in rings:
         drawing.outline(ring / MM + shift, name)
     middle, out = np.array([0.0, radius]) + shift, radius + 12.0
-    starts = [_device_span(station)[0] / strip.track.radius / DEG for station in strip.stations]
+    starts = [placed.span[0] / strip.track.radius / DEG for placed in strip.devices]
     for k, start in enumerate(sorted(set(starts))):
         drawing.angle(middle, out + 6.0 * k, -90.0, -90.0 + start)
     low = float(middle[1]) - out - 6.0 * len(starts) - 8.0
@@ -134,32 +136,33 @@ def title_fields(fields: marking.SheetFields | None) -> list[tuple[str, str]]:
     return [("projection", views), ("date", fields.date), ("rev", fields.revision)]
 
 
-def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View, width: float) -> None:
+def dimension_devices(drawing: Drawing, devices: Sequence[PlacedDevice], view: View, width: float) -> None:
     """Dimension the devices of an unrolled stretch of a track of a width [m], from the wall and from D."""
     along: list[float] = []
-    for number, station in enumerate(stations, start=1):
+    for number, placed in enumerate(devices, start=1):
         # the lengths along the wall [m] that a device is made by, from the datum
-        standing, start = station.standing, station.start
-        lengths = [start + jet.at[0] for jet in standing.jets[:1]]
-        if standing.sensor is not None:
-            lengths.insert(0, start + standing.sensor.at)
-        if station.hole is not None:
-            lengths += [float(x) for x in np.unique(np.round(_cut_corners(station.hole)[:, 0], 9))]
-            if station.device.hangs:
-                lengths = [x for x in lengths if x < min(float(station.hole[:, 0].max()), view.right) - 1e-9]
-        if station.blade is not None:
-            lengths.append(float(station.blade[0, 0]))
-        lengths += [start + slope.begin for slope in standing.slopes]
-        if station.drop > 0.0:
-            lengths.append(start + 0.5 * station.length)
-        places = sorted(lengths) or [start]
+        features, origin = placed.features, placed.begin
+        lengths = [origin + jet.at[0] for jet in features.jets[:1]]
+        if features.sensor is not None:
+            lengths.insert(0, origin + features.sensor.at)
+        for opening in placed.openings:
+            corners = [float(x) for x in np.unique(np.round(_cut_corners(opening.ring)[:, 0], 9))]
+            far = min(opening.end, view.right) - 1e-9 if opening.hangs else np.inf
+            lengths += [x for x in corners if x < far]
+        lengths += [float(ring[0, 0]) for ring in placed.footprints]
+        lengths += [origin + slope.begin for slope in features.slopes]
+        if features.drop is not None:
+            lengths.append(origin)
+        places = sorted(lengths) or [placed.start]
         along += [place for place in places if place <= view.right]
         name = view.placed([places[0], width]) + [0.5, 13.0 + 4.0 * (number % 2 == 0)]
-        drawing.text(float(name[0]), float(name[1]), f"{number}  {station.device.kind}", 2.5)
-        if station.hole is not None:
-            _dimension_cut(drawing, station.hole, view, width)
-        if station.standing.sensor is not None:
-            middle = view.placed([station.start + station.standing.sensor.at, 0.5 * width])
+        drawing.text(float(name[0]), float(name[1]), f"{number}  {placed.device.kind}", 2.5)
+        for opening in placed.openings:
+            _dimension_cut(drawing, opening.ring, view, width)
+        if features.drop is not None and features.drop.aside > 0.0:
+            _dimension_cut(drawing, ledge_ring(placed, width), view, width)
+        if features.sensor is not None:
+            middle = view.placed([origin + features.sensor.at, 0.5 * width])
             arms = np.array([[-CROSS, 0.0], [CROSS, 0.0], [0.0, -CROSS], [0.0, CROSS]])
             drawing.lines([middle + arms[:2], middle + arms[2:]], "SENSOR")
     wanted = np.unique(np.round(along, 8))
@@ -218,10 +221,10 @@ def _dimension_cut(drawing: Drawing, hole: Floats, view: View, width: float) -> 
         drawing.length(ends[0], ends[1], (0.0, above + row - ends[0][1]), view.scale)
 
 
-def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, low: float) -> float:
+def draw_wall_bores(drawing: Drawing, devices: Sequence[PlacedDevice], view: View, low: float) -> float:
     """Draw holes of nozzles in the wall, seen from the bowl's axis, on a track [mm]; return the top [mm]."""
-    jets = [(station.start, jet) for station in stations for jet in station.standing.jets]
-    bores = [(start + jet.at[0], jet.at[2], jet.radius) for start, jet in jets]
+    jets = [(placed.begin, jet) for placed in devices for jet in placed.features.jets]
+    bores = [(begin + jet.at[0], jet.at[2], jet.radius) for begin, jet in jets]
     if not bores:
         return low - 10.0
     along = View((view.at[0], low), view.scale)
@@ -247,70 +250,119 @@ def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, l
     return title + 4.0
 
 
-def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) -> list[list[str]]:
-    """Return the list of devices, head first; ``angle`` gives the angle [deg] of a length [m] from D."""
+def device_rows(
+    devices: Sequence[PlacedDevice], width: float, angle: Callable[[float], float]
+) -> list[list[str]]:
+    """Return the list of devices on a track of a width [m], head first, as rows of texts.
+
+    ``angle`` gives the angle [deg] of a length [m] from D. What the shop must do to a cut stands below its
+    value.
+    """
     rows = [["no.", "device", "from [mm]", "to [mm]", "from [°]", "to [°]", "value; what is bought and set"]]
-    for number, station in enumerate(stations, start=1):
-        device, (start, end) = station.device, _device_span(station)
+    for number, placed in enumerate(devices, start=1):
+        device, (start, end) = placed.device, placed.span
         words = device.value_words
         if lead := getattr(device, "lead", ()):
             wide, narrow = ((far - near) / MM for near, far in (lead[:2], device.span))
             long, taper = (size / MM for size in lead[2:])
             words += f": {wide:.5g} mm wide for {long:.5g} mm, then over {taper:.5g} mm to {narrow:.5g} mm"
         listed = [f"{words}{': quasi-static, until a trial confirms it' * device.turns}", *device.shop_words]
-        if station.standing.sensor is not None and station.edge is not None:
-            long, wide = np.ptp(station.edge, axis=0) / MM
-            listed[1] += f", at the cross; window {long:.4g} x {wide:.4g} mm"
+        if placed.features.sensor is not None:
+            listed[1] += f", at the cross; window {placed.length / MM:.4g} x {width / MM:.4g} mm"
+        listed += placed.shop_work(width)
         lines = [line for words in listed for line in textwrap.wrap(words, LINE_LETTERS) or [""]]
-        far = ["outlet", "outlet"] if device.hangs else [f"{end / MM:.5g}", f"{angle(end):.4g}"]
+        opened = any(opening.hangs and not opening.runs_on for opening in placed.openings)
+        far = ["outlet", "outlet"] if opened else [f"{end / MM:.5g}", f"{angle(end):.4g}"]
         near = [str(number), device.full_name[:36], f"{start / MM:.5g}"]
         rows.append([*near, far[0], f"{angle(start):.4g}", far[1], lines[0]])
         rows += [["", "", "", "", "", "", line] for line in lines[1:]]
     return rows
 
 
-def _device_span(station: Station) -> tuple[float, float]:
-    """Return where a device begins and ends [m], from the datum: a cut at its corners."""
-    ring = station.blade if station.hole is None else station.hole
-    if ring is None:
-        return station.start, station.start + station.length
-    return float(ring[:, 0].min()), float(ring[:, 0].max())
+def edges(placed: PlacedDevice, width: float) -> list[tuple[str, Floats]]:
+    """Return lines and fields (4, 2) [m] that show what of a device is neither cut nor blade, by layer.
+
+    Parameters
+    ----------
+    placed : PlacedDevice
+    width : float [m]
+        Of the track.
+
+    Returns
+    -------
+    list of (str, array)
+        Edges of steps and ledges, places where the track leans otherwise, beams of air, fields of sensors.
+    """
+    features, begin = placed.features, placed.begin
+    drawn = [
+        ("SLOPE", box_ring(begin + slope.begin, begin + slope.begin + DRAWN_LINE_M, 0.0, width))
+        for slope in features.slopes
+    ]
+    if features.drop is not None:
+        drop = features.drop
+        ring = box_ring(begin, begin + DRAWN_LINE_M, 0.0, width)
+        if drop.aside > 0.0:
+            ring = box_ring(begin, begin + drop.length, drop.aside, drop.aside + DRAWN_LINE_M)
+        drawn.append(("LEDGE" if drop.aside > 0.0 else "STEP", ring))
+    if features.sensor is not None:
+        return [*drawn, ("SENSOR", box_ring(placed.start, placed.end, 0.0, width))]
+    for jet in features.jets:
+        middle, near = begin + jet.at[0], jet.radius
+        far = near + jet.spread * width
+        corners = [(middle - near, 0.0), (middle + near, 0.0), (middle + far, width), (middle - far, width)]
+        drawn.append(("NOZZLE", np.array(corners)))
+    return drawn
 
 
-def _plan(strip: TrackSection) -> dict[str, list[Floats]]:
+def ledge_ring(placed: PlacedDevice, width: float) -> Floats:
+    """Return what is missing of the upper track beside a ledge (4, 2) [m], as it is made."""
+    drop = placed.features.drop
+    if drop is None:
+        return np.empty((0, 2))
+    return box_ring(placed.begin, placed.begin + drop.length, drop.aside, width)
+
+
+def _outline_in_bowl(outline: Floats, place: float, radius: float) -> Floats:
+    """An outline (K, 2) [m] from the wall as it lies in the bowl at a length along it."""
+    c, s = np.cos(place / radius), np.sin(place / radius)
+    x, up = outline[:, 0], radius - outline[:, 1]
+    return np.column_stack([c * x + s * up, radius + s * x - c * up])
+
+
+def _plan(strip: TooledTrack) -> dict[str, list[Floats]]:
     length, width = strip.length, strip.width
     layers = {
         name: [np.array([[0.0, low], [length, low], [length, high], [0.0, high]])]
         for name, low, high in (("TRACK", 0.0, width), ("WALL", -DRAWN_WALL_M, -1e-9))
     }
-    for station in strip.stations:
-        if station.edge is not None:
-            layers.setdefault(station.device.layer, []).append(station.edge)
-    cuts = [station.hole for station in strip.stations if station.hole is not None and station.edge is None]
-    layers |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
-    blades = [station.blade for station in strip.stations if station.blade is not None]
+    for placed in strip.devices:
+        for layer, ring in edges(placed, width):
+            layers.setdefault(layer, []).append(ring)
+    layers |= {_numbered("CUT", k): [opening.ring] for k, (_, opening) in enumerate(strip.openings)}
+    blades = [ring for placed in strip.devices for ring in placed.footprints]
     return layers | ({"GATE": blades} if blades else {})
 
 
-def _openings(drawing: Drawing, strip: TrackSection) -> float:
+def _openings(drawing: Drawing, strip: TooledTrack) -> float:
     """Draw the openings of gates to the right of the track, each on its own layer; return their right end."""
     right, count = strip.length / MM + VIEW_GAP_MM + 15.0, 0
-    for station in strip.stations:
-        if not station.openings:
+    for placed in strip.devices:
+        openings = [ring for blade in placed.features.blades for ring in blade.opening()]
+        if not openings:
             continue
         name, widest = _numbered("OPENING", count), right
-        for ring in station.openings:
+        for ring in openings:
             corners = ring / MM + [right, 0.0]
             drawing.outline(corners, name)
             widest = max(widest, float(corners[:, 0].max()))
-        inner = np.vstack(station.openings) / MM
+        inner = np.vstack(openings) / MM
         heights = [float(z) for z in np.unique(np.round(inner[:, 1], 6)) if z > 1e-6][:8]
         for z, end in zip(heights, spread(heights, TEXT_GAP)):
             drawing.ordinate((right, z), (right - 9.0, end), (right, 0.0), True)
         places = [float(y) for y in np.unique(np.round(inner[:, 0], 6)) if y > 1e-6][:8]
         for y, end in zip(places, spread([right + y for y in places], TEXT_GAP)):
             drawing.ordinate((right + y, 0.0), (end, -NUMBERS), (right, 0.0), False)
-        drawing.text(right, -NUMBERS - 6.0, f"opening of the {station.device.kind}", 2.5)
+        drawing.text(right, -NUMBERS - 6.0, f"opening of the {placed.device.kind}", 2.5)
         right, count = widest + VIEW_GAP_MM + 15.0, count + 1
     return right - VIEW_GAP_MM
 

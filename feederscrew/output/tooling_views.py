@@ -15,11 +15,13 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera, Mesh
 from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, margin_words
-from feederscrew.tooling import solid, track_sections
+from feederscrew.solidbowl import section as printed
+from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating.chain import LEAST_SHARE
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.track_sections import Passage, Station, TrackSection, build_section
+from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack, lay_out
+from feederscrew.tooling.track_sections import Passage
 
 VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of two lines over it
 CAPTION_LINE_PX = 24
@@ -82,12 +84,12 @@ def _views(
 
 
 def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation], colour: str) -> None:
-    section = station_of(passage, orientations)
-    station, radius = section.stations[0], section.track.radius
-    corners, faces = part_on_section(passage, station), passage.orientation.posture.facets
-    angle = passage.angle(station)
+    section = section_of(passage, orientations)
+    placed, radius = section.devices[0], section.track.radius
+    corners, faces = part_on_section(passage, placed), passage.orientation.posture.facets
+    angle = passage.angle(placed)
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    track, part = solid.solid(section), (corners, faces)
+    track, part = printed.solid(section), (corners, faces)
     half = 0.80 * np.ptp(corners, axis=0).max()
     (camera,) = clearest([track], [part], [centre], [angle], half)
     extent = VIEW_WIDTH_PX, VIEW_HEIGHT_PX
@@ -106,7 +108,7 @@ def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation],
         box.plot(*project(weight, angle).T, "o", ms=6.0, color=colour, mec="white", mew=0.8)
     _draw_air(
         box, passage, section, size,
-        lambda s, off, up: project(np.array([[0.0, off, up]]), (station.start + s) / radius)[0],
+        lambda s, off, up: project(np.array([[0.0, off, up]]), (placed.begin + s) / radius)[0],
     )  # fmt: skip
     box.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
     box.axis("off")
@@ -128,7 +130,7 @@ def _drawable(passages: Iterable[Passage]) -> list[Passage]:
 
 
 def _over_a_cut(passage: Passage) -> bool:
-    return passage.picture == "above" and passage.device.cuts
+    return passage.picture == "above" and passage.hole is not None
 
 
 def _caption(passage: Passage, word: str) -> tuple[str, str]:
@@ -141,22 +143,22 @@ def _caption(passage: Passage, word: str) -> tuple[str, str]:
 
 def track_below(passage: Passage, orientations: Sequence[Orientation]) -> Mesh:
     """Return a passage's section of track, (V, 3) [m] ahead, inwards, up from the part's foot, and (F, 3)."""
-    section, orientation = station_of(passage, orientations), passage.orientation
-    corners, faces = solid.solid(section)
-    angle, radius = passage.angle(section.stations[0]), orientation.track.radius
+    section, orientation = section_of(passage, orientations), passage.orientation
+    corners, faces = printed.solid(section)
+    angle, radius = passage.angle(section.devices[0]), orientation.track.radius
     c, s, down = np.cos(angle), np.sin(angle), corners[:, 1] - radius
     ahead = c * corners[:, 0] + s * down
     from_wall = radius - s * corners[:, 0] + c * down
     return np.column_stack([ahead, from_wall - orientation.distance, corners[:, 2]]), faces
 
 
-def part_on_section(passage: Passage, station: Station) -> Points:
-    """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its station."""
+def part_on_section(passage: Passage, placed: PlacedDevice) -> Points:
+    """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its device."""
     orientation = passage.orientation
     points = np.array(orientation.posture.surface)
     flat = turned(points[:, :2], orientation.heading) + [0.0, orientation.distance]
     points = np.column_stack([flat, points[:, 2]])
-    return _on_section(points, passage.angle(station), orientation.track.radius)
+    return _on_section(points, passage.angle(placed), orientation.track.radius)
 
 
 def _on_section(points: Points, angle: float, radius: float) -> Points:
@@ -165,9 +167,9 @@ def _on_section(points: Points, angle: float, radius: float) -> Points:
     return np.column_stack([c * points[:, 0] + s * up, radius + s * points[:, 0] - c * up, points[:, 2]])
 
 
-def station_of(passage: Passage, orientations: Sequence[Orientation]) -> TrackSection:
+def section_of(passage: Passage, orientations: Sequence[Orientation]) -> TooledTrack:
     """Return a track section with nothing but the device of a passage, and the part before it."""
-    return build_section(passage.orientation.track, [passage.device], orientations, lead=1.0)
+    return lay_out(passage.orientation.track, [passage.device], orientations, lead=1.0)
 
 
 def clearest(
@@ -205,22 +207,22 @@ def camera_at(angle: float, turn: float = 0.0) -> Camera:
 
 
 def _draw_air(
-    axes: Axes, passage: Passage, section: TrackSection, size: float,
+    axes: Axes, passage: Passage, section: TooledTrack, size: float,
     project: Callable[[float, float, float], Vector],
 ) -> None:  # fmt: skip
-    """The sensor's line of sight, its nozzles and their air; ``project`` takes places at a station [m]."""
-    standing, orientation = section.stations[0].standing, passage.orientation
+    """The sensor's line of sight, its nozzles and their air; ``project`` takes places at a device [m]."""
+    features, orientation = section.devices[0].features, passage.orientation
     reach = section.width + np.ptp(passage.outline[:, 1])
-    if standing.sensor is not None:
-        middle, s = orientation.distance, standing.sensor.at
+    if features.sensor is not None:
+        middle, s = orientation.distance, features.sensor.at
         line = [(middle, 0.0), (middle, SENSOR_LINE * orientation.height)]
-        if standing.sensor.sees == "side":
+        if features.sensor.sees == "side":
             line = [(0.0, 0.5 * orientation.height), (reach, 0.5 * orientation.height)]
         ends = np.array([project(s, *end) for end in line])
         axes.plot(*ends.T, color=SENSOR_COLOUR, lw=1.4, ls=(0, (4, 2)))
         style.note(axes, "sensor", ends[1], (5, -4), color=SENSOR_COLOUR, fontsize=7.5, annotation_clip=True)
-    blows = passage.verdict.passes <= 0.0 or standing.sensor is None
-    for jet in standing.jets:
+    blows = passage.verdict.passes <= 0.0 or features.sensor is None
+    for jet in features.jets:
         s, off, up = jet.at
         long = min(jet.reach, reach)
         mouth, end = project(s, off, up), project(s, off + long, up)

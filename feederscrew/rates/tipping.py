@@ -20,7 +20,8 @@ from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor_balance import HOP, TIP
 from feederscrew.mechanics.track_balance import Seat, SeatStack, seat
 from feederscrew.tooling import footprints
-from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.base import Device, opening_at
+from feederscrew.tooling.devices.openings import HoleEdges, hole_edges
 from feederscrew.tooling.falling import surely_gone
 from feederscrew.tooling.orientations import Orientation, add_travel, gyration, travel_speed
 from feederscrew.units import MM, listed
@@ -583,7 +584,7 @@ def _steady(
     if energy > 0.0:
         return not any(
             may_tip(_foot_beside(orientation, span), orientation, bowl, energy, margin)
-            for device, span in ((device, device.span_on(orientation.track)) for device in touched)
+            for device, span in ((device, _span_and_edges(device, orientation)[0]) for device in touched)
             if span is not None and _takes(device, orientation)
         )
     place = seat_in_groove(orientation, bowl.track.bank)
@@ -593,7 +594,7 @@ def _steady(
     reach, period = orientation.foot.corners[:, 0], 1.0 / bowl.drive.frequency
     least = orientation.margin - SUPPORT_LOSS_TOLERANCE_M
     for device in touched:
-        span, hole = device.span_on(orientation.track), device.hole_on(orientation.track)
+        span, hole = _span_and_edges(device, orientation)
         if span is not None and _takes(device, orientation):
             # the force of the track stays within what is left of the foot beside a hole along the track
             left = _foot_beside(orientation, span)
@@ -627,9 +628,17 @@ def _foot_beside(orientation: Orientation, span: tuple[float, ...]) -> Floats:
     return footprints.rest_beside_slot(foot, span, orientation.distance, radius).corners
 
 
+def _span_and_edges(
+    device: Device, orientation: Orientation
+) -> tuple[tuple[float, float] | None, HoleEdges | None]:
+    """Where an opening goes on along the track [m] off the wall, and its edges if any lie across."""
+    opening = opening_at(device, orientation)
+    return (None, None) if opening is None else (opening.span, hole_edges(opening, orientation.track))
+
+
 def _takes(device: Device, orientation: Orientation) -> bool:
     """Return whether a device takes anything from what carries an orientation."""
-    span, hole = device.span_on(orientation.track), device.hole_on(orientation.track)
+    span, hole = _span_and_edges(device, orientation)
     if span is not None:
         (first, last), radius = span, orientation.track.radius
         high = radius - first if first > 0.0 else 2.0 * radius

@@ -13,11 +13,12 @@ from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, track
-from feederscrew.solidbowl.cuts import TrackBlade
 from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, CONICAL, FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
+from feederscrew.tooling.devices.features import Blade
+from feederscrew.tooling.tooled_track import PlacedDevice
 
 if TYPE_CHECKING:
     from feederscrew.solidbowl.exact.exact_file import StepFile
@@ -26,6 +27,8 @@ PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 BEYOND_BOWL_M = 1.0  # [m] beyond everything
 GATE_PLAY_M = 1e-4  # [m] of a gate in its notch, to each side
 SHORTER = 0.99  # of the turns that were asked for: less is said
+BLADE_REACH_M = 2e-6  # [m] from wall and track: a blade that is as near goes on into them
+BEYOND_PLATE_M = 0.05  # [m] above and below a blade
 EARS = 4e-3  # [m] by which a gate stands out of the wall
 WALL_LIFT_M = 3e-4  # [m] by which the wall ends higher than the floor below it
 QUARTER_TURN_POINTS = 16  # places in a quarter turn that a curve is led through
@@ -189,8 +192,9 @@ def pieces(plan: BowlPlan, kit: ModuleType = facets) -> tuple[Body, list[tuple[s
     FeederError
         If cuts leave a piece loose.
     """
-    blades = () if plan.stretch is None else plan.stretch.blades
-    own_gates = [blade for blade in blades if blade.alone]
+    chain = () if plan.stretch is None else plan.stretch.devices
+    blades = [(placed, blade) for placed in chain for blade in placed.features.blades]
+    own_gates = [(placed, blade) for placed, blade in blades if blade.is_gate]
     wall, *ends = walls(plan, kit)
     groove_cuts, groove_walls = track.groove_walls(plan, kit)
     # the outlet passes through the wall
@@ -198,20 +202,14 @@ def pieces(plan: BowlPlan, kit: ModuleType = facets) -> tuple[Body, list[tuple[s
     outlet = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
     low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.path.bank_at(end))
     open_wall = [kit.over(plan.path, outlet, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
-    for gate in own_gates:  # it stands in a notch of the wall, open above
-        behind = -plan.material.wall - PIECE_OVERLAP_M
-        area = shapely.box(behind, -GATE_PLAY_M, PIECE_OVERLAP_M, BEYOND_BOWL_M)
-        s, thickness = plan.first + gate.start - GATE_PLAY_M, gate.thickness + 2.0 * GATE_PLAY_M
-        open_wall.append(_standing(plan, kit, s, thickness, area))
-    for bore in () if plan.stretch is None else plan.stretch.bores:  # of a nozzle, square to the wall
-        s = plan.first + bore.place
-        theta = float(plan.path.angle(s))
-        towards = np.array([np.cos(theta), np.sin(theta), 0.0])
-        near = plan.path.places(s, 0.0) + [0.0, 0.0, bore.height] - PIECE_OVERLAP_M * towards
-        open_wall.append(kit.bore(near, towards, bore.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M))
+    open_wall += [_notch(plan, kit, *gate) for gate in own_gates]
+    for placed, jet in [(item, jet) for item in chain for jet in item.features.jets]:
+        begin, outwards = plan.path.bore(plan.first + placed.begin + jet.at[0], jet.at[2], PIECE_OVERLAP_M)
+        deep = 2.0 * (plan.material.wall + PIECE_OVERLAP_M)
+        open_wall.append(kit.bore(begin, outwards, 2.0 * jet.radius, deep))
     ring = kit.without(wall, [*open_wall, *groove_cuts])
     slab = kit.without(track.slab(plan, kit), track.holes(plan, kit, hang=False))
-    plates = [_plate(plan, kit, blade) for blade in blades if not blade.alone]
+    plates = [_plate(plan, kit, *blade) for blade in blades if not blade[1].is_gate]
     added = [*track.sides(plan, kit), *track.yokes(plan, kit), *plates, *track.ledges(plan, kit)]
     whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added, *groove_walls])
     # holes of the bolts, in the middle and on their circle, and drain holes
@@ -225,7 +223,7 @@ def pieces(plan: BowlPlan, kit: ModuleType = facets) -> tuple[Body, list[tuple[s
     low, high = plan.underside - PIECE_OVERLAP_M, plan.dome + PIECE_OVERLAP_M
     drilled = [kit.disc(at, size, low, high) for at, size in holes]
     whole = kit.without(whole, [*track.holes(plan, kit, hang=True), *drilled])
-    gates = [(f"gate_{k + 1}", _plate(plan, kit, gate)) for k, gate in enumerate(own_gates)]
+    gates = [(f"gate_{k + 1}", _plate(plan, kit, *gate)) for k, gate in enumerate(own_gates)]
     return kit.one_piece(whole, "devices"), gates
 
 
@@ -297,27 +295,32 @@ def walls(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     return [kit.above(body, plan.underside + WALL_LIFT_M) for body in (wall, end)]
 
 
-def _plate(plan: BowlPlan, kit: ModuleType, blade: TrackBlade) -> Body:
-    """A blade across the track, at its height over the higher of its two faces."""
-    s = plan.first + blade.start
-    area = blade.area
-    if blade.alone:
-        x0, _, _, top = area.bounds
-        ear = shapely.box(-plan.material.wall - EARS, 0.0, x0 + PIECE_OVERLAP_M, top)
-        area = shapely.union_all([area, ear])
-    return _standing(plan, kit, s, blade.thickness, area, blade.lean)
+def _plate(plan: BowlPlan, kit: ModuleType, placed: PlacedDevice, blade: Blade) -> Body:
+    """A blade on the track, carried on into the wall; a gate of its own has an ear through that."""
+    axes, foot = plan.path.blade_frame(blade, plan.first + placed.begin)
+    into = 0.5 * plan.material.wall
+    if not blade.is_gate:
+        area = blade.carried_into(into, into, BLADE_REACH_M)
+        plate = kit.plank(shapely.normalize(area), blade.thickness, axes, foot)
+        # what leans with a banked track, or is swept back, stays within the wall
+        s = plan.first + placed.begin + blade.foot[0]
+        inner = float(plan.path.wall_radius(s)) + into
+        low, high = float(foot[2]) - into - BEYOND_PLATE_M, float(foot[2]) + blade.top + BEYOND_PLATE_M
+        ring = [(inner, low), (2.0 * inner, low), (2.0 * inner, high), (inner, high)]
+        return kit.without(plate, [kit.turned(ring, plan.segments)])
+    area = blade.carried_into(into, 0.0, BLADE_REACH_M).intersection(
+        shapely.box(-into, 0.0, BEYOND_BOWL_M, blade.top)
+    )
+    # it stands on the track: a gate is fixed by its ear
+    ear = shapely.box(-plan.material.wall - EARS, 0.0, PIECE_OVERLAP_M - into, blade.top)
+    return kit.plank(shapely.normalize(shapely.union_all([area, ear])), blade.thickness, axes, foot)
 
 
-def _standing(
-    plan: BowlPlan, kit: ModuleType, s: float, thickness: float, area: shapely.Geometry, lean: float = 0.0
-) -> Body:
-    """An area of distances from the wall and heights over the track, as a plate across the track.
-
-    A swept one leans ahead with the distance; its edge keeps its height over the track at both ends.
-    """
-    from_wall, theta = s + thickness, plan.path.angle(s)
-    far = plan.path.places(from_wall + lean * plan.width, plan.width)
-    across = (far - plan.path.places(from_wall, 0.0)) / plan.width
-    ahead, upright = np.array([-np.sin(theta), np.cos(theta), 0.0]), np.array([0.0, 0.0, 1.0])
-    foot = np.array([*plan.path.plan(s, 0.0), float(plan.path.height(from_wall))])
-    return kit.plank(area, thickness, np.column_stack([across, upright, ahead]), foot)
+def _notch(plan: BowlPlan, kit: ModuleType, placed: PlacedDevice, blade: Blade) -> Body:
+    """The notch of a gate in the wall, open above, with play to each side."""
+    axes, foot = plan.path.blade_frame(blade, plan.first + placed.begin)
+    bank = max(float(plan.path.bank_at(plan.first + placed.begin)), 0.0)
+    inner = PIECE_OVERLAP_M + plan.top * np.tan(bank)  # on a banked track the wall leans over it
+    area = shapely.box(-plan.material.wall - PIECE_OVERLAP_M, -GATE_PLAY_M, inner, BEYOND_BOWL_M)
+    behind = axes[:, 2]
+    return kit.plank(area, blade.thickness + 2.0 * GATE_PLAY_M, axes, foot - GATE_PLAY_M * behind)

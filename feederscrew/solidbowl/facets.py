@@ -12,7 +12,7 @@ from feederscrew.arrays import Points
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
-from feederscrew.solidbowl.plan import BowlPlan, TrackPath
+from feederscrew.solidbowl.plan import FULL_TURN_RAD, BowlPlan, TrackPath
 from feederscrew.tooling.solid import extrude
 from feederscrew.units import MM, counted
 
@@ -25,6 +25,7 @@ MIN_PIECE_VOLUME_M3 = 1e-9  # [m3] a loose piece smaller than this is left out
 HOLE_SIDES = 48  # of a round hole
 Body = Any  # [mm] a Manifold; of the kit ``exact_body`` a TopoDS_Shape
 HAS_EXACT_CURVES = False  # a curve is a chain of chords
+SEAM_M = 1e-5  # [m] of the plate left along the wall where it is cut: no two faces may coincide
 
 
 def swept(legs: Sequence[tuple[Points, Points]]) -> Body:
@@ -75,7 +76,7 @@ def in_space(sections: Points, frames: Points) -> Points:
     return np.concatenate([place + sections[..., :1] * outward, sections[..., 1:]], axis=-1)
 
 
-def turned(profile: ArrayLike, segments: int) -> Body:
+def turned(profile: ArrayLike, segments: int, start: float = 0.0, angle: float = FULL_TURN_RAD) -> Body:
     """Return a body of revolution about Z.
 
     Parameters
@@ -84,12 +85,19 @@ def turned(profile: ArrayLike, segments: int) -> Body:
         Radius and height, counter-clockwise.
     segments : int
         Facets round the axis.
+    start : float [rad]
+        Angle at which it begins.
+    angle : float [rad]
+        Over which it turns.
 
     Returns
     -------
     Body [mm]
     """
-    return manifold3d.CrossSection([np.asarray(profile) / MM]).revolve(segments)
+    section = manifold3d.CrossSection([np.asarray(profile) / MM])
+    if angle >= FULL_TURN_RAD:
+        return section.revolve(segments)
+    return section.revolve(segments, float(np.degrees(angle))).rotate((0.0, 0.0, float(np.degrees(start))))
 
 
 def patch(ring: Points, low: float, high: float) -> Body:
@@ -157,14 +165,14 @@ def _circle(size: float) -> Points:
 
 
 def bore(place: ArrayLike, towards: Points, size: float, deep: float) -> Body:
-    """Return a round rod along a level direction.
+    """Return a round rod along a direction.
 
     Parameters
     ----------
     place : (3,) array_like [m]
         Middle of its near end.
     towards : (3,) float [1]
-        Level unit vector.
+        Unit vector, not upright.
     size : float [m]
         Diameter.
     deep : float [m]
@@ -174,8 +182,9 @@ def bore(place: ArrayLike, towards: Points, size: float, deep: float) -> Body:
     -------
     Body [mm]
     """
-    up = np.array([0.0, 0.0, 1.0])
-    axes = np.column_stack([np.cross(up, towards), up, towards])
+    across = np.cross([0.0, 0.0, 1.0], towards)
+    across = across / np.sqrt((across**2).sum())
+    axes = np.column_stack([across, np.cross(towards, across), towards])
     return plank(shapely.Polygon(_circle(size)), deep, axes, place)
 
 
@@ -257,6 +266,11 @@ def placed_as(body: Body, *, mirrored: bool, turned: float) -> Body:
     """
     body = body.mirror((0.0, 1.0, 0.0)) if mirrored else body
     return body.rotate((0.0, 0.0, float(np.degrees(turned)))) if turned else body
+
+
+def moved(body: Body, by: tuple[float, float, float]) -> Body:
+    """Return a body moved by lengths (3,) [mm]."""
+    return body.translate(by)
 
 
 def one_piece(body: Body, where: str) -> Body:

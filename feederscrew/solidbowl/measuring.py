@@ -8,7 +8,6 @@ import shapely
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.closed_body import BowlSolid
-from feederscrew.solidbowl.cuts import TrackHole
 from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import FULL_TURN_RAD, SEEN, SURE, BowlPlan
 
@@ -39,7 +38,7 @@ def measures(solid: BowlSolid) -> Measures:
 
     # rim and wall: before every groove, where the wall is open
     high = plan.top - 1e-3
-    starts = [float(path.angle(groove[0])) - 0.1 for groove in track.groove_spans(plan)]
+    starts = [float(path.angle(groove.start)) - 0.1 for groove in track.groove_spans(plan)]
     at = min([RIM_SECTION_RAD, *starts])
     rim = facets.first_met(body, (0.0, 0.0, high), towards(at, high))
     # floor: where it lies bare by the wall, or about, opposite to the track's first rise
@@ -142,22 +141,23 @@ def ways_down(solid: BowlSolid) -> dict[str, str]:
     if plan.stretch is None:
         return {}
     whole = facets.unplaced(solid)
-    for cut in plan.stretch.cuts:
+    for placed, opening in plan.stretch.openings:
         # places spread over the cut, of those within the track
         within = shapely.box(-1.0, CUT_EDGE_MARGIN_M, 1e3, plan.width)
-        area = shapely.Polygon(cut.ring).buffer(0.0).intersection(within).buffer(-CUT_EDGE_MARGIN_M)
+        area = shapely.Polygon(opening.ring).buffer(0.0).intersection(within).buffer(-CUT_EDGE_MARGIN_M)
         if area.is_empty:
             continue
         low_s, low_y, high_s, high_y = area.bounds
         s, y = np.meshgrid(np.linspace(low_s, high_s, CUT_RAYS), np.linspace(low_y, high_y, CUT_RAYS))
         grid = shapely.points(s.ravel(), y.ravel())
-        lain = {_lies(plan, whole, cut, item.x, item.y) for item in grid[shapely.intersects(area, grid)]}
+        places = grid[shapely.intersects(area, grid)]
+        lain = {_lies(plan, whole, placed.label, place.x, place.y) for place in places}
         if lain:
-            ways[cut.label] = " or ".join(sorted(lain))
+            ways[placed.label] = " or ".join(sorted(lain))
     return ways
 
 
-def _lies(plan: BowlPlan, whole: Body, cut: TrackHole, s: float, y: float) -> str:
+def _lies(plan: BowlPlan, whole: Body, label: str, s: float, y: float) -> str:
     """Where what falls at a place of a cut comes to lie."""
     path, place = plan.path, plan.path.places(plan.first + s, y)
     meet = facets.below(whole, place)
@@ -187,4 +187,4 @@ def _lies(plan: BowlPlan, whole: Body, cut: TrackHole, s: float, y: float) -> st
     there = "nothing" if meet is None else f"the track at {1e3 * meet:.3g} mm"
     what = f"what falls through it {1e3 * s:.3g} mm behind the start of the devices meets {there}"
     mend = "give a lower sizing.outlet_height, sizing.shape: stepped, or fewer devices"
-    raise FeederError(f"devices: {cut.label}", what, mend)
+    raise FeederError(f"devices: {label}", what, mend)

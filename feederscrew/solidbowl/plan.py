@@ -11,11 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Values
+from feederscrew.arrays import Floats, Values, Vector
 from feederscrew.bowl.record import Sizing, Track
 from feederscrew.errors import FeederError
 from feederscrew.machine.sizing import MIN_WALL_ABOVE_PART_M, Size
-from feederscrew.solidbowl.cuts import Stretch
+from feederscrew.tooling.devices.features import Blade
+from feederscrew.tooling.tooled_track import TooledTrack
 
 Extents = Floats | tuple[float, ...]  # (3,) [m] of a part along its axes
 STEEL_NAME = "steel"
@@ -181,6 +182,70 @@ class TrackPath:
             risen = risen + (np.tan(climb) - np.tan(before)) * np.maximum(s - at, 0.0)
         return risen
 
+    def normal(self, s: float) -> Vector:
+        """Return the unit vector (3,) [1] square to the track's surface at a length s, by the wall."""
+        theta, bank = float(self.angle(s)), float(self.bank_at(s))
+        rise = float(self.risen(s + CLIMB_STEP_M) - self.risen(s - CLIMB_STEP_M)) / (2.0 * CLIMB_STEP_M)
+        rise = rise if s < self.end else 0.0
+        ahead = np.array([-np.sin(theta), np.cos(theta), rise])
+        inwards = np.array([-np.cos(bank) * np.cos(theta), -np.cos(bank) * np.sin(theta), np.sin(bank)])
+        upright = np.cross(ahead, inwards)
+        return upright / np.sqrt((upright**2).sum())
+
+    def blade_frame(self, blade: Blade, begin: float) -> tuple[Floats, Vector]:
+        """Return the axes of a blade of a device that begins at a length s [m], and its foot.
+
+        Its face stands square to the track at the wall, its lower edge keeps its height over the track at
+        both ends, and so does its back.
+
+        Parameters
+        ----------
+        blade : Blade
+        begin : float [m]
+            S of the origin of its device.
+
+        Returns
+        -------
+        (3, 3) float [1]
+            Columns: along its face, upwards, behind its face.
+        (3,) float [m]
+            Where its face begins at the wall.
+        """
+        s, y = begin + blade.foot[0], blade.foot[1]
+        radius, foot = float(self.wall_radius(s)), self.places(s, y)
+
+        def on_track(ahead: float, inwards: float) -> Floats:
+            near = radius - y - inwards
+            return self.places(s + radius * np.arctan2(ahead, near), radius - np.hypot(ahead, near))
+
+        long = float(blade.solid.bounds[2])
+        face, back = blade.axes
+        along = (on_track(*(long * face)) - foot) / long
+        behind = (on_track(*(blade.thickness * back)) - foot) / blade.thickness
+        return np.column_stack([along, self.normal(s), behind]), foot
+
+    def bore(self, s: float, z: float, before: float) -> tuple[Vector, Vector]:
+        """Return where a bore for a nozzle begins, and its direction, outwards along the track's surface.
+
+        Parameters
+        ----------
+        s : float [m]
+            Length along the wall.
+        z : float [m]
+            Height of its axis over the track, square to it.
+        before : float [m]
+            By how much it begins before the wall.
+
+        Returns
+        -------
+        (3,) float [m]
+        (3,) float [1]
+        """
+        inwards = self.places(s, 1e-3) - self.places(s, 0.0)
+        inwards = inwards / np.sqrt((inwards**2).sum())
+        bank = float(self.bank_at(s))
+        return self.places(s, 0.0) + z * self.normal(s) + (before + z * np.tan(bank)) * inwards, -inwards
+
     def places(self, s: Values, y: Values) -> Floats:
         """Return points (..., 3) [m] of the track's surface."""
         flat = self.plan(s, y)
@@ -188,6 +253,7 @@ class TrackPath:
         return np.concatenate([flat, z[..., None]], axis=-1)
 
 
+CLIMB_STEP_M = 1e-6  # [m] to either side of a place whose climb is taken
 ARC_CHORD_M = 5e-5  # [m] by which an arc may be seen too flat
 DOME = np.radians(3.0)  # slope of the floor outwards
 WALL_ABOVE_PART_M = 5e-3  # [m] of the wall over the tallest part on the track's end
@@ -259,7 +325,7 @@ class BowlPlan:
     path: TrackPath
     width: float  # of the track, along its surface
     material: BowlMaterial
-    stretch: Stretch | None  # None without devices
+    stretch: TooledTrack | None  # None without devices
     first: float  # s where the stretch begins
     outlet: float  # length of the outlet
     hanging: float  # depth that parts hang below rails
@@ -346,7 +412,7 @@ def plan(
     size: Size,
     track: Track,
     made_of: BowlMaterial,
-    tooled: Stretch | None,
+    tooled: TooledTrack | None,
     options: SolidOptions,
     *,
     extents: Extents,
@@ -362,7 +428,7 @@ def plan(
     track : Track
         Of that size.
     made_of : BowlMaterial
-    tooled : Stretch or None
+    tooled : TooledTrack or None
     options : SolidOptions
     extents : (3,) float [m]
         Of the part along its axes.
@@ -392,8 +458,8 @@ def plan(
     outlet = np.sqrt((track.radius + made_of.wall) ** 2 - (track.radius - across) ** 2) + OUTLET
     greatest = float(max(extents))
     tallest = greatest if tooled is None else tooled.tallest
-    gates = [blade.area.bounds[3] for blade in tooled.blades] if tooled else []
-    hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
+    gates = [tooled.top] if tooled else []
+    hangs = tooled is not None and tooled.hangs
     return BowlPlan(
         path=path,
         width=track.width,
@@ -419,7 +485,7 @@ def plan(
 
 
 def _stairs(
-    track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions, extents: Extents
+    track: Track, made_of: BowlMaterial, tooled: TooledTrack | None, options: SolidOptions, extents: Extents
 ) -> Stairs | None:
     """Return the steps of a wall, None of a cylinder.
 
@@ -430,11 +496,11 @@ def _stairs(
     if options.shape == CONICAL and tooled is not None:
         what = "conical leans outwards, and devices are computed by an upright wall"
         raise FeederError("sizing.shape", what, "take stepped")
-    least = min([track.bank, *(bank for _, _, bank in tooled.leans)]) if tooled else track.bank
+    least = min([track.bank, *(bank for _, _, bank in tooled.banks)]) if tooled else track.bank
     step = track.width * np.cos(least) + TURN_CLEARANCE_M
     flare = -np.log1p(-step / track.radius) / FULL_TURN_RAD
     tallest = float(max(extents)) if tooled is None else tooled.tallest
-    hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
+    hangs = tooled is not None and tooled.hangs
     slope = SLOPE if made_of.supported else UNSUPPORTED_SLOPE_RAD
     slope = max(slope, float(np.arctan(options.friction)) + SURE)
     pitch = np.tan(track.climb) * step / flare
@@ -454,7 +520,7 @@ def _track_path(
     size: Size,
     track: Track,
     made_of: BowlMaterial,
-    tooled: Stretch | None,
+    tooled: TooledTrack | None,
     options: SolidOptions,
     stepped: Stairs | None,
 ) -> tuple[TrackPath, float]:
@@ -464,7 +530,7 @@ def _track_path(
     rise = np.tan(track.climb)
     gained = 0.0  # by which the track's end lies over the begin of the tooled stretch
     if tooled is not None:
-        stretch = TrackPath(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
+        stretch = TrackPath(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.climbs)
         gained = float(stretch.height(needed))
     # how long it may be: what falls through a cut of a cylinder must not meet a turn below
     # `free` [m]: how much of the track has no turn below it, from where it rises
@@ -505,8 +571,8 @@ def _track_path(
         path = replace(
             path,
             drops=tuple((first + at, drop) for at, drop in tooled.drops),
-            bends=tuple((first + at, climb) for at, climb in tooled.bends),
-            leans=tuple((first + a, first + b, bank) for a, b, bank in tooled.leans),
+            bends=tuple((first + at, climb) for at, climb in tooled.climbs),
+            leans=tuple((first + a, first + b, bank) for a, b, bank in tooled.banks),
         )
         if path.bends:
             _check_bends(path, stepped, tooled.tallest)

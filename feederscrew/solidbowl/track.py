@@ -2,19 +2,23 @@
 
 import itertools
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
 
 from feederscrew.arrays import Floats, Values
-from feederscrew.solidbowl.cuts import TrackHole
 from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import CONICAL, DIP, FULL_TURN_RAD, BowlPlan
+from feederscrew.tooling.devices.features import TrackOpening
+from feederscrew.tooling.devices.openings import beyond_borders
+from feederscrew.tooling.tooled_track import GrooveStretch
 
-Groove = tuple[float, float, float, float]
 TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
 YOKE_RADIUS_RATIO = 1.05  # its radius over its distance from the wall: it crosses the wall
+CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut over it
+OUTLET_OVERRUN_M = 5e-3  # [m] by which a slot that is open at the outlet is cut beyond its end
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
 PLATE_OVERLAP_M = 3e-5  # [m] by which ledges and the outlet's side reach into the plate: no face on a face
@@ -240,14 +244,18 @@ def sides(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     r = float(path.wall_radius(path.at(-2.0 * np.pi)) if plan.stairs else path.radius) + 0.4 * wall
     ends = low + lift - TRACK_PIECE_OVERLAP_M, top + lift + TRACK_PIECE_OVERLAP_M
     inside = drum(plan, kit, r, *ends)
-    open_there = plan.stretch is not None and any(np.isinf(groove[1]) for groove in plan.stretch.grooves)
+    open_there = plan.stretch is not None and any(np.isinf(groove.end) for groove in plan.stretch.grooves)
     solid = [] if open_there else [kit.over(path, outer, low, top, plan.chord)]
     solid.append(kit.without(kit.over(path, inner, low + lift, top + lift, plan.chord), [inside]))
     return solid
 
 
-def _cuts(plan: BowlPlan, hang: bool) -> tuple[TrackHole, ...]:
-    return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if cut.hangs == hang)
+def _openings(plan: BowlPlan, hang: bool) -> list[TrackOpening]:
+    """The openings of the stretch; of those in which parts hang the last is open at the end of the outlet."""
+    if plan.stretch is None:
+        return []
+    opened = plan.stretch.opened_to(plan.path.end + plan.outlet + OUTLET_OVERRUN_M - plan.first)
+    return [opening for _, opening in opened.openings if opening.hangs == hang]
 
 
 def holes(plan: BowlPlan, kit: ModuleType, *, hang: bool) -> list[Body]:
@@ -266,12 +274,13 @@ def holes(plan: BowlPlan, kit: ModuleType, *, hang: bool) -> list[Body]:
     -------
     list of Body [mm]
     """
-    solid, plate, cuts = [], plan.material.plate, _cuts(plan, hang)
-    last = max((cut.span[1] for cut in cuts), default=np.inf) - 1e-9
-    for cut in cuts:
-        ring = cut.ring + [plan.first, 0.0]
-        if hang:
-            ring[cut.ring[:, 0] >= last, 0] = plan.path.end + plan.outlet + 5e-3
+    solid, plate = [], plan.material.plate
+    for opening in _openings(plan, hang):
+        # carried a little over the edge of the track that it reaches, and into the wall
+        s, y = opening.ring.T
+        corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
+        beyond = beyond_borders(corners.tolist(), plan.width - 1e-9, CUT_OVERRUN_M)
+        ring = np.array(beyond) + [plan.first, 0.0]
         heights = plan.path.height(ring[:, 0], ring[:, 1])
         low, high = heights.min() - (plate + fillet(plan) + TRACK_PIECE_OVERLAP_M), heights.max()
         low = heights.min() - plate - plan.hanging if hang else low
@@ -308,8 +317,9 @@ def yokes(plan: BowlPlan, kit: ModuleType) -> list[Body]:
 
 def yoke_places(plan: BowlPlan) -> tuple[float, ...]:
     """Return where along the way each yoke begins [m], YOKE thick; none without rails."""
-    ends = [cut.span[1] for cut in _cuts(plan, hang=True)]
-    return (plan.first + max(ends), plan.path.end + plan.outlet - YOKE) if ends else ()
+    if plan.stretch is None or not plan.stretch.hangs:
+        return ()
+    return plan.first + plan.stretch.length, plan.path.end + plan.outlet - YOKE
 
 
 MIN_GROOVE_WALL_LEAN_RAD = np.radians(3.0)  # by which it leans at once: no face lies on the bowl's wall
@@ -344,7 +354,7 @@ def groove_walls(plan: BowlPlan, kit: ModuleType) -> tuple[list[Body], list[Body
     far = plan.material.wall + GROOVE_CUT_MARGIN_M
     cuts, walls = [], []
     for groove in groove_spans(plan):
-        start, end, _, opens = groove
+        start, end, opens = groove.start, groove.end, groove.opens
         stop, cut_legs, wall_legs = min(end + opens, path.end + plan.outlet), [], []
         for low, high in _legs(plan, kit, [start, stop], (start + opens, end, path.end)):
             s = steps(plan, kit, low, high)
@@ -368,20 +378,24 @@ def groove_walls(plan: BowlPlan, kit: ModuleType) -> tuple[list[Body], list[Body
     return cuts, walls
 
 
-def groove_spans(plan: BowlPlan) -> list[Groove]:
-    """Return the grooves of a bowl: (from, to, lean, opens), lengths [m] along the wall, an angle [rad].
+def groove_spans(plan: BowlPlan) -> list[GrooveStretch]:
+    """Return the grooves of a bowl, along its wall.
 
     They lie in the last turn: above them there is no other.
     """
     earliest, last = float(plan.path.at(-MAX_GROOVE_WALL_RAD)), plan.path.end + plan.outlet
     grooves = () if plan.stretch is None else plan.stretch.grooves
     return [
-        (max(plan.first + start, earliest, GROOVE_CUT_MARGIN_M), min(plan.first + end, last), lean, opens)
-        for start, end, lean, opens in grooves
+        replace(
+            groove,
+            start=max(plan.first + groove.start, earliest, GROOVE_CUT_MARGIN_M),
+            end=min(plan.first + groove.end, last),
+        )
+        for groove in grooves
     ]
 
 
-def lean_at(groove: Groove, s: Values) -> Values:
+def lean_at(groove: GrooveStretch, s: Values) -> Values:
     """Return by how much the wall of a groove leans back from upright.
 
     It opens and closes linearly over a length of its own. The least is ``MIN_GROOVE_WALL_LEAN_RAD``: a face
@@ -389,8 +403,8 @@ def lean_at(groove: Groove, s: Values) -> Values:
 
     Parameters
     ----------
-    groove : (float [m], float [m], float [rad], float [m])
-        From, to, lean, and the length over which it opens.
+    groove : GrooveStretch
+        Along the bowl's wall.
     s : float or array [m]
         Lengths along the wall.
 
@@ -398,6 +412,6 @@ def lean_at(groove: Groove, s: Values) -> Values:
     -------
     float or array [rad]
     """
-    start, end, lean, opens = groove
-    share = np.clip((s - start) / opens, 0.0, 1.0) * (1.0 - np.clip((s - end) / opens, 0.0, 1.0))
-    return np.maximum(lean * share, MIN_GROOVE_WALL_LEAN_RAD)
+    opened = np.clip((s - groove.start) / groove.opens, 0.0, 1.0)
+    share = opened * (1.0 - np.clip((s - groove.end) / groove.opens, 0.0, 1.0))
+    return np.maximum(groove.lean * share, MIN_GROOVE_WALL_LEAN_RAD)

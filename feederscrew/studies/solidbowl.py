@@ -15,7 +15,7 @@ from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
-from feederscrew.solidbowl import cuts, riding, segments
+from feederscrew.solidbowl import riding, segments
 from feederscrew.solidbowl.closed_body import BowlSolid, body, screwed
 from feederscrew.solidbowl.exact import exact_body, exact_file
 from feederscrew.solidbowl.measuring import ways_down
@@ -29,6 +29,7 @@ from feederscrew.solidbowl.plan import (
     plan,
 )
 from feederscrew.tooling.orientations import hang, neck
+from feederscrew.tooling.tooled_track import lay_out
 
 CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is looked for that leaves room below the tooled stretch
 STEEPEST_RAD = np.radians(10.0)  # up to which it is: from there on parts slide back with most frictions
@@ -230,8 +231,8 @@ def _planned(
 ) -> BowlPlan:
     """The measures of the solid, its tooled stretch on the track that devices bank."""
     is_tooled = any(device.placed for device in bowl.devices)
-    track = cuts.banked_height(bowl.track, bowl.devices, coming.lying)
-    tooled = cuts.stretch(track, bowl.devices, coming.lying) if is_tooled else None
+    tooled = lay_out(bowl.track, bowl.devices, coming.lying) if is_tooled else None
+    track = bowl.track if tooled is None else tooled.track
     extents = np.ptp(np.asarray(part.vertices), axis=0)
     return plan(size, track, material(options.material, bowl.sizing), tooled, options, extents=extents)
 

@@ -19,7 +19,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, outline, sides, turned
 from feederscrew.resting.posture import Posture
 from feederscrew.tooling import footprints
-from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS, Device, size_of
+from feederscrew.tooling.devices.base import Device, opening_at
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, Neck, Orientation, neck, shoulder_margin
 
@@ -383,9 +383,10 @@ def lets_go(device: Device, orientation: Orientation) -> bool:
     where no tilt of it can rest on them. True of a device that cuts nothing.
     """
     track = orientation.track
-    cut, span = device.outline_on(track, ENDLESS_HOLE_LENGTHS * size_of(orientation)), device.span_on(track)
-    if cut is None or (span is not None and span[1] >= track.extent - 1e-9):
+    opening = opening_at(device, orientation)
+    if opening is None or (opening.span is not None and opening.span[1] >= track.extent - 1e-9):
         return True
+    cut, span = opening.ring, opening.span
     height = orientation.posture.height
     if span is None:
         if not falls_through(orientation, cut):

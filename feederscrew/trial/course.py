@@ -144,9 +144,9 @@ def course(
     slot: tuple[float, ...] = ()
     chain = [staging.stage_bare_track(bowl.track, orientations, RUN_UP * size, slopes)]
     for device in [device for device in devices if device.placed]:
-        standing = device.standing(bowl.track, orientations)
+        features = device.features(bowl.track, orientations)
         chain.append(staging.stage_device(device, bowl.track, orientations, slopes=slopes, slot=slot))
-        slopes, slot = (*slopes, *standing.slopes), standing.slot or slot
+        slopes, slot = (*slopes, *features.slopes), features.slot or slot
     run.begin()
     if sent.on_track is not None:
         states, times, entries = sent.on_track

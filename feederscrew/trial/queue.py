@@ -77,11 +77,11 @@ def lay_out_track(
     placed, blows, windows, levels = [], [], [], [0.0]
     size = staging.size_of(orientations)
     for device in [device for device in devices if device.placed]:
-        standing, start = device.standing(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
-        last = staging.exit_place(standing, start, size)
-        placed.append((standing, start, last))
-        blows.append((standing, start, level))
-        level -= standing.drop
+        features, start = device.features(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
+        last = staging.exit_place(features, start, size)
+        placed.append((features, start, last))
+        blows.append((features, start, level))
+        level -= 0.0 if features.drop is None else features.drop.height
         windows.append((place, last))
         levels.append(level)
         place = last

@@ -19,7 +19,7 @@ from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import on_disk, zero_rows
 from feederscrew.tooling import sensor_views
-from feederscrew.tooling.devices.base import Sensor
+from feederscrew.tooling.devices.features import Sensor
 from feederscrew.trial import part_poses, staging
 from feederscrew.trial.kernel import travel, workspace
 from feederscrew.trial.kernel.plate_views import BLOCK

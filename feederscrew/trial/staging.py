@@ -14,11 +14,12 @@ from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Track
 from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.geometry.polygons import cross
-from feederscrew.tooling.devices.base import Blade, Device, Sensor, Slope, Standing
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.features import Blade, Features, Sensor, Slope, box_ring
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.fates import leading_devices
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, Orientation
-from feederscrew.tooling.track_sections import bend_ring
+from feederscrew.tooling.tooled_track import bend_ring, continue_slots
 from feederscrew.trial.kernel.workspace import BORDER, JET, PLATE_RECORD, Rows
 
 DRAWN_BEHIND_WALL = 0.5  # of the part's size: how far the track is drawn behind the wall
@@ -168,20 +169,20 @@ def stage_device(
     -------
     Stage
     """
-    standing, size = device.standing(track, orientations), size_of(orientations)
-    blows = place_air([(standing, start, 0.0)], track, orientations)
+    features, size = device.features(track, orientations), size_of(orientations)
+    blows = place_air([(features, start, 0.0)], track, orientations)
     blows = replace(blows, slopes=(*slopes_before(slopes), *blows.slopes))
-    begin, beyond = start - (0.5 + SPARE_WAY) * size, exit_place(standing, start, size)
+    begin, beyond = start - (0.5 + SPARE_WAY) * size, exit_place(features, start, size)
     ends = begin - DRAWN_BEFORE * size, beyond + DRAWN_AFTER * size
     return Stage(
         device,
-        *build_track([(standing, start, ends[1])], track, size, ends, slot),
+        *build_track([(features, start, ends[1])], track, size, ends, slot),
         begin=begin,
         exit=beyond,
-        cut=(start, start + standing.length),
-        drop=standing.drop,
-        aside=standing.aside,
-        leaves_hanging=standing.hangs or bool(slot),
+        cut=(start, start + features.length),
+        drop=0.0 if features.drop is None else features.drop.height,
+        aside=0.0 if features.drop is None else features.drop.aside,
+        leaves_hanging=features.hangs or bool(slot),
         air=blows,
         size=size,
         width=track.extent,
@@ -230,7 +231,7 @@ def entry_slopes(
     tuple of Slope
     """
     return tuple(
-        slope for device in leading_devices(devices) for slope in device.standing(track, orientations).slopes
+        slope for device in leading_devices(devices) for slope in device.features(track, orientations).slopes
     )
 
 
@@ -249,13 +250,13 @@ def slopes_before(slopes: Sequence[Slope]) -> tuple[PlacedSlope, ...]:
     return tuple((-BEYOND_OPENINGS_M, slope.climb, slope.bank, slope.wall) for slope in slopes)
 
 
-def exit_place(standing: Standing, start: float, size: float) -> float:
+def exit_place(features: Features, start: float, size: float) -> float:
     """Return the place along the wall at which a centre of mass has passed a device.
 
     Parameters
     ----------
-    standing : Standing
-        The device, as it stands on the track.
+    features : Features
+        Of the device.
     start : float [m]
         Where it begins.
     size : float [m]
@@ -265,11 +266,11 @@ def exit_place(standing: Standing, start: float, size: float) -> float:
     -------
     float [m]
     """
-    return start + standing.length + (standing.settles + 0.5 + SPARE_WAY) * size
+    return start + features.length + (features.settles + 0.5 + SPARE_WAY) * size
 
 
 def build_track(
-    placements: Sequence[tuple[Standing, float, float]],
+    placements: Sequence[tuple[Features, float, float]],
     track: Track,
     size: float,
     ends: tuple[float, float],
@@ -279,7 +280,7 @@ def build_track(
 
     Parameters
     ----------
-    placements : sequence of (Standing, float, float) [m]
+    placements : sequence of (Features, float, float) [m]
         The devices in the order parts meet them: where each begins, and where the track above its drop ends.
     track : Track
     size : float [m]
@@ -299,27 +300,21 @@ def build_track(
     level, first, holes = 0.0, ends[0], []
     plates: list[Plate] = []
     blades: list[Plate] = []
-    # Slots between rails that go on to the next rails, or to the end of what is drawn. Those of the devices
-    # are cut themselves; one of rails before them begins where the drawing does.
-    slots, begin = [], ends[0] - DRAWN_BEHIND_WALL * size
-    for standing, start, _ in placements:
-        if standing.slot:
-            slots += [_rectangle(begin, start + SMOOTHING_M, slot)] if slot else []
-            begin = start + max(hole[:, 0].max() for hole in standing.holes) - SMOOTHING_M
-            slot = standing.slot
-    if slot and begin < ends[1]:
-        slots.append(_rectangle(begin, ends[1] + DRAWN_BEHIND_WALL * size, slot))
-    for k, (standing, start, last) in enumerate(placements):
-        # A device's slot ends where other rails begin.
-        rails = [begin for other, begin, _ in placements[k + 1 :] if other.slot] if standing.slot else []
-        far = rails[0] - start + SMOOTHING_M if rails else np.inf
-        for hole in standing.holes:
-            holes.append((np.column_stack([np.minimum(hole[:, 0], far), hole[:, 1]]), start))
-        blades += [_blade(blade, track, start, size, level) for blade in standing.blades]
-        if standing.drop > 0.0:
-            cuts, depth = [*holes, *slots], standing.drop + TRACK_DEPTH_M
-            plates.append(_floor(cuts, track, size, ends, (first, last), level, depth))
-            level, first, holes = level - standing.drop, start - TRACK_DEPTH_M, []
+    behind = DRAWN_BEHIND_WALL * size
+    cuts = [[opening.shifted(start) for opening in item.openings] for item, start, _ in placements]
+    openings = continue_slots(cuts, ends[1] + behind, SMOOTHING_M, enough=ends[1])
+    slots = [opening.ring for some in openings for opening in some if opening.hangs]
+    if slot:  # between the rails before them, up to the first of their own
+        until = min((ring[:, 0].min() + SMOOTHING_M for ring in slots), default=ends[1] + behind)
+        slots.append(box_ring(ends[0] - behind, until, *slot))
+    for (item, start, last), some in zip(placements, openings):
+        holes += [opening.ring for opening in some if not opening.hangs]
+        blades += [_blade(blade, track, start, size, level) for blade in item.blades]
+        if item.drop is not None and item.drop.height > 0.0:
+            holes.append(item.drop.beside(track.extent) + [start, 0.0])
+            depth = item.drop.height + TRACK_DEPTH_M
+            plates.append(_floor([*holes, *slots], track, size, ends, (first, last), level, depth))
+            level, first, holes = level - item.drop.height, start - TRACK_DEPTH_M, []
     plates.append(_floor([*holes, *slots], track, size, ends, (first, ends[1]), level))
     # All as records, the plates with boxes around their borders.
     rows, borders, count = [], [], 0
@@ -331,14 +326,8 @@ def build_track(
     return frozen_rows(rows, PLATE_RECORD), frozen_rows(borders, BORDER)
 
 
-def _rectangle(begin: float, end: float, span: tuple[float, ...]) -> tuple[Floats, float]:
-    """A hole between two places along the wall and two distances from it: its outline, from the place 0."""
-    low, high = span
-    return np.array([[begin, low], [end, low], [end, high], [begin, high]]), 0.0
-
-
 def _floor(
-    holes: Sequence[tuple[Floats, float]],
+    holes: Sequence[Floats],
     track: Track,
     size: float,
     ends: tuple[float, float],
@@ -358,9 +347,10 @@ def _floor(
         for places, off in ((coarse, radius + behind), (fine, radius - width))
     ]
     area = shapely.Polygon(np.vstack(ring))
-    for outline, start in holes:
-        taken = np.array(outline, float)
-        taken[:, 0] = np.minimum(taken[:, 0] + start, last + behind)
+    for outline in holes:
+        if outline[:, 0].min() >= last + behind:  # of a device further on, on a lower track
+            continue
+        taken = np.column_stack([np.minimum(outline[:, 0], last + behind), outline[:, 1]])
         bent = bend_ring(
             np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind)), radius, chord=MAX_SAGITTA_M
         )
@@ -383,17 +373,7 @@ def _blade(blade: Blade, track: Track, start: float, size: float, level: float) 
     It goes on into wall and track where it reaches them: a corner that touches either does not slip past it.
     """
     behind, at_wall = DRAWN_BEHIND_WALL * size, blade.foot[1] <= 0.0
-    solid: Any = blade.solid
-    areas = [solid]
-    if at_wall:
-        strip = shapely.box(0.0, -BEYOND_OPENINGS_M, SMOOTHING_M, BEYOND_OPENINGS_M)
-        bounds = shapely.bounds(shapely.get_parts(solid.intersection(strip)))
-        areas += [shapely.box(-behind, low, SMOOTHING_M, high) for _, low, _, high in bounds]
-        solid = shapely.union_all(areas)
-    strip = shapely.box(-BEYOND_OPENINGS_M, 0.0, BEYOND_OPENINGS_M, SMOOTHING_M)
-    bounds = shapely.bounds(shapely.get_parts(solid.intersection(strip)))
-    areas += [shapely.box(near, -behind, far, SMOOTHING_M) for near, _, far, _ in bounds]
-    solid = shapely.union_all(areas)
+    solid = blade.carried_into(behind, behind, SMOOTHING_M)
     theta = (start + blade.foot[0]) / track.radius
     ahead = np.array([np.cos(theta), np.sin(theta), 0.0])
     inwards = np.array([-ahead[1], ahead[0], 0.0])
@@ -430,13 +410,13 @@ def _borders(area: Any, is_end: Callable[..., bool]) -> Floats:
 
 
 def place_air(
-    placements: Sequence[tuple[Standing, float, float]], track: Track, orientations: Sequence[Orientation]
+    placements: Sequence[tuple[Features, float, float]], track: Track, orientations: Sequence[Orientation]
 ) -> Air:
     """Return the jets, sensors and slopes of devices along a track, in the bowl's frame.
 
     Parameters
     ----------
-    placements : sequence of (Standing, float, float) [m]
+    placements : sequence of (Features, float, float) [m]
         The devices, where each begins along the wall, and the level of the track there.
     track : Track
     orientations : sequence of Orientation
@@ -451,9 +431,9 @@ def place_air(
     watches: list[Watch] = []
     slopes: list[PlacedSlope] = []
     mass = orientations[0].posture.mass
-    for standing, start, level in placements:
+    for features, start, level in placements:
         first = len(rows)
-        for jet in standing.jets:  # in the bowl's frame; one that a sensor sets off does not blow
+        for jet in features.jets:  # in the bowl's frame; one that a sensor sets off does not blow
             x, y, z = jet.at
             theta, off = (start + x) / track.radius, track.radius - y
             c, s, (a, b, up) = np.cos(theta), np.sin(theta), jet.towards
@@ -462,11 +442,11 @@ def place_air(
             mouth = off * s, track.radius - off * c, z + level
             times = (0.0, np.inf) if np.isinf(jet.seconds) else (np.inf, np.inf)
             rows.append([*mouth, *towards, jet.radius, jet.spread, jet.thrust / mass, jet.reach, *times])
-        if standing.sensor is not None:
-            seconds = max((jet.seconds for jet in standing.jets), default=0.0)
-            place, nozzles = start + standing.sensor.at, start + standing.jets[0].at[0]
-            watches.append(Watch(place, nozzles, standing.sensor, slice(first, len(rows)), seconds))
-        slopes += [(start + slope.begin, slope.climb, slope.bank, slope.wall) for slope in standing.slopes]
+        if features.sensor is not None:
+            seconds = max((jet.seconds for jet in features.jets), default=0.0)
+            place, nozzles = start + features.sensor.at, start + features.jets[0].at[0]
+            watches.append(Watch(place, nozzles, features.sensor, slice(first, len(rows)), seconds))
+        slopes += [(start + slope.begin, slope.climb, slope.bank, slope.wall) for slope in features.slopes]
     return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
 
 

@@ -21,7 +21,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output import design_pages, designs, machine_figures, marking, solidbowl, tooling_drawing
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.track_sections import build_section
+from feederscrew.tooling.tooled_track import lay_out
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 SHORT = "FALLS SHORT"
@@ -105,7 +105,7 @@ def test_drawings_of_what_falls_short_bear_a_mark(built, target, short):
 
 def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
     track, devices = sensing.track, sensing.devices[1:]
-    section = build_section(track, devices, designing.machines.orientations(PART, find(PART), track))
+    section = lay_out(track, devices, designing.machines.orientations(PART, find(PART), track))
     read = ezdxf.read(io.StringIO(tooling_drawing.dxf(section, mark=marking.MARK).decode()))
     across = [one for one in read.modelspace() if one.dxf.layer == "MARK"]
     assert [one.dxftype() for one in across] == ["TEXT"] and SHORT in across[0].dxf.text

@@ -20,13 +20,14 @@ from feederscrew import part as parts
 from feederscrew.output import shading, solid_files, tooling_drawing, tooling_figures, tooling_views
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
+from feederscrew.solidbowl import section as printed
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import ToolingSearch, ToolingStudy, tooling
-from feederscrew.tooling import solid, track_sections
+from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import add_travel, orientations
-from feederscrew.tooling.track_sections import bend_ring, build_section
+from feederscrew.tooling.tooled_track import bend_ring, lay_out
 from feederscrew.tooling.verdicts import verdict
 
 LOOKED_AT = True
@@ -61,7 +62,7 @@ def lying(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def drawn(lying):
-    return build_section(lying[0].track, lying[0].devices, lying[1])
+    return lay_out(lying[0].track, lying[0].devices, lying[1])
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +87,7 @@ def test_drawing_and_section_are_closed_and_give_the_verdicts_again(drawn, lying
     assert {line.dxf.layer for line in lines} == layers
     # Each cut read back gives the verdicts again.
     (tmp_path / "tooling.dxf").write_bytes(tooling_drawing.dxf(drawn))
-    cuts = [station.device for station in drawn.stations if station.hole is not None]
+    cuts = [placed.device for placed in drawn.devices if placed.openings]
     lines = [f"  - cut_out: {{dxf: tooling.dxf, layer: {name}}}" for name in LAYERS]
     (tmp_path / "copy.yaml").write_text("\n".join(["track: {width: 45 mm}", "devices:", *lines]))
     for cut, hole in zip(cuts, bowls.read(tmp_path / "copy.yaml").devices, strict=True):
@@ -96,7 +97,7 @@ def test_drawing_and_section_are_closed_and_give_the_verdicts_again(drawn, lying
     data = solid_files.section_stl(drawn)
     mesh = trimesh.load(io.BytesIO(data), file_type="stl")
     assert mesh.is_watertight and mesh.body_count == 1 and data == solid_files.section_stl(drawn)
-    vertices, faces = solid.solid(drawn)
+    vertices, faces = printed.solid(drawn)
     assert len(faces) == len(mesh.faces)
     assert vertices[faces].min() == pytest.approx(1e-3 * mesh.bounds[0].min())
 
@@ -182,17 +183,17 @@ def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying, at_gates):
     stopped = [one for one in at_gates if one.verdict.passes <= 0.0]
     assert {met.device.kind for met in stopped} == {"wiper", "profile gate"}
     for met in stopped:
-        (station,) = tooling_views.station_of(met, lying[1]).stations
-        x, y, _ = tooling_views.part_on_section(met, station).T
+        (placed,) = tooling_views.section_of(met, lying[1]).devices
+        x, y, _ = tooling_views.part_on_section(met, placed).T
         ahead = lying[0].track.radius * np.arctan2(x, lying[0].track.radius - y)
-        assert ahead.max() == pytest.approx(station.blade[:, 0].min(), abs=1e-6)
+        assert ahead.max() == pytest.approx(placed.footprints[0][:, 0].min(), abs=1e-6)
     # No gate hides it.
     for met in at_gates[::2]:
-        section = tooling_views.station_of(met, lying[1])
-        body = tooling_views.part_on_section(met, section.stations[0]), met.orientation.posture.solid.faces
+        section = tooling_views.section_of(met, lying[1])
+        body = tooling_views.part_on_section(met, section.devices[0]), met.orientation.posture.solid.faces
         centre = 0.5 * (body[0].min(axis=0) + body[0].max(axis=0))
-        angle, half = met.angle(section.stations[0]), np.ptp(body[0], axis=0).max()
-        track = solid.solid(section)
+        angle, half = met.angle(section.devices[0]), np.ptp(body[0], axis=0).max()
+        track = printed.solid(section)
         (view,) = tooling_views.clearest([track], [body], [centre], [angle], half)
         cameras = view, tooling_views.camera_at(angle)
         share, former = (shading.shown_share(track, body, centre, one, half) for one in cameras)
@@ -255,23 +256,21 @@ def test_the_slot_that_parts_hang_in_is_open_at_the_outlet(behind):
     more = {"wiper": {"limit": 14e-3}, "rails": {"span": (2.4e-3, 6.3e-3)}}
     spans = [(2.1e-3, 6.6e-3), *((2.4e-3, 6.3e-3) for kind in behind if kind == "rails")]
     devices = [make_device("rails", "here", span=spans[0])]
-    strip = build_section(
-        track, devices + [make_device(kind, "here", **more[kind]) for kind in behind], every
-    )
+    strip = lay_out(track, devices + [make_device(kind, "here", **more[kind]) for kind in behind], every)
     file = ezdxf.read(io.StringIO(tooling_drawing.dxf(strip).decode()))
     cuts = [one for one in file.modelspace().query("LWPOLYLINE") if one.dxf.layer.startswith("CUT")]
     assert max(p[0] for cut in cuts for p in cut.get_points()) == pytest.approx(1e3 * strip.length, abs=1e-6)
     # Rays from above find no web: between the rails from where they begin, and past the end of the track.
-    vertices, faces = solid.solid(strip)
+    vertices, faces = printed.solid(strip)
     mesh = trimesh.Trimesh(vertices, faces)
-    begin = strip.stations[0].start
+    begin = strip.devices[0].begin
     for s in np.arange(begin + 1e-3, strip.length, 0.5e-3):
         angle, off = s / track.radius, track.radius - 4.35e-3
         above = [off * np.sin(angle), track.radius - off * np.cos(angle), -1e-4]
         assert not mesh.ray.intersects_any([above], [[0.0, 0.0, -1.0]])[0], s
     # The rails are as wide as they are set, each up to the next.
-    for station, (low, high) in zip((one for one in strip.stations if one.device.hangs), spans, strict=True):
-        assert station.hole[:, 1].min() == low and station.hole[:, 1].max() == high
+    for (_, slot), (low, high) in zip(strip.openings, spans, strict=True):
+        assert slot.ring[:, 1].min() == low and slot.ring[:, 1].max() == high
     assert mesh.is_watertight and mesh.body_count == 1
 
 
@@ -281,7 +280,7 @@ def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(ly
     like = every[0].aspect, every[0].heading, 0.5e-3
     sorter = make_device("vision reject", "here", like=like, sees="outline").rewritten()
     passes, rejected = tooling_views.figure([sorter], every, np.full(len(every), 0.2), 0).axes
-    jets = build_section(bowl.track, [sorter], every).stations[0].standing.jets
+    jets = lay_out(bowl.track, [sorter], every).devices[0].features.jets
     assert len(passes.patches) == len(jets) > 0  # mouths; nothing blows at what is kept
     assert len(rejected.patches) == 2 * len(jets)
     assert [[text.get_text() for text in axes.texts] for axes in (passes, rejected)] == [["sensor"]] * 2
@@ -290,13 +289,13 @@ def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(ly
 def test_what_is_written_of_two_columns_of_nozzles_stands_in_lines_of_its_own():
     """Texts of a second sensor lay on those of the first, and equal heights were written twice."""
     jets = [SimpleNamespace(at=(0.01, 0.0, z), radius=1e-3) for z in (2e-3, 6e-3)]
-    stations = [SimpleNamespace(start=start, standing=SimpleNamespace(jets=jets)) for start in (0.04, 0.055)]
+    devices = [SimpleNamespace(begin=begin, features=SimpleNamespace(jets=jets)) for begin in (0.04, 0.055)]
     texts, heights = [], []
     drawing = SimpleNamespace(
         lines=lambda *_: None, circle=lambda *_: None, ordinate=lambda *shown: heights.append(shown),
         text=lambda x, y, *words, **_: texts.append((x, y, words[0])),
     )  # fmt: skip
-    top = tooling_drawing.draw_wall_bores(drawing, stations, tooling_drawing.View((20.0, 0.0), 1.0), 30.0)
+    top = tooling_drawing.draw_wall_bores(drawing, devices, tooling_drawing.View((20.0, 0.0), 1.0), 30.0)
     assert [words.partition(" from D")[0][-3:] for *_, words in texts[:2]] == [" 50", " 65"]
     rows = sorted(y for _, y, _ in texts)
     assert len(heights) == 2 and {x for x, *_ in texts} == {20.0}

@@ -11,7 +11,7 @@ import shapely
 from shapely import affinity
 
 from feederscrew.solidbowl import facets, measuring
-from feederscrew.solidbowl.cuts import lean_at_entry
+from feederscrew.tooling.fates import leading_devices
 
 MM = facets.MM
 UNDER = 3e-4  # [m] below the track's surface, where its plate is cut to see its holes
@@ -24,45 +24,38 @@ BEFORE = 20e-3  # [m] of track before the devices that is unrolled
 class OnMesh:
     """A device whose holes and blades are those of the mesh; everything else is its own."""
 
-    def __init__(self, device, standing):
-        self._device, self._standing = device, standing
+    def __init__(self, device, features):
+        self._device, self._features = device, features
 
     def __getattr__(self, name):
         return getattr(self._device, name)
 
-    def standing(self, track, every):
-        """Return what stands along the track, as it was measured."""
-        return self._standing
+    def features(self, track, every):
+        """Return its features as they were measured."""
+        return self._features
 
 
 def ridden(made, bowl, every):
     """The bowl of a solid, its track as measured, and its devices, as orientations of a part meet them."""
     plan, body = made.plan, facets.unplaced(made)
     track = _track(plan, body, bowl.track)
-    if lean_at_entry(bowl.devices):  # its bank stands in their slopes
+    if leading_devices([one for one in bowl.devices if one.placed]):  # its bank stands in their slopes
         track = replace(track, bank=bowl.track.bank)
     if plan.stretch is None:
         return replace(bowl, track=track, devices=()), []
-    flat, devices, stretch = _unrolled(plan, body), [], plan.stretch
-    placed = [one for one in bowl.devices if one.placed]
-    drawn = stretch.cuts, stretch.blades
-    cuts, blades = ({a.label: [b for b in some if b.label == a.label] for a in some} for some in drawn)
-    for device in placed:
-        own = device.standing(bowl.track, every)
+    flat, devices = _unrolled(plan, body), []
+    for placed in plan.stretch.devices:
+        own, device = placed.features, placed.device
         if own.slopes:
             own = replace(own, slopes=tuple(_slope(plan, body, device, one) for one in own.slopes))
-        if own.drop > 0.0:
-            drop, aside = _lower(plan, flat, body, own)
-            (cut,) = own.holes
-            beside = np.where(cut == own.aside, aside, cut)
-            own = replace(own, drop=drop, aside=aside, holes=(beside,))
-        elif own.holes:
-            cut = cuts[device.label].pop(0)
-            start = plan.first + cut.span[0] - min(hole[:, 0].min() for hole in own.holes)
-            own = replace(own, holes=_holes(plan, flat, start, own, track.width))
+        if own.drop is not None:
+            drop, aside = _lower(plan, flat, body, own.drop)
+            own = replace(own, drop=replace(own.drop, height=drop, aside=aside))
+        elif own.openings:
+            rings = _holes(plan, flat, plan.first + placed.begin, own, track.width)
+            own = replace(own, openings=tuple(replace(own.openings[0], ring=ring) for ring in rings))
         if own.blades:
-            drawn = blades[device.label].pop(0)
-            own = replace(own, blades=tuple(_blade(plan, flat, drawn, one) for one in own.blades))
+            own = replace(own, blades=tuple(_blade(plan, flat, placed, one) for one in own.blades))
         devices.append(OnMesh(device, own))
     return replace(bowl, track=track, devices=tuple(devices)), devices
 
@@ -83,7 +76,7 @@ def _leaning(plan, device):
         starts = [at for at, climb in way.bends if climb == device.angle]
     else:
         starts = [end for _, end, bank in way.leans if bank == device.angle] or [0.6 * plan.first]
-    opened = [plan.first + a + opens for a, _, _, opens in stretch.grooves if device.kind == "V groove"]
+    opened = [plan.first + one.start + one.opens for one in stretch.grooves if device.kind == "V groove"]
     start = max(min(starts), *opened) if opened else min(starts)
     later = [*(a for a, _, _ in way.leans), *(at for at, _ in way.bends)]
     end = min([way.end, *(at for at in later if at > start + 1e-4)])
@@ -108,7 +101,7 @@ def _wall_lean(plan, body, s):
 
 def _lower(plan, flat, body, own):
     """How much lower [m] the track goes on at a step or beside a ledge, and how wide the ledge is."""
-    at = next(at for at, drop in plan.path.drops if abs(drop - own.drop) < 1e-9)
+    at = next(at for at, drop in plan.path.drops if abs(drop - own.height) < 1e-9)
     y = 0.5 * (own.aside + plan.width)
     before, behind = (measuring.track_heights(plan, body, s, y) for s in (at - 3e-4, at + 3e-4))
     drop = float(before - behind + np.tan(plan.path.climb) * 6e-4)
@@ -163,8 +156,8 @@ def _unrolled(plan, body):
 
 def _holes(plan, flat, start, own, width):
     """The holes of a device: what is not there of the plate, as far as the device goes."""
-    far = min(max(hole[:, 0].max() for hole in own.holes), plan.path.end + plan.outlet - 2e-3 - start)
-    near = min(hole[:, 0].min() for hole in own.holes)
+    far = min(own.openings[0].end, plan.path.end + plan.outlet - 2e-3 - start)
+    near = own.openings[0].begin
     room = shapely.box(start + near - CRUMB, 0.0, start + far + CRUMB, width)
     missing = room.difference(facets.cut_face(flat, 2, -UNDER).buffer(0.5 * CRUMB, join_style="mitre"))
     missing = missing.buffer(-CRUMB, join_style="mitre").buffer(1.5 * CRUMB, join_style="mitre")
@@ -175,12 +168,10 @@ def _holes(plan, flat, start, own, width):
     return tuple(np.where(ring <= [-np.inf, 1.5 * CRUMB], ring * [1, 0], ring) for ring in rings)
 
 
-def _blade(plan, flat, drawn, blade):
+def _blade(plan, flat, placed, blade):
     """A blade with the face that the mesh has in the middle of its thickness."""
-    s = plan.first + drawn.start + 0.5 * drawn.thickness
-    turned = flat.translate((-s / MM, 0.0, 0.0)).rotate((0.0, 0.0, float(np.degrees(np.arctan(drawn.lean)))))
-    face = facets.cut_face(turned, 0, 0.0)
-    face = affinity.scale(face, 1.0 / np.cos(np.arctan(drawn.lean)), 1.0, origin=(0.0, 0.0))
+    s = plan.first + placed.begin + blade.foot[0] + 0.5 * blade.thickness
+    face = facets.cut_face(flat.translate((-s / MM, 0.0, 0.0)), 0, 0.0)  # of a blade straight across
     low, _, high, top = blade.solid.bounds
     face = face.intersection(shapely.box(max(low, 0.0), CRUMB, high, top))
     face = face.buffer(-CRUMB, join_style="mitre").buffer(CRUMB, join_style="mitre")

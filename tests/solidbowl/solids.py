@@ -11,11 +11,12 @@ from scipy.spatial import cKDTree
 from feederscrew.bowl.reading import effective, record
 from feederscrew.bowl.record import Track
 from feederscrew.machine.sizing import Size
-from feederscrew.solidbowl import cuts, facets
+from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import ways_down
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
 from feederscrew.tooling.devices.kinds import make_device
+from feederscrew.tooling.tooled_track import lay_out
 
 RULES = record(effective({})).sizing
 TRACK = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=0.02)
@@ -59,7 +60,8 @@ class One(SimpleNamespace):
 def planned(devices=(), track=TRACK, asked=PLAIN, name="steel", turns=1.5):
     pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
     size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, turns * pitch, turns, pitch)
-    tooled = cuts.stretch(track, devices, [One(track)]) if devices else None
+    tooled = lay_out(track, devices, [One(track)]) if devices else None
+    track = track if tooled is None else tooled.track
     return plan(size, track, material(name, RULES), tooled, asked, extents=(18e-3, 14e-3, 12e-3))
 
 

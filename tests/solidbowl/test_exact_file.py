@@ -12,12 +12,13 @@ from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
+from feederscrew.solidbowl import section as printed
 from feederscrew.solidbowl.exact import exact_body, exact_file
 from feederscrew.solidbowl.exact.exact_file import step_file
 from feederscrew.solidbowl.plan import SolidOptions
 from feederscrew.tooling import solid
 from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.track_sections import build_section
+from feederscrew.tooling.tooled_track import lay_out
 
 PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BANKED, STEEP = replace(TRACK, bank=np.radians(6.0)), replace(TRACK, climb=np.radians(6.24), width=29.1e-3)
@@ -56,7 +57,7 @@ def section_of(tmp_path, *devices):
     lines = "".join(f"  - {device}\n" for device in devices)
     (tmp_path / "bowl.yaml").write_text(f"track: {{width: 30 mm}}\ndevices:\n{lines}")
     part, bowl = parts.load(PART), bowls.read(tmp_path / "bowl.yaml")
-    return build_section(bowl.track, bowl.devices, orientations(part, find(part), bowl.track))
+    return lay_out(bowl.track, bowl.devices, orientations(part, find(part), bowl.track))
 
 
 @pytest.mark.needs("OCP")
@@ -68,9 +69,9 @@ def test_a_narrowed_track_has_the_volume_of_its_annular_sectors(tmp_path):
     def sector(inner, outer, along):
         return 0.5 * ((radius - outer) ** 2 - (radius - inner) ** 2) * along / radius
 
-    plate = sector(0.03, -wall, length) - sector(0.03, 0.016, section.stations[0].length)
-    upright = sector(0.0, overlap - wall, length - 2.0 * overlap) * (section.tallest + solid.WALL_MARGIN_M)
-    body = exact_file.section_body(section)
+    plate = sector(0.03, -wall, length) - sector(0.03, 0.016, section.devices[0].length)
+    upright = sector(0.0, overlap - wall, length - 2.0 * overlap) * (section.tallest + printed.WALL_MARGIN_M)
+    body = printed.section_body(section, exact_body)
     assert exact_body.volume(body) == pytest.approx((plate * solid.PLATE + upright) * 1e9, rel=1e-6)
     assert set(exact_body.kinds(body)) == {"planes", "cylinders", "cones", "ruled"}  # and no others
     # A step, a gate and a groove are one body in the axes of the facets.
@@ -78,8 +79,8 @@ def test_a_narrowed_track_has_the_volume_of_its_annular_sectors(tmp_path):
     data = exact_file.section_file(section)  # it compares the volume with that of the facets
     assert data.startswith(b"ISO-10303-21;") and b"'track section'" in data
     assert data == exact_file.section_file(section)
-    body = exact_file.section_body(section)
+    body = printed.section_body(section, exact_body)
     assert exact_body.kinds(body)["cones"] >= 2  # the wall that leans back
-    vertices, _ = solid.solid(section)
+    vertices, _ = printed.solid(section)
     highest = 1e3 * vertices[np.argmax(vertices[:, 2])]
     assert exact_body.below(body, highest + [0.0, 0.0, 6.0]) == pytest.approx(highest[2], abs=0.02)

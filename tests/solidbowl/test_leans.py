@@ -24,10 +24,11 @@ from solids import (
     slanted,
 )
 
-from feederscrew.solidbowl import cuts, facets, riding, track
+from feederscrew.solidbowl import facets, riding, track
 from feederscrew.solidbowl.closed_body import body, pieces, walls
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width
+from feederscrew.tooling.tooled_track import track_at_entry
 
 LEFT = replace(STEPPED, left=True)
 STEEPER = replace(TRACK, climb=np.radians(6.5))
@@ -82,7 +83,7 @@ def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
     solid = body(planned((TIP, GAP), own, asked))
     is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
-    (ledge,), gap = plan.stretch.ledges, plan.stretch.cuts[0]
+    (ledge,), ((placed, gap),) = plan.stretch.ledges, plan.stretch.openings
     start, end = plan.first + ledge.start, plan.first + ledge.end
     assert (ledge.width, ledge.drop) == (6e-3, 9e-3) and end - start == pytest.approx(1.3 * 18e-3)
     ramp = 9e-3 / np.tan(np.radians(15.0))
@@ -92,7 +93,7 @@ def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
         for y, formula in ((1e-3, on), (5.9e-3, on), (6.1e-3, low), (19e-3, low)):
             place = [*plan.path.plan(s, y), np.tan(own.climb) * s + 4e-3]
             assert facets.below(whole, place) - np.tan(own.climb) * s == pytest.approx(formula, abs=NEAR)
-    assert [one.label for one in plan.stretch.cuts] == ["gap "] and gap.span[0] > ledge.end + ramp
+    assert placed.label == "gap " and gap.begin > ledge.end + ramp
     assert plan.path.drops == ((start, 9e-3),)
 
 
@@ -108,7 +109,7 @@ def test_a_yoke_of_banked_rails_lies_below_them_and_the_outlet_hangs_on_a_track_
     solid = body(planned((RAILS,), replace(TRACK, bank=np.radians(15.0), climb=np.radians(4.0))))
     is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
-    for s in plan.first + plan.stretch.cuts[0].span[1] + np.array([1e-3, 3e-3, 5e-3]):
+    for s in plan.first + plan.stretch.openings[0][1].end + np.array([1e-3, 3e-3, 5e-3]):
         for y in (5e-4, 2.5e-3, 8e-3, 19e-3):
             formula = np.tan(np.radians(4.0)) * s + y * np.sin(np.radians(15.0))
             assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
@@ -132,7 +133,6 @@ GROOVES = {
 @functools.cache
 def grooved(name):
     chain, own, asked, angle = GROOVES[name]
-    own = cuts.banked_height(own, chain, [One(own)])
     return body(planned(chain, own, asked)), np.radians(angle)
 
 
@@ -141,7 +141,8 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
     solid, angle = grooved(name)
     is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
-    ((start, end, lean, opens),) = track.groove_spans(plan)
+    (span,) = track.groove_spans(plan)
+    start, end, lean, opens = span.start, span.end, span.lean, span.opens
     assert lean == pytest.approx(0.5 * np.pi - angle) and opens == 18e-3
     twisted = max([start, *(stop for _, stop, tilt in plan.path.leans if tilt == angle)])
     first, last = max(start + opens, twisted) + 1e-3, min(end, plan.path.end + plan.outlet) - 1e-3
@@ -161,21 +162,20 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
 def test_a_groove_begins_where_it_is_listed_and_ends_at_a_bank():
     plan = grooved("before a bank")[0].plan
     (span,) = track.groove_spans(plan)
-    start, end, _, opens = span
-    first, last = (station.start for station in plan.stretch.stations[1:])
+    start, end, opens = span.start, span.end, span.opens
+    first, last = (placed.begin for placed in plan.stretch.devices[1:])
     assert (start, end) == pytest.approx((plan.first + first, plan.first + last))
     lean = track.lean_at(span, np.array([start, start + 0.5 * opens, end]))
     assert np.degrees(lean) == pytest.approx([3.0, 25.0, 50.0])  # it opens over the length of a part
-    assert track.lean_at((start, end, 0.8, opens), end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD
+    assert track.lean_at(replace(span, lean=0.8), end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD
     early = grooved("from the entry")[0].plan
-    assert early.path.angle(track.groove_spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
+    assert early.path.angle(track.groove_spans(early)[0].start) == pytest.approx(-0.85 * 2.0 * np.pi)
     # Banks that are listed first are those of the whole track.
     chain = (bank(3.0), bank(6.0), GAP, bank(9.0))
-    assert cuts.banked_height(TRACK, chain, [One(TRACK)]).bank == np.radians(6.0)
+    assert track_at_entry(TRACK, chain, [One(TRACK)]).bank == np.radians(6.0)
     chain = (bank(6.0), GAP, bank(6.0))
-    own = cuts.banked_height(TRACK, chain, [One(TRACK)])
-    assert planned(chain, own).path.leans == ()
-    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), replace(own, bank=0.05)).path.leans
+    assert planned(chain).path.leans == ()
+    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0))).path.leans
     assert angle == 0.0 and end - start == pytest.approx(0.65 * 18e-3)  # half a room, and gentle enough
 
 
@@ -195,7 +195,8 @@ def test_a_part_lies_in_the_groove_at_both_faces(name):
     """A box of 14 x 8 x 6 mm on the track's face: its side touches the face of the wall, as rays meet it."""
     solid, angle = grooved(name)
     plan, whole = solid.plan, facets.unplaced(solid)
-    start, end, _, opens = track.groove_spans(plan)[0]
+    (span,) = track.groove_spans(plan)
+    start, end, opens = span.start, span.end, span.opens
     for s in np.linspace(start + opens + 8e-3, min(end, plan.path.end) - 8e-3, 5):
         off = []
         points = riding.place_rider(plan, rider(5e-3, 3e-3), cuboid([7e-3, 4e-3, 3e-3]), s)

@@ -11,10 +11,10 @@ from solids import RULES
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.solidbowl import cuts
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
 from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.tooled_track import lay_out
 from feederscrew.trial import course
 
 OWN = [
@@ -34,7 +34,7 @@ def ridden(tmp_path_factory):
     bowl, part = bowls.read(path, OWN), shapes.part(shapes.box(*BLOCK))
     every = orientations(part, find(part), bowl.track)
     size = SimpleNamespace(diameter=0.3, depth=0.045)
-    tooled = cuts.stretch(bowl.track, bowl.devices, every)
+    tooled = lay_out(bowl.track, bowl.devices, every)
     extents, steel = np.array(BLOCK) * 1e-3, material("steel", RULES)
     made = body(plan(size, bowl.track, steel, tooled, SolidOptions(), extents=extents))
     return bowl, part, every, made, *on_mesh.ridden(made, bowl, every)
@@ -47,9 +47,9 @@ def test_the_mesh_measures_what_was_planned_and_parts_end_on_it_as_on_the_analyt
     assert found.track.climb == pytest.approx(bowl.track.climb, abs=2e-4)
     assert found.track.bank == pytest.approx(0.0, abs=2e-3)
     for own, drawn in zip(devices, bowl.devices):
-        mine, theirs = own.standing(found.track, every), drawn.standing(bowl.track, every)
-        assert mine is not theirs and len(mine.holes) == len(theirs.holes)
-        for one, other in zip(mine.holes, theirs.holes):
+        mine, theirs = own.features(found.track, every), drawn.features(bowl.track, every)
+        assert mine is not theirs and len(mine.openings) == len(theirs.openings)
+        for one, other in ((a.ring, b.ring) for a, b in zip(mine.openings, theirs.openings)):
             inside = np.clip(other, -np.inf, [np.inf, bowl.track.width])
             assert one[:, 1].min() == pytest.approx(inside[:, 1].min(), abs=1.5e-4)
             assert np.ptp(one[:, 0]) == pytest.approx(np.ptp(inside[:, 0]), abs=3e-4)

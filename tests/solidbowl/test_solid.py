@@ -74,7 +74,8 @@ def test_a_separation_leads_the_track_down_from_its_place_on():
     assert plan.first < bend < plan.path.end and climb == np.radians(-5.0)
     for s in np.linspace(0.3 * bend, plan.path.end - 2e-3, 60):
         formula = np.tan(TRACK.climb) * s if s < bend else top - np.tan(np.radians(5.0)) * (s - bend)
-        in_gap = any(a - 1e-3 < s - plan.first < b + 1e-3 for a, b in (cut.span for cut in plan.stretch.cuts))
+        cuts = [cut for _, cut in plan.stretch.openings]
+        in_gap = any(cut.begin - 1e-3 < s - plan.first < cut.end + 1e-3 for cut in cuts)
         assert in_gap or track_heights(plan, whole, s, 15e-3) == pytest.approx(formula, abs=NEAR)
     assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
     assert plan.top > top + 12e-3 and plan.outlet_height < top
@@ -87,15 +88,17 @@ def test_a_separation_leads_the_track_down_from_its_place_on():
 def test_a_cut_is_as_large_as_its_device_says_and_rails_are_open_at_their_end():
     solid = built("canyon, slot")
     plan, whole = solid.plan, facets.unplaced(solid)
-    for cut, (low, high) in zip(plan.stretch.cuts, ((-1.0, 6e-3), (8e-3, 12e-3))):
-        s = plan.first + 0.5 * sum(cut.span)
+    for (_, cut), (low, high) in zip(plan.stretch.openings, ((-1.0, 6e-3), (8e-3, 12e-3))):
+        s = plan.first + 0.5 * (cut.begin + cut.end)
         for y in np.linspace(3e-4, TRACK.width - 3e-4, 60):
             if min(abs(y - low), abs(y - high)) > NEAR:
                 on_track = track_heights(plan, whole, s, y) > plan.path.height(s, y) - 1e-3
                 assert on_track == (not low < y < high)
     plan = planned((RAILS,))
     whole = facets.unplaced(body(plan))
-    for s in np.linspace(plan.first + plan.stretch.cuts[0].span[0] + 1e-3, plan.path.end + plan.outlet, 40):
+    for s in np.linspace(
+        plan.first + plan.stretch.openings[0][1].begin + 1e-3, plan.path.end + plan.outlet, 40
+    ):
         place = plan.path.places(s, 5e-3)
         met = facets.below(whole, place)
         assert met is None or met < place[2] - plan.material.plate - plan.hanging + 1e-9
@@ -118,10 +121,13 @@ def test_a_left_hand_is_the_mirror_image_and_a_weight_balances_it():
 def test_a_blade_keeps_its_clearance_and_leans_ahead_where_it_is_swept(sweep, y, near):
     own = {} if sweep is None else {"sweep": np.radians(sweep)}
     plan = planned((device("wiper", limit=6e-3, **own),))
-    solid, blade = body(plan), plan.stretch.blades[0]
+    solid, (ring,) = body(plan), plan.stretch.devices[0].footprints
     assert closed(solid) > 0.0
-    assert sweep is None or blade.lean == pytest.approx(1.0 / np.tan(np.radians(sweep)), rel=1e-6)
-    at = plan.path.places(plan.first + blade.start + blade.lean * y + 0.5 * blade.thickness, y)
+    # from the axis: its face, 1 / tan(sweep) ahead over inwards, seen in the bowl
+    theta = (ring[0, 0] - plan.stretch.devices[0].begin) / 0.15
+    assert theta == pytest.approx(0.5 * 1.3 * 18e-3 / 0.15)
+    across = shapely.Polygon(ring).intersection(shapely.LineString([(-1.0, y), (1.0, y)]))
+    at = plan.path.places(plan.first + across.centroid.x, y)
     hits = facets.first_met(facets.unplaced(solid), at + [0, 0, 1e-3], at + [0, 0, 0.05])
     assert hits[0] + 1e-3 == pytest.approx(6e-3, abs=near)
 
@@ -130,14 +136,18 @@ def test_a_blade_keeps_its_clearance_and_leans_ahead_where_it_is_swept(sweep, y,
 def test_a_nozzle_is_a_hole_through_the_wall(asked):
     solid = built("jets", STEEP, asked)
     plan, whole = solid.plan, facets.unplaced(solid)
-    assert [bore.height for bore in plan.stretch.bores] == [1e-3, 8e-3]
-    s = plan.first + plan.stretch.bores[1].place
+    bores = [
+        (item.begin + jet.at[0], jet.at[2]) for item in plan.stretch.devices for jet in item.features.jets
+    ]
+    assert [height for _, height in bores] == [1e-3, 8e-3]
+    # square to the track: on a climb a higher one lies further back
+    s = plan.first + bores[1][0] - 8e-3 * np.sin(plan.path.climb)
     theta = float(plan.path.angle(s))
     out, ahead = outward(theta), outward(theta + 0.5 * np.pi)
     for off, walls in ((0.9e-3, 0), (1.1e-3, 2)):
         for turn in np.linspace(0.1, 2.0 * np.pi, 12):
             beside = off * (np.cos(turn) * ahead + [0.0, 0.0, np.sin(turn)])
-            start = plan.path.places(s, 2e-3) + [0.0, 0.0, 8e-3] + beside
+            start = plan.path.places(s, 2e-3) + [0.0, 0.0, 8e-3 / np.cos(plan.path.climb)] + beside
             assert len(facets.first_met(whole, start, start + 0.02 * out)) == walls
 
 
@@ -227,7 +237,7 @@ def test_segments_fit_the_bed_and_make_up_the_bowl(bed, least):
 def test_no_dowel_lies_below_a_cut():
     solid = built("gap", name="pla")
     pieces, plan = segments.segments(solid, (0.09, 0.09, 0.25)), solid.plan
-    ring = shapely.LinearRing(np.array(plan.stretch.cuts[0].ring) + [plan.first, 0.0])
+    ring = shapely.LinearRing(np.array(plan.stretch.openings[0][1].ring) + [plan.first, 0.0])
     cut = shapely.Polygon(plan.path.plan(*shapely.get_coordinates(ring.segmentize(1e-3)).T))
     c, s = np.cos(pieces.turned), np.sin(pieces.turned)
     there = shapely.points(pieces.places[:, :2] @ np.array([[c, s], [-s, c]]))

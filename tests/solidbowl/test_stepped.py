@@ -103,7 +103,7 @@ def test_the_wall_goes_down_with_the_track_behind_a_separation():
     assert set(is_one_body(solid).values()) == TURN_BEFORE
     plan, whole = solid.plan, facets.unplaced(solid)
     ((bend, _),) = plan.path.bends
-    for s in np.linspace(bend - 0.05, plan.first + plan.stretch.cuts[0].span[0] - 1e-3, 30):
+    for s in np.linspace(bend - 0.05, plan.first + plan.stretch.openings[0][1].begin - 1e-3, 30):
         after = max(s - bend, 0.0)
         formula = np.tan(np.radians(5.5)) * (s - after) - np.tan(np.radians(4.0)) * after
         assert track_heights(plan, whole, s, 5e-3) == pytest.approx(formula, abs=NEAR)

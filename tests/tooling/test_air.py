@@ -101,7 +101,7 @@ def test_a_sorter_of_two_orientations_passes_both(tmp_path):
     assert rest and all(verdict(both, other, every).passes < 1.0 for other in rest)
     wider = both.with_play(2e-3)
     assert wider.text == f"{{of: [{', '.join(names)}], play: 2 mm, sees: outline}}"
-    assert len(wider.standing(BOWL.track, every).sensor.wanted) == 2
+    assert len(wider.features(BOWL.track, every).sensor.wanted) == 2
 
 
 @pytest.mark.parametrize("turn", np.random.default_rng(3).uniform(0.0, 360.0, 20))

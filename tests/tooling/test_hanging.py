@@ -15,6 +15,7 @@ from feederscrew.bowl.devices import THREADED_SHANK
 from feederscrew.errors import FeederError
 from feederscrew.studies import tooling as tooling_study
 from feederscrew.studies import trial
+from feederscrew.tooling.devices.base import opening_at
 from feederscrew.tooling.falling import hangs_free
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.orientations import Hanging, neck
@@ -135,7 +136,8 @@ def test_a_lead_in_is_read_drawn_and_written_anew(tmp_path):
     assert slot.lead == pytest.approx((3e-3, 12e-3, 40e-3, 30e-3))
     near = [[0, 3], [40, 3], [70, 4.4], [200, 4.4]]
     far = [[200, 11.45], [70, 11.45], [40, 12], [0, 12]]
-    assert 1e3 * slot.outline_on(None, 0.2) == pytest.approx(np.array(near + far))
+    opening = opening_at(slot, next(iter(lying(load("hexbolt_m8x25")))))
+    assert 1e3 * opening.extended(0.2).ring == pytest.approx(np.array(near + far))
     assert slot.document_values()["span_mm"] == pytest.approx([4.4, 11.45])
     assert slot.document_values()["lead_in"]["taper_mm"] == pytest.approx(30.0)
     wider = slot.with_span((2.5e-3, 12.5e-3))

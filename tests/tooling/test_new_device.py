@@ -21,7 +21,8 @@ FILE = '''
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.base import Device, room_of
+from feederscrew.tooling.devices.features import Features, TrackOpening, box_ring
 
 
 class Ravine(Device):
@@ -41,8 +42,9 @@ class Ravine(Device):
     @classmethod
     def read(cls, entry):
         return values.length(entry)
-    def span_on(self, track):
-        return 0.0, self.limit
+    def features(self, track, every):
+        room, span = room_of(every), (0.0, self.limit)
+        return Features(room, openings=(TrackOpening(box_ring(0.0, room, *span), span),))
     def judged(self, met):
         return met.verdict(met.over_span((0.0, self.limit)))
 '''

@@ -15,7 +15,7 @@ from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices import openings
-from feederscrew.tooling.devices.base import UNSURE, share
+from feederscrew.tooling.devices.base import UNSURE, room_of, share
 from feederscrew.tooling.devices.blades import SQUARE_FACE_RAD
 from feederscrew.tooling.devices.kinds import KINDS, find_kind
 from feederscrew.tooling.orientations import place
@@ -175,8 +175,8 @@ def test_a_swept_blade_leans_ahead_from_the_wall_to_the_free_edge(sweep, along, 
     """Its face is 20 mm / sin(sweep) long and ends 20 mm / tan(sweep) farther ahead than it begins."""
     wiper = device("wiper", limit=6e-3, sweep=np.radians(sweep), contour=((0.0, 6e-3), (9e-3, 4e-3)))
     every = awkward.lying()
-    standing = wiper.standing(replace(BOWL.track, width=20e-3), every)
-    (blade,) = standing.blades
+    features = wiper.features(replace(BOWL.track, width=20e-3), every)
+    (blade,) = features.blades
     ring = shapely.get_coordinates(blade.solid)[:-1]
     lower, tall = ring[ring[:, 1] < 7e-3], ring[ring[:, 1] > 7e-3]
     edge = np.array([(0.0, 6e-3), (9e-3 * along, 4e-3), (20e-3 * along, 4e-3)])
@@ -186,8 +186,8 @@ def test_a_swept_blade_leans_ahead_from_the_wall_to_the_free_edge(sweep, along, 
     (x, y), way = blade.foot, np.array([np.cos(blade.heading), np.sin(blade.heading)])
     end = np.array([x, y]) + 20e-3 * along * way
     np.testing.assert_allclose(end - [x, 0.0], [20e-3 * ahead, 20e-3], rtol=1e-6, atol=1e-9)
-    assert y == 0.0 and standing.length == pytest.approx(end[0])
-    assert wiper.goes_on(20e-3) == pytest.approx(20e-3 * ahead, rel=1e-6, abs=1e-12)
+    assert y == 0.0 and features.length == pytest.approx(end[0])
+    assert features.takes == pytest.approx(room_of(every) + 20e-3 * ahead, rel=1e-6, abs=1e-12)
 
 
 @pytest.fixture(scope="module")
@@ -206,7 +206,7 @@ def test_over_a_shorter_hole_a_rod_only_dips(rod, wide, rides):
     hole = device("cut-out", corners=((0.0, low), (12e-3, low), (12e-3, high), (0.0, high)))
     judged = verdict(hole, replace(rod, climbs=0.1e-3, carry=1e-3))
     assert judged.passes == 0.0 and judged.margin == pytest.approx(-UNSURE if rides else -1e-3, rel=1e-2)
-    assert hole.goes_on(40e-3) == 12e-3
+    assert hole.features(rod.track, [rod]).length == 12e-3
 
 
 @pytest.mark.parametrize(

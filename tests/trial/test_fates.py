@@ -111,7 +111,7 @@ def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
     parts.lay(0, state)
     parts.ride(0)
     speed = parts.arrays.states[0, body.VY] * LENGTH / known.unit
-    (one,) = jet.standing(bowl.track, EVERY).jets
+    (one,) = jet.features(bowl.track, EVERY).jets
     assert speed == pytest.approx(one.thrust / PART.mass / BOWL.drive.frequency, rel=0.05)
 
 

@@ -18,7 +18,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.dropping.launch_conditions import named, sample
 from feederscrew.geometry import vectors
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.base import Sensor
+from feederscrew.tooling.devices.features import Sensor
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course, looks, part_poses, queue, runs, shape, staging

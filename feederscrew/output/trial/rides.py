@@ -16,7 +16,7 @@ from feederscrew.output.shading import Mesh, encode_base64, join_meshes, short
 from feederscrew.output.trial.figures import solids, unroll_path
 from feederscrew.part.record import Part
 from feederscrew.tooling import solid
-from feederscrew.tooling.track_sections import bend_ring
+from feederscrew.tooling.tooled_track import bend_ring
 from feederscrew.trial import course, runs
 from feederscrew.trial.course import Fate
 from feederscrew.trial.result import TrialRun

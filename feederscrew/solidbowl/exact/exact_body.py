@@ -44,6 +44,7 @@ Spline = tuple[Points, Points, Ints, int]  # poles (N, 3), knots, multiplicities
 SEWN = 1e-5  # [mm] edges nearer than this are one
 CURVE_STEP_RAD = 0.05  # [rad] of a curve between two places that it is led through
 HAS_EXACT_CURVES = True  # a curve is a curve
+SEAM_M = 1e-10  # [m] a cut begins so far from the wall: not at its face, which it would go through
 SEAM_ANGLE_RAD = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
 MIN_PIECE_VOLUME_MM3 = 1.0  # [mm3] a loose piece smaller than this is left out
 FUZZY_TOLERANCES_MM = 1e-5, 1e-4, 1e-6  # [mm] nearer faces and edges meet: the first that does well

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import shapely
 
 from feederscrew.errors import FeederError
 from feederscrew.heavy import heavy
 from feederscrew.solidbowl.closed_body import BowlSolid, pieces
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.facets import Body
-from feederscrew.solidbowl.plan import TrackPath
-from feederscrew.tooling.solid import leaning_profile, section_pieces, solid
-from feederscrew.tooling.track_sections import TrackSection
+from feederscrew.solidbowl.section import section_body, solid
+from feederscrew.tooling.tooled_track import TooledTrack
 from feederscrew.units import MM
 
 IFSelect = heavy("OCP.IFSelect")
@@ -30,8 +28,6 @@ STEP_NAME_SETTING = "write.step.product.name"
 STEP_HEIGHT_SAMPLES = 24  # along the track at which the height of the opened file is measured
 STEP_VOLUME_TOLERANCE = 3e-3  # of the volume of the facets, which lie within the chord of the arcs
 SECTION_VOLUME_TOLERANCE = 2e-3  # [1] of the volume of the facets, whose chords lie within the arcs
-BESIDE_WALL_M = 1e-10  # [m] a cut begins so far from the wall: not at its face, which it would go through
-CUT_MARGIN_M = 1e-3  # [m] by which a cut goes on above and below the track
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +124,7 @@ def step_bytes(bodies: list[Body], name: str) -> bytes:
     return re.sub(rf"'{name} \d+'".encode(), f"'{name}'".encode(), text)  # it counts the files it wrote
 
 
-def section_file(section: TrackSection) -> bytes:
+def section_file(section: TooledTrack) -> bytes:
     """Return the section of track with its cuts as the bytes of a STEP file in millimetres.
 
     One solid in the axes of ``tooling.solid.solid``: the wall is tangent to X at the origin. Raises
@@ -141,36 +137,9 @@ def section_file(section: TrackSection) -> bytes:
     size = np.nan
     for near in exact_body.FUZZY_TOLERANCES_MM:
         with exact_body.meeting(near):
-            body = exact_body.one_piece(section_body(section), "tooling.step")
+            body = exact_body.one_piece(section_body(section, exact_body), "tooling.step")
         size = exact_body.volume(body)
         if exact_body.valid(body) and abs(size / facets - 1.0) <= SECTION_VOLUME_TOLERANCE:
             return step_bytes([body], "track section")
     what = f"OpenCASCADE makes a section of {size:.6g} mm3, not {facets:.6g}"
     raise FeederError("tooling.step", what, "take tooling.stl")
-
-
-def section_body(section: TrackSection) -> Body:
-    """Return the section as a body of OpenCASCADE [mm]; for its axes see ``section_file``."""
-    radius = section.track.radius
-    pieces, path = section_pieces(section, BESIDE_WALL_M), TrackPath(radius, 0.0, 0.0, 2.0 * section.length)
-    plates = [exact_body.over(path, *piece, 0.0) for piece in (*pieces.plates, *pieces.risers)]
-    low, high = pieces.plates[-1][1] - CUT_MARGIN_M, pieces.plates[0][2] + CUT_MARGIN_M
-    tools = [exact_body.over(path, hole, low, high, 0.0) for hole in pieces.holes]
-    bodies, (low, high) = [], pieces.wall_heights
-    for start, stop, lean, ring in pieces.walls:  # upright a cylinder, leaning back a cone
-        if lean:
-            across, begin = leaning_profile(radius, lean, high), float(path.angle(start))
-            bodies.append(exact_body.turned(across, 0, begin, (stop - start) / radius))
-        else:
-            bodies.append(exact_body.over(path, ring, low, high, 0.0))
-    bodies.append(exact_body.without(exact_body.united(plates), tools))
-    for place, level, area, thick, lean in pieces.gates:
-        turn = float(path.angle(place))
-        outward = np.array([np.cos(turn), np.sin(turn), 0.0])
-        ahead = np.array([-np.sin(turn), np.cos(turn), 0.0])
-        axes = np.column_stack([lean * ahead - outward, [0.0, 0.0, 1.0], ahead])
-        foot = radius * outward + [0.0, 0.0, level]
-        bodies.append(exact_body.plank(shapely.normalize(area), thick, axes, foot))
-    turn = path.end / radius - 0.5 * np.pi
-    body = exact_body.placed_as(exact_body.united(bodies), mirrored=False, turned=turn)
-    return exact_body.moved(body, (0.0, radius / MM, 0.0))

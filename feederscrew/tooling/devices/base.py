@@ -1,8 +1,7 @@
 """What every device along the track offers to those who read, judge, draw, make and try it.
 
-Coordinates of a device: x along the wall from where the device begins, y from the wall inwards, z over the
-track. A device hands over one `Standing`: holes, blades, slopes, jets and a sensor, of no kind by name;
-`trial.staging` makes of it what the kernel takes.
+A device says its `Features`, of no kind by name, and its verdict. `tooled_track` places the features of a
+chain; trial, drawings and solids are made of them.
 """
 
 import enum
@@ -17,20 +16,18 @@ import shapely
 
 from feederscrew import units
 from feederscrew import value_forms as forms
-from feederscrew.arrays import Points
 from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import orientation_names, values
+from feederscrew.tooling.devices.features import Blade, Features, TrackOpening
 from feederscrew.tooling.devices.values import Corner
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
-    from feederscrew.tooling.devices.openings import HoleEdges
     from feederscrew.tooling.orientations import Orientation
     from feederscrew.tooling.verdicts import DeviceEncounter
 
-BLADE = 1.5e-3  # [m] thickness of a blade
 GATE_FRAME_M = 5e-3  # [m] of a gate above its opening
 GRIP = 0.6  # [1] friction of a dry steel track
 LIMIT_TOLERANCE_M = 1e-9  # [m] a part this much over a limit still passes
@@ -41,7 +38,6 @@ YAML_MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words ha
 ROOM_PER_DEVICE = 1.3  # a device has so many lengths of the longest part to itself
 WRITTEN_FIELDS = ("where", "text", "assumption")  # of a device, that say how it was written
 COMPARED_DIGITS = 7  # decimals of a value in SI units: a tenth of a micrometre
-DRAWN_LINE_M = 2e-4  # [m] the width with which a line along or across the track is drawn
 
 
 class DeviceFate(enum.StrEnum):
@@ -53,69 +49,6 @@ class DeviceFate(enum.StrEnum):
 
 
 RETURNED, STOPPED, CARRIED = DeviceFate
-
-
-@dataclass(frozen=True, eq=False)
-class Blade:
-    """An upright plate on or over the track, at any angle to it."""
-
-    solid: shapely.Geometry  # of its face [m], along the face from its foot, height over the track
-    foot: tuple[float, float] = (0.0, 0.0)  # [m] x, y where the face begins
-    heading: float = 0.5 * np.pi  # [rad] from the track's direction; less than a right angle is swept back
-    thickness: float = BLADE  # [m] behind the face
-    friction: float | None = None  # [1] static and kinetic, both ways; None is the track's
-
-
-@dataclass(frozen=True, eq=False)
-class Slope:
-    """Another lean of the track, from a place on: to the end of what is tried, or to the next slope."""
-
-    begin: float  # [m] x
-    climb: float | None = None  # [rad] rise along the track; None is the bowl's own
-    bank: float | None = None  # [rad] tilt towards the wall
-    wall: float | None = None  # [rad] by which the wall leans back from upright; None is as before
-
-
-@dataclass(frozen=True, eq=False)
-class Jet:
-    """A round jet of air that pushes what of a part is in it."""
-
-    at: tuple[float, float, float]  # [m] x, y, z of its mouth
-    towards: tuple[float, float, float]  # [1] along the wall, inwards, up
-    radius: float  # [m]
-    spread: float  # [1] growth of the radius along its way
-    thrust: float  # [N] on what takes all of it
-    reach: float  # [m] from the mouth
-    seconds: float = np.inf  # [s] of a pulse that a sensor sets off; infinite of a steady one
-
-
-@dataclass(frozen=True, eq=False)
-class Sensor:
-    """What looks at each part as its centre of mass comes to a place, and sets off the pulsed jets."""
-
-    at: float  # [m] x
-    sees: str  # 'outline' from above, 'side' from the bowl's axis, 'height' or 'relief'
-    wanted: "tuple[Orientation, ...]"  # what is like any of them passes
-    play: float  # [m] what is seen to differ by less passes
-    resolution: float  # [m] to which it sees
-
-
-@dataclass(frozen=True, eq=False)
-class Standing:
-    """All that stands along the track at one device."""
-
-    length: float = 0.0  # [m] of the device along the wall
-    # (K, 2) [m] x, y of each; open into the wall where y <= 0, at the free edge where y >= width
-    holes: tuple[Points, ...] = ()
-    blades: tuple[Blade, ...] = ()
-    slopes: tuple[Slope, ...] = ()
-    jets: tuple[Jet, ...] = ()
-    sensor: Sensor | None = None
-    drop: float = 0.0  # [m] by which the track that goes on lies lower
-    aside: float = 0.0  # [m] from the wall, where that begins
-    hangs: bool = False  # whether parts leave hanging, their centres of mass below the track
-    slot: tuple[float, ...] = ()  # [m] off the wall: the rails between which what hangs goes on behind it
-    settles: float = 0.0  # of the part's size: how far behind the device parts go on until they are looked at
 
 
 @dataclass(frozen=True)
@@ -188,7 +121,6 @@ class Device:
     leans: ClassVar[bool] = False  # whether the track leans otherwise from it on
     grooved: ClassVar[bool | None] = None  # whether the track is a V from it on; None: as before it
     labelled: ClassVar[bool] = False  # whether a label has its value, though that is no length
-    layer: ClassVar[str] = ""  # of its edge in a drawing, where it is none of cuts and gates
     senses: ClassVar[bool] = False  # whether it sees parts and blows off others: air, no edge that is met
     serves: ClassVar[str] = ""  # what one that returns nothing is for
     searched: ClassVar[bool] = False  # whether a design looks for its shape, by many verdicts
@@ -312,75 +244,33 @@ class Device:
 
     # -- as it stands on the track
 
-    def span_on(self, track: "Track") -> tuple[float, ...] | None:
-        """Return from where to where (m, m) off the wall it takes the track away along its way, or None."""
-        return None
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        """Return all that it cuts out of the track, sets on it and changes of its way.
 
-    def hole_on(self, track: "Track") -> "HoleEdges | None":
-        """Return the HoleEdges of what it cuts, if that has an edge across the track, or None."""
-        return None
+        Parameters
+        ----------
+        track : Track
+            Its width and radius count.
+        orientations : sequence of Orientation
+            Of the part: the longest sets how long a device is that goes on along the track, the tallest how
+            high a gate stands, and an opening or a sensor may name one.
 
-    def outline_on(self, track: "Track", length: float) -> Points | None:
-        """Return what it cuts away of a track, unrolled from its start, (K, 2) [m], or None.
+        Returns
+        -------
+        Features
+            In coordinates of the device; none by default.
 
-        ``length`` [m] is that of a device that goes on along the track.
+        Raises
+        ------
+        ConfigError
+            It names an orientation that the part does not have.
         """
-        span = self.span_on(track)
-        return None if span is None else box_ring(0.0, length, *span)
-
-    def goes_on(self, width: float) -> float:
-        """Return how far along a track of some width it goes beyond the room every device has [m]."""
-        return 0.0
-
-    def footprint(self, place: float, width: float, thick: float) -> Points:
-        """Return where a blade of some thickness stands, unrolled, (4, 2) [m]: straight across the track."""
-        return box_ring(place, place + thick, 0.0, width)
-
-    def opening(self, orientations: "Sequence[Orientation]", width: float) -> shapely.Geometry | None:
-        """Return a gate's opening on a track of a width [m]: shapely, off the wall and upwards; or None.
-
-        ``orientations`` are those of the part, which an opening may name.
-        """
-        return None
-
-    def lower(self, orientations: "Sequence[Orientation]") -> tuple[float, float]:
-        """Return by how much and from where off the wall on the track goes on lower [m]."""
-        return 0.0, 0.0
-
-    def edge(self, start: float, length: float, width: float) -> Points | None:
-        """Return the edge over which parts turn, or what is drawn of it, unrolled, (4, 2) [m], or None."""
-        return None
-
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
-        """Return all that stands along the track at it: for the trial, drawings and solids.
-
-        The longest of the part's orientations sets how long one is that goes on along the track.
-        """
-        room, width = room_of(orientations), track.extent
-        gate = self.opening(orientations, width)
-        if gate is not None:  # square across the track, from it to well over the tallest part
-            tall = tall_of(orientations, gate.bounds[3])
-            plate = shapely.box(0.0, 0.0, width, tall).difference(gate)
-            return Standing(0.5 * room, blades=(Blade(plate, foot=(0.5 * room, 0.0)),))
-        cut = self.outline_on(track, room)
-        return Standing(room) if cut is None else Standing(float(cut[:, 0].max()), holes=(cut,))
+        return Features(room_of(orientations))
 
     @property
     def face(self) -> tuple[float, float | None] | None:
         """Sweep [rad] and friction [1] or None of a blade's face that may clear itself; None of others."""
         return None
-
-    @property
-    def across(self) -> float:
-        """How far from the wall it reaches by its own values [m], as far as they say; 0 where they do not."""
-        ends = [*self.span[1:], *(y for _, y in self.corners)] if self.cuts else []
-        return max([*ends, self.limit if math.isfinite(self.limit) else 0.0])
-
-    @property
-    def cuts(self) -> bool:
-        """Whether it is cut out of the track."""
-        kind = type(self)
-        return kind.span_on is not Device.span_on or kind.hole_on is not Device.hole_on
 
     # -- what it does with parts
 
@@ -392,12 +282,13 @@ class Device:
         """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it."""
         if self.rejected:
             return self.rejected
-        orientation = encounter.orientation
-        cut = self.outline_on(orientation.track, ENDLESS_HOLE_LENGTHS * size_of(orientation))
-        span = self.span_on(orientation.track)
+        opening = opening_at(self, encounter.orientation)
+        if opening is None:
+            return RETURNED
+        span = opening.span
         if span is not None and span[0] > 0.0 and encounter.held_by_shoulders(span) >= 0.0:
             return STOPPED  # it hangs in the slot up to its end
-        return RETURNED if cut is None or encounter.falls_through(cut) else STOPPED
+        return RETURNED if encounter.falls_through(opening.ring) else STOPPED
 
     def onward(self, orientation: "Orientation") -> "Orientation":
         """Return an orientation that it lets pass as it goes on behind it."""
@@ -409,7 +300,7 @@ class Device:
         Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
         how high it hops: a part off the track by so much is as far off its place.
         """
-        return orientation.flight if type(self).hole_on is not Device.hole_on else orientation.hop
+        return orientation.hop
 
     def gap(self, orientation: "Orientation", speed: float) -> float:
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
@@ -424,14 +315,60 @@ class Device:
         return 0.0
 
 
-def box_ring(x0: float, x1: float, y0: float, y1: float) -> Points:
-    """Return the corners (4, 2) [m] of what lies between two places along the track and two across it."""
-    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+def opening_at(device: Device, orientation: "Orientation") -> TrackOpening | None:
+    """Return the opening that a device cuts below an orientation, or None.
+
+    Parameters
+    ----------
+    device : Device
+    orientation : Orientation
+
+    Returns
+    -------
+    TrackOpening or None
+        One that goes on along the track lasts as good as endlessly for it. Beside a ledge it is what is
+        missing of the upper track.
+    """
+    if device.like:  # it goes by other orientations of the part, and cuts nothing
+        return None
+    features = device.features(orientation.track, (orientation,))
+    for opening in features.openings:
+        return opening.lasting(ENDLESS_HOLE_LENGTHS * size_of(orientation))
+    if features.drop is None or features.drop.aside <= 0.0:
+        return None
+    ledge, width = features.drop, orientation.track.extent
+    beside = TrackOpening(ledge.beside(width), (ledge.aside, width))
+    return beside.lasting(ENDLESS_HOLE_LENGTHS * size_of(orientation))
+
+
+def gate_features(
+    opening: shapely.Geometry, orientations: "Sequence[Orientation]", width: float, *, is_gate: bool
+) -> Features:
+    """Return a plate square across the track, with an opening.
+
+    Parameters
+    ----------
+    opening : shapely geometry [m]
+        Distances from the wall, and heights.
+    orientations : sequence of Orientation
+        Of the part: the plate goes up over the tallest.
+    width : float [m]
+        Of the track.
+    is_gate : bool
+        Whether it is a part of its own, in a notch of the wall.
+
+    Returns
+    -------
+    Features
+    """
+    room = room_of(orientations)
+    plate = shapely.box(0.0, 0.0, width, tall_of(orientations, opening.bounds[3])).difference(opening)
+    return Features(0.5 * room, blades=(Blade(plate, foot=(0.5 * room, 0.0), is_gate=is_gate),))
 
 
 def tall_of(orientations: "Sequence[Orientation]", least: float) -> float:
-    """Return how tall [m] a gate is made: well over the tallest part, and a ``least`` height [m]."""
-    return 2.0 * max(max(orientation.height for orientation in orientations), least) + GATE_FRAME_M
+    """Return how tall [m] a gate is made: over the tallest part, and over a ``least`` height [m]."""
+    return max(max(orientation.height for orientation in orientations), least) + GATE_FRAME_M
 
 
 def compared(value: Any, *, is_angle: bool = False) -> Iterator[ComparedValue]:

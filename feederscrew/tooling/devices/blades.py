@@ -10,25 +10,24 @@ import numpy as np
 import shapely
 
 from feederscrew import value_forms as forms
-from feederscrew.arrays import Points
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import orientation_names, values
 from feederscrew.tooling.devices.base import (
     RETURNED,
     STOPPED,
-    Blade,
     Device,
-    Standing,
     Verdict,
     angle_text,
     corners_text,
     degrees_words,
+    gate_features,
     length_text,
     length_words,
     mapping_text,
     room_of,
     tall_of,
 )
+from feederscrew.tooling.devices.features import Blade, Features
 from feederscrew.tooling.devices.values import Corner
 
 if TYPE_CHECKING:
@@ -58,8 +57,9 @@ class _Overhead(Device):
     picture: ClassVar[str] = "side"
     feature: ClassVar[str] = "height"
 
-    def opening(self, orientations: "Sequence[Orientation]", width: float) -> shapely.Geometry:
-        return shapely.box(0.0, 0.0, width, self.limit)
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        free = shapely.box(0.0, 0.0, track.extent, self.limit)
+        return gate_features(free, orientations, track.extent, is_gate=False)
 
     @property
     def value_words(self) -> str:
@@ -135,31 +135,20 @@ class Wiper(_Overhead):
         clears = self.clear_of(encounter.grip) and not encounter.hanging  # rails hold what hangs
         return RETURNED if clears else super().fate(encounter)
 
-    def opening(self, orientations: "Sequence[Orientation]", width: float) -> shapely.Geometry:
-        if not self.contour:
-            return super().opening(orientations, width)
-        return shapely.Polygon([(0.0, 0.0), *self._edge(width), (width, 0.0)])
-
     def judged(self, encounter: "DeviceEncounter", sweep: float = 0.0) -> Verdict:
         if not self.contour:
             return super().judged(encounter, self.sweep if self.face else 0.0)
-        return encounter.verdict(encounter.through(self.opening(encounter.orientations, BEYOND_TRACK_M)))
+        free = shapely.Polygon([(0.0, 0.0), *self._edge(BEYOND_TRACK_M), (BEYOND_TRACK_M, 0.0)])
+        return encounter.verdict(encounter.through(free))
 
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         room, lean = room_of(orientations), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
         tall = tall_of(orientations, edge[:, 1].max())
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
-        return Standing(0.5 * room + self.goes_on(track.extent), blades=(blade,))
-
-    def goes_on(self, width: float) -> float:
-        return 0.0 if self.face is None else width / math.tan(self.sweep)
-
-    def footprint(self, place: float, width: float, thick: float) -> Points:
-        lean = self.goes_on(width)
-        far = [[place + lean + thick, width], [place + lean, width]]
-        return np.array([[place, 0.0], [place + thick, 0.0], *far])
+        ahead = 0.0 if self.face is None else track.extent / math.tan(self.sweep)
+        return Features(0.5 * room + ahead, takes=room + ahead, blades=(blade,))
 
     def document_values(self) -> dict[str, Any]:
         own = {"sweep_deg": math.degrees(self.sweep)}
@@ -217,9 +206,11 @@ class Profile(Device):
         aspect, heading, play = self.like
         return mapping_text((("of", orientation_names.written(aspect, heading)), ("play", length_text(play))))
 
-    def opening(self, orientations: "Sequence[Orientation]", width: float) -> shapely.Geometry:
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         free = self.free(orientations)
-        return free.intersection(shapely.box(0.0, 0.0, width, MAX_OPENING_HEIGHT_M)) if self.like else free
+        if self.like:
+            free = free.intersection(shapely.box(0.0, 0.0, track.extent, MAX_OPENING_HEIGHT_M))
+        return gate_features(free, orientations, track.extent, is_gate=True)
 
     def free(self, orientations: "Sequence[Orientation]") -> shapely.Geometry:
         """Return the opening however wide the track is, in distances from the wall and heights [m]."""
@@ -227,7 +218,10 @@ class Profile(Device):
             return shapely.Polygon(self.corners)
         aspect, heading, play = self.like
         k = orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
-        return orientations[k].view_ahead.buffer(play)
+        outline = orientations[k].view_ahead.buffer(play)
+        # what the part shows through a hole of its own is no island in the gate: nothing would carry it
+        parts = [part for part in shapely.get_parts(outline) if part.geom_type == "Polygon"]
+        return shapely.union_all([shapely.Polygon(part.exterior) for part in parts])
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.verdict(encounter.through(self.free(encounter.orientations)))

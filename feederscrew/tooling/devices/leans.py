@@ -6,21 +6,17 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from feederscrew import value_forms as forms
-from feederscrew.arrays import Points
 from feederscrew.documents import Entry
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import (
-    DRAWN_LINE_M,
     Device,
-    Slope,
-    Standing,
     Verdict,
     angle_text,
-    box_ring,
     degrees_words,
     mapping_text,
     room_of,
 )
+from feederscrew.tooling.devices.features import Features, Slope
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -46,7 +42,6 @@ class Lean(Device):
 
     leans = True
     angles = ("angle",)
-    layer = "SLOPE"
     labelled = True
     key: ClassVar[str] = ""  # of the angle in a mapping; '': it is written alone
     limits: ClassVar[tuple[float, float]] = (0.0, MAX_BANK_RAD)  # [rad] of the angle
@@ -83,9 +78,6 @@ class Lean(Device):
     def parting(cls, where: str) -> "Lean | None":
         """Return the stretch of track on which parts come apart, or None."""
         return None
-
-    def edge(self, start: float, length: float, width: float) -> Points:
-        return box_ring(start, start + DRAWN_LINE_M, 0.0, width)
 
     def document_values(self) -> dict[str, Any]:
         return {"angle_deg": math.degrees(self.angle)}
@@ -129,9 +121,10 @@ class Groove(Lean):
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.laid_in_groove(self.angle)
 
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
-        return Standing(GROOVE_ROOMS * room_of(orientations), slopes=(slope,))
+        length = GROOVE_ROOMS * room_of(orientations)
+        return Features(length, takes=length, slopes=(slope,))
 
 
 @dataclass(frozen=True)
@@ -169,8 +162,8 @@ class Bank(Lean):
         rolls = orientation.may_roll_back and not held
         return replace(orientation, track=track, groove=0.0, may_roll_back=rolls)
 
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
-        return Standing(0.5 * room_of(orientations), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        return Features(0.5 * room_of(orientations), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
 
 
 @dataclass(frozen=True)
@@ -204,5 +197,5 @@ class Separation(Lean):
     def onward(self, orientation: "Orientation") -> "Orientation":
         return replace(orientation, track=replace(orientation.track, climb=self.angle))
 
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
-        return Standing(room_of(orientations), slopes=(Slope(0.0, climb=self.angle),))
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        return Features(room_of(orientations), slopes=(Slope(0.0, climb=self.angle),))

@@ -13,14 +13,11 @@ from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import (
-    DRAWN_LINE_M,
     MM,
     RETURNED,
     UNSURE,
     Device,
-    Standing,
     Verdict,
-    box_ring,
     carried,
     length_text,
     mapping_text,
@@ -28,6 +25,7 @@ from feederscrew.tooling.devices.base import (
     size_of,
     span_words,
 )
+from feederscrew.tooling.devices.features import Drop, Features, TrackOpening, box_ring
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -49,11 +47,12 @@ class _Turner(Device):
     turns: ClassVar[bool] = True
     picture: ClassVar[str] = "turned"
 
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
-        drop, aside = self.lower(orientations)
-        far = LOWER_TRACK_LENGTHS * max(size_of(orientation) for orientation in orientations)
-        cut = box_ring(0.0, far, aside, track.extent)
-        return Standing(holes=(cut,), drop=drop, aside=aside, settles=SETTLES)
+
+def _lower_track(height: float, aside: float, orientations: "Sequence[Orientation]") -> Features:
+    """A track that goes on lower; a step stands in the middle of the room that it is given."""
+    reach, room = LOWER_TRACK_LENGTHS * max(size_of(one) for one in orientations), room_of(orientations)
+    drop = Drop(height, aside, reach, length=room if aside > 0.0 else 0.0)
+    return Features(before=0.0 if aside > 0.0 else 0.5 * room, drop=drop, settles=SETTLES)
 
 
 class Step(_Turner):
@@ -65,14 +64,9 @@ class Step(_Turner):
         "drop of the track by that height: orientations of a lower barrier pitch over their leading edge; "
         "quasi-static, until a trial confirms it"
     )
-    layer = "STEP"
 
-    def lower(self, orientations: "Sequence[Orientation]") -> tuple[float, float]:
-        return self.limit, 0.0
-
-    def edge(self, start: float, length: float, width: float) -> Points:
-        middle = start + 0.5 * length
-        return box_ring(middle, middle + DRAWN_LINE_M, 0.0, width)
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        return _lower_track(self.limit, 0.0, orientations)
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.turning(*encounter.pitched_over(self.limit))
@@ -85,9 +79,6 @@ class Step(_Turner):
 
 
 class _Ledge(Device):
-    def span_on(self, track: "Track") -> tuple[float, ...] | None:
-        return (self.limit, track.extent) if self.limit < track.extent else None
-
     def ledge_margin(self, encounter: "DeviceEncounter") -> float:
         needed = encounter.orientation.balcony
         return self.limit - needed if math.isfinite(needed) else -encounter.orientation.axial_foot.reach
@@ -104,14 +95,10 @@ class Tip(_Ledge, _Turner):
         "weight lies beyond it turn over it if that drop takes them past their barrier; quasi-static, until "
         "a trial confirms it"
     )
-    layer = "LEDGE"
     inwards = True
 
-    def lower(self, orientations: "Sequence[Orientation]") -> tuple[float, float]:
-        return below_ledge(orientations), self.limit
-
-    def edge(self, start: float, length: float, width: float) -> Points:
-        return box_ring(start, start + length, self.limit, self.limit + DRAWN_LINE_M)
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        return _lower_track(below_ledge(orientations), self.limit, orientations)
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         margin = self.ledge_margin(encounter)
@@ -129,6 +116,12 @@ class Tip(_Ledge, _Turner):
         return sorted({x for x in (one.orientation.balcony for one in often) if np.isfinite(x)})
 
 
+def _along(span: tuple[float, float], orientations: "Sequence[Orientation]") -> Features:
+    """An opening between two distances [m] from the wall, all along the device."""
+    room = room_of(orientations)
+    return Features(room, openings=(TrackOpening(box_ring(0.0, room, *span), span),))
+
+
 def below_ledge(orientations: "Sequence[Orientation]") -> float:
     """Return how far below a ledge the second track lies [m]: half the part's greatest length.
 
@@ -144,6 +137,11 @@ class _Balcony(_Ledge):
     limited_by: ClassVar[str] = "balcony"
     carries: ClassVar[bool] = True
     feature: ClassVar[str] = DISTANCE
+
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        if self.limit >= track.extent:
+            return Features(room_of(orientations))
+        return _along((self.limit, track.extent), orientations)
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.verdict(self.ledge_margin(encounter))
@@ -209,8 +207,8 @@ class Canyon(Device):
     def misfits(self, width: float) -> list[ConfigError]:
         return self.hole_faults(width, 0.0, self.limit)
 
-    def span_on(self, track: "Track") -> tuple[float, ...]:
-        return 0.0, self.limit
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        return _along((0.0, self.limit), orientations)
 
     def more(self, encounter: "DeviceEncounter") -> float:
         return encounter.leans(self.limit)
@@ -240,8 +238,9 @@ class Slot(Device):
     def misfits(self, width: float) -> list[ConfigError]:
         return self.hole_faults(width, *self.span)
 
-    def span_on(self, track: "Track") -> tuple[float, ...]:
-        return self.span
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        near, far = self.span
+        return _along((near, far), orientations)
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.verdict(encounter.over_slot(self.span))
@@ -285,18 +284,20 @@ class Rails(Device):
         entry = self.hole_faults(width, *self.entry.span) if self.lead else []
         return self.hole_faults(width, *self.span) + entry
 
-    def span_on(self, track: "Track") -> tuple[float, ...]:
-        return self.span
-
     @property
     def entry(self) -> "Rails":
         """The rails as parts meet them first: as wide as the lead-in, without one."""
         return replace(self, span=self.lead[:2], lead=()) if self.lead else self
 
-    def goes_on(self, width: float) -> float:
-        return sum(self.lead[2:])
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        size = max(size_of(orientation) for orientation in orientations)
+        length = room_of(orientations) + sum(self.lead[2:])
+        near, far = self.span
+        slot = TrackOpening(self._outline(length + 2.0 * size), (near, far), hangs=True)
+        return Features(length, takes=length, openings=(slot,))
 
-    def outline_on(self, track: "Track", length: float) -> Points:
+    def _outline(self, length: float) -> Points:
+        """Its slot (K, 2) [m] with the lead-in, over a length [m] at least."""
         if not self.lead:
             return box_ring(0.0, length, *self.span)
         (low, high), (near, far, straight, taper) = self.span, self.lead
@@ -321,12 +322,6 @@ class Rails(Device):
     def hop_blur(self, orientation: "Orientation") -> float:
         """Return nothing: its margins are widths of head, shank and slot, which a hop does not change."""
         return 0.0
-
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
-        size = max(size_of(orientation) for orientation in orientations)
-        length = room_of(orientations) + self.goes_on(track.extent)
-        holes = (self.outline_on(track, length + 2.0 * size),)
-        return Standing(length, holes=holes, hangs=True, slot=self.span)
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         if encounter.hanging:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 import shapely
@@ -13,11 +13,13 @@ from feederscrew.arrays import Points
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.compiled import frozen_rows, record_type
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import UNSURE, Device, Verdict, carried, corners_text
+from feederscrew.tooling.devices.base import UNSURE, Device, Verdict, carried, corners_text, room_of
+from feederscrew.tooling.devices.features import Features, TrackOpening
 from feederscrew.tooling.devices.values import Corner
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
+    from feederscrew.tooling.orientations import Orientation
     from feederscrew.tooling.verdicts import DeviceEncounter
 
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
@@ -82,6 +84,26 @@ def gap(length: float, radius: float, width: float) -> HoleEdges:
     return HoleEdges(edges=frozen_rows([*rows, inner], HOLE_EDGE), nodes=np.empty((0, 3)))
 
 
+def hole_edges(opening: TrackOpening | None, track: "Track") -> HoleEdges | None:
+    """Return the edges of an opening about the bowl's axis, if it has one across the track.
+
+    Parameters
+    ----------
+    opening : TrackOpening or None
+    track : Track
+
+    Returns
+    -------
+    HoleEdges or None
+        None of an opening that goes on along the track.
+    """
+    if opening is None or opening.span is not None:
+        return None
+    if opening.gap > 0.0:
+        return gap(opening.gap, track.radius, track.extent)
+    return polygon(opening.ring, track.radius)
+
+
 def _sides(corners: Sequence[Corner]) -> list[tuple[Corner, Corner]]:
     return list(zip(corners, (*corners[1:], corners[0])))
 
@@ -114,7 +136,18 @@ def _moved_out(corners: Sequence[Corner], width: float, far: float) -> list[Corn
     return out
 
 
-class Gap(Device):
+class _Across(Device):
+    """A hole with an edge across the track."""
+
+    carries: ClassVar[bool] = True
+    picture: ClassVar[str] = "above"
+
+    def hop_blur(self, orientation: "Orientation") -> float:
+        """Return its flight [m]: over an edge across the track it lands so much further."""
+        return orientation.flight
+
+
+class Gap(_Across):
     """A gap across the track."""
 
     kind = "gap"
@@ -124,25 +157,17 @@ class Gap(Device):
     bound = "lower"
     proposed = True
     rank = 2
-    carries = True
     feature = "reach of the foot ahead of and behind the centre of mass"
-    picture = "above"
 
-    def hole_on(self, track: "Track") -> HoleEdges:
-        return gap(self.limit, track.radius, track.extent)
-
-    def outline_on(self, track: "Track", length: float) -> Points:
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         radius, width = track.radius, track.extent
         off = np.linspace(width, 0.0, GAP_EDGE_POINTS)
         left, met = (
             radius * (edge.alpha + np.arcsin(np.minimum(edge.gamma / (radius - off), 1.0)))
             for edge in gap(self.limit, radius, width).edges[:2]
         )
-        return np.vstack([[[left[0], width], [left[-1], 0.0]], np.column_stack([met, off])[::-1]])
-
-    @property
-    def across(self) -> float:
-        return 0.0
+        ring = np.vstack([[[left[0], width], [left[-1], 0.0]], np.column_stack([met, off])[::-1]])
+        return Features(float(ring[:, 0].max()), openings=(TrackOpening(ring, gap=self.limit),))
 
     def more(self, encounter: "DeviceEncounter") -> float:
         return encounter.orientation.carry_ahead
@@ -152,7 +177,7 @@ class Gap(Device):
         return encounter.verdict(carried(needed - self.limit, self.limit - needed, carry))
 
 
-class CutOut(Device):
+class CutOut(_Across):
     """A hole of several corners."""
 
     kind = "cut-out"
@@ -163,8 +188,6 @@ class CutOut(Device):
         "hole in the track: lengths along the wall and distances from it, unrolled; or "
         "{dxf: file, layer: CUT}"
     )
-    picture = "above"
-    carries = True
     searched = True
 
     read = staticmethod(values.polygon)
@@ -176,17 +199,14 @@ class CutOut(Device):
         across = [y for _, y in self.corners]
         return self.hole_faults(width, min(across), max(across), endless=False)
 
-    def hole_on(self, track: "Track") -> HoleEdges:
-        return polygon(np.array(self.corners), track.radius)
-
-    def outline_on(self, track: "Track", length: float) -> Points:
-        return np.array(self.corners)
-
-    def goes_on(self, width: float) -> float:
-        return max(x for x, _ in self.corners)
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+        ring = np.array(self.corners)
+        length = float(ring[:, 0].max())
+        return Features(length, takes=room_of(orientations) + length, openings=(TrackOpening(ring),))
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
-        orientation, hole = encounter.orientation, self.hole_on(encounter.orientation.track)
+        orientation = encounter.orientation
+        hole = polygon(np.array(self.corners), orientation.track.radius)
         margin, shift = encounter.over_hole(hole)
         if margin < 0.0 < orientation.carry:
             margin = carried(margin, encounter.unheld(hole), orientation.carry)

@@ -13,7 +13,7 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew import value_forms as forms
-from feederscrew.arrays import Floats, Points
+from feederscrew.arrays import Floats
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
@@ -25,17 +25,14 @@ from feederscrew.tooling.devices.base import (
     UNSURE,
     ComparedValue,
     Device,
-    Jet,
-    Sensor,
-    Standing,
     Verdict,
-    box_ring,
     keeps,
     length_text,
     length_words,
     mapping_text,
     room_of,
 )
+from feederscrew.tooling.devices.features import Features, Jet, Sensor
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -268,7 +265,6 @@ class Sorter(Device):
     rejected = RETURNED
     feature = "outline seen by a sensor"
     picture = "above"
-    layer = "SENSOR"
 
     read = staticmethod(functools.partial(values.sensor, views=SENSOR_VIEWS))
 
@@ -383,15 +379,12 @@ class Sorter(Device):
     def jet(self) -> Nozzles:
         return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
 
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         room = room_of(orientations)
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(orientations), self.like[2], self.blur)
         jets = self.jet.jets(middle + SENSOR_TO_NOZZLE_M, orientations, self.time)
-        return Standing(room + SENSOR_TO_NOZZLE_M, jets=jets, sensor=sensor)
-
-    def edge(self, start: float, length: float, width: float) -> Points:
-        return box_ring(start, start + length, 0.0, width)
+        return Features(room + SENSOR_TO_NOZZLE_M, jets=jets, sensor=sensor)
 
     def hop_blur(self, orientation: "Orientation") -> float:
         return 0.0 if self.sees == "outline" else orientation.hop
@@ -431,7 +424,6 @@ class SteadyJet(Device):
     rejected = RETURNED
     feature = "area that it offers a jet"
     picture = "above"
-    layer = "NOZZLE"
     labelled = True
     cost_class = 2
     proposed = True
@@ -515,12 +507,6 @@ class SteadyJet(Device):
             margin = 0.0 if factor < 1.0 else -UNSURE
         return encounter.verdict(max(margin, -distance))
 
-    def standing(self, track: "Track", orientations: "Sequence[Orientation]") -> Standing:
+    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         room = room_of(orientations)
-        return Standing(room, jets=self.jet.jets(0.5 * room, orientations))
-
-    def edge(self, start: float, length: float, width: float) -> Points:
-        middle, near = start + 0.5 * length, 0.5 * self.nozzle
-        far = near + SPREAD * width
-        beam = [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]
-        return np.array(beam)
+        return Features(room, jets=self.jet.jets(0.5 * room, orientations))

@@ -1,0 +1,281 @@
+"""What is tried is what is drawn, printed and cut: chains at random, compared by areas and by rays."""
+
+import functools
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shapely
+import shapes
+import track_views as views
+from shapely import affinity
+
+from feederscrew.bowl.reading import effective, record
+from feederscrew.bowl.record import Track
+from feederscrew.resting.aspects import find
+from feederscrew.solidbowl import facets
+from feederscrew.solidbowl import section as printed
+from feederscrew.solidbowl.closed_body import body, pieces
+from feederscrew.solidbowl.exact import exact_body
+from feederscrew.solidbowl.plan import SolidOptions, material, plan
+from feederscrew.tooling.devices.kinds import KINDS, make_device
+from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.tooled_track import lay_out
+from feederscrew.trial import staging
+
+NEAR = 2e-5  # [m] within which edges agree
+BESIDE = 2e-3  # [m] of bare track to either side of a device that is compared
+WALL_HEIGHT = 4e-3  # [m] over the track, where the wall is met
+BORDER = 3e-5  # [m] beside the wall that is not compared: there a seam may be left
+SIZE = (20.0, 12.0, 5.0)  # [mm] of the part
+RULES = record(effective({})).sizing
+MM = 1e-3
+
+
+@functools.cache
+def part():
+    return shapes.part(shapes.box(*SIZE))
+
+
+def draw_device(kind, rng, every):
+    """A device of a kind with values at random; lengths in whole hundredths of a millimetre."""
+
+    def mm(low, high):
+        return round(rng.uniform(low, high), 2) * MM
+
+    def made(**values):
+        return make_device(kind, "test", **values)
+
+    near = mm(1.0, 7.0)
+    free = (near, 0.0), (near + mm(6.0, 9.0), 0.0), (near + mm(4.0, 6.0), mm(4.0, 7.0)), (near, mm(3.0, 6.0))
+    whole = KINDS[kind]
+    if whole.senses:
+        one = every[int(rng.integers(len(every)))]
+        return made(like=(one.aspect, one.heading, mm(0.3, 1.0)))
+    if kind == "profile gate":
+        one = every[int(rng.integers(len(every)))]
+        like = one.aspect, one.heading, mm(0.2, 1.0)
+        return made(like=like) if rng.random() < 0.5 else made(corners=free)
+    if kind == "cut-out":
+        corners = [(0.0, mm(-0.5, 2.0)), (mm(6.0, 9.0), mm(0.0, 3.0)), (mm(3.0, 8.0), mm(6.0, 12.0))]
+        return made(corners=tuple(corners))
+    if kind == "air jet":
+        return made(nozzle=mm(1.5, 3.0), pressure=2e4, height=mm(2.0, 7.0))
+    if kind == "slot":
+        return made(span=(near, near + mm(2.0, 5.0)))
+    if kind == "rails":
+        near = mm(3.0, 6.0)
+        slot = near, near + mm(3.0, 5.0)
+        lead = (slot[0] - mm(0.0, 1.5), slot[1] + mm(0.0, 2.0), mm(8.0, 15.0), mm(5.0, 10.0))
+        return made(span=slot, lead=lead if rng.random() < 0.5 else ())
+    if kind == "wiper" and rng.random() < 0.7:
+        fall = mm(4.0, 6.0)
+        contour = ((0.0, fall), (mm(6.0, 12.0), fall), (mm(13.0, 18.0), fall - mm(1.0, 3.0)))
+        own = {"contour": contour} if rng.random() < 0.5 else {}
+        return made(limit=fall, sweep=np.radians(rng.uniform(25.0, 80.0)), **own)
+    if kind == "spacing section":
+        return made(angle=np.radians(rng.uniform(-3.0, 5.0)))
+    if whole.leans:
+        return made(angle=np.radians(rng.uniform(10.0, 35.0) if whole.grooved else rng.uniform(2.0, 9.0)))
+    return made(limit=mm(3.0, 5.0) if kind == "step" else mm(6.0, 11.0))
+
+
+def draw_chain(seed, every):
+    """A chain at random; eight seeds one after the other have every kind."""
+    rng = np.random.default_rng(seed)
+    lean = [kind for kind, own in KINDS.items() if own.leans and own.placed]
+    last = [kind for kind, own in KINDS.items() if own.hangs]
+    kinds = [kind for kind, own in KINDS.items() if own.placed and kind not in (*lean, *last)]
+    turned = np.roll(kinds, -2 * seed)[:2].tolist()
+    first = [] if seed % 2 else [lean[seed // 2 % len(lean)]]
+    first += ["banked track"] * (first == ["V groove"])
+    drops = any(KINDS[kind].turns for kind in turned)
+    rails = [] if drops or seed % 3 else last
+    middle = [] if drops or seed % 4 != 1 else ["banked track"]
+    names = [*first, turned[0], *middle, turned[1], *rails]
+    return [draw_device(kind, rng, every) for kind in names]
+
+
+@functools.cache
+def drawn(seed, radius):
+    """Everything that is made of the chain of a seed on a bowl of a radius [m]."""
+    track = Track(climb=np.radians(3.5), bank=np.radians(4.0 * (seed % 5 == 2)), radius=radius, width=24e-3)
+    every = orientations(part(), find(part()), track)
+    chain = draw_chain(seed, every)
+    return track, every, chain, lay_out(track, chain, every)
+
+
+def bowl_of(tooled, every):
+    """The bowl of a tooled track and its unrolled stretch."""
+    size = SimpleNamespace(diameter=2.0 * tooled.track.radius, depth=0.07)
+    options, extents = SolidOptions(chord=1e-5), np.array(SIZE) * MM
+    made = body(plan(size, tooled.track, material("steel", RULES), tooled, options, extents=extents))
+    return made.plan, views.unrolled(made)
+
+
+def thickness(difference):
+    """How wide [m] a difference of two areas is where it is widest, to a micrometre or so."""
+    low, high = 0.0, 8e-3
+    if difference.is_empty:
+        return 0.0
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        if difference.buffer(-0.5 * middle, join_style="mitre").is_empty:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+def apart(one, other, window):
+    """How far [m] the borders of two areas within a window are apart."""
+    return thickness(one.symmetric_difference(other).intersection(window))
+
+
+def apart_over(one, other, height, window):
+    """The same of two areas as functions of the height [m], where heights may differ by ``NEAR``."""
+    around = [one(height + step) for step in (-NEAR, 0.0, NEAR)]
+    most, least = shapely.union_all(around), shapely.intersection_all(around)
+    here = other(height)
+    beyond = here.difference(most), least.difference(here)
+    return max(thickness(area.intersection(window)) for area in beyond)
+
+
+def differences(seed, radius, consumers):
+    """Yield (device, consumer, what, [m]) for everything that a device of a chain is, against its trial."""
+    track, every, chain, tooled = drawn(seed, radius)
+    flat = bowl_of(tooled, every) if "bowl" in consumers else None
+    assert [placed.device for placed in tooled.devices] == chain
+    slopes = []
+    for number, placed in enumerate(tooled.devices):
+        device, features = placed.device, placed.features
+        slopes += [(float(len(slopes)), one.climb, one.bank, one.wall) for one in features.slopes]
+        tried = views.trial(staging.stage_device(device, track, every), 0.0, track)
+        seen = {}
+        if "print" in consumers:
+            seen["print"] = views.section(tooled, placed)
+        if "exact" in consumers:
+            seen["exact"] = consumers["exact"](tooled, placed)
+        if flat is not None:
+            seen["bowl"] = views.bowl(flat[1], flat[0], placed)
+        if "drawing" in consumers:
+            seen["drawing"] = drawn_view(tooled, placed, number)
+        bank = float(tooled.bank_at(placed.begin))
+        ends = placed.start - placed.begin - BESIDE, placed.end - placed.begin + BESIDE
+        if features.hangs:
+            ends = ends[0], features.length
+        if features.drop is not None and features.drop.aside > 0.0:
+            ends = ends[0], features.drop.length
+        rest = shapely.box(ends[0], BORDER, ends[1], track.width - BORDER)
+        for name, view in seen.items():
+            if name != "drawing" and not features.slopes and placed.level == 0.0:
+                # where the wall stands over the track, as the trial leans it
+                *_, out, up = staging.tabulate_leans(slopes, track.climb, track.bank, SIZE[0] * MM, 1.0)[-1]
+                foot = shapely.box(-1.1e-3, -WALL_HEIGHT, -0.9e-3, WALL_HEIGHT)
+                face = view.over(WALL_HEIGHT).intersection(foot).bounds[3]
+                yield device.kind, name, "wall", abs(face - WALL_HEIGHT * out / up)
+            yield device.kind, name, "floor", apart(tried.floor(0.0), view.floor(0.0), rest)
+            if features.drop is not None:
+                drop, far = features.drop, features.drop.length or 4.0 * BESIDE
+                low = shapely.box(1e-3, BORDER + drop.aside, far, track.width - BORDER)
+                both = [one.floor(-drop.height) for one in (tried, view)]
+                yield device.kind, name, "lower track", apart(*both, low)
+                both = [one.floor(0.0) for one in (tried, view)]
+                beside = shapely.box(2e-4, BORDER, far, track.width - BORDER)
+                yield device.kind, name, "ledge", apart(*both, beside)
+            for blade in features.blades:
+                least, top = blade.solid.bounds[1], blade.top
+                if name == "drawing":
+                    yield device.kind, name, "plate", apart(tried.over(0.98 * top), view.over(top), rest)
+                    free = shapely.box(0.0, 0.0, track.width, top).difference(tried.faces[0])
+                    # it stands to the right of the track: what it shows is its shape
+                    shown = affinity.translate(view.faces[0], free.bounds[0] - view.faces[0].bounds[0])
+                    whole = shapely.box(0.0, NEAR, track.width, top)
+                    yield device.kind, name, "opening", apart(free, shown, whole)
+                    continue
+                for height in (least + 2.0 * NEAR, least + 0.3 * (top - least), 0.7 * top):
+                    beside = BORDER + height * np.tan(bank)
+                    room = shapely.box(ends[0], beside, ends[1], track.width - BORDER)
+                    # a flat plate that reaches ahead along a banked track cannot stand square to all of it
+                    ahead = blade.solid.bounds[2] * np.cos(blade.heading) / track.radius
+                    sure = height * np.sin(bank + track.climb) * ahead if name == "bowl" else 0.0
+                    off = apart_over(tried.over, view.over, height, room)
+                    yield device.kind, name, f"blade {1e3 * height:.2f}", max(off - sure, 0.0)
+                if least > 0.0:
+                    beside = BORDER + least * np.tan(bank) + NEAR
+                    room = shapely.box(ends[0], beside, ends[1], track.width - BORDER)
+                    clear = view.over(least - 2.0 * NEAR).intersection(room)
+                    yield device.kind, name, "clearance", thickness(clear)
+            assert len(view.bores) == len(tried.bores), (seed, device.kind, name)
+            for one, other in zip(view.bores, tried.bores):
+                yield device.kind, name, "bore", max(abs(one[0] - other[0]), abs(one[1] - other[1]))
+
+
+def drawn_view(tooled, placed, number):
+    """A device as the DXF file draws it."""
+    rings, circles = views.drawing(tooled)
+    shift = [-placed.begin, 0.0]
+    own = {k: [shapely.Polygon(ring + shift) for ring in some if len(ring) > 2] for k, some in rings.items()}
+    track = shapely.union_all(own["TRACK"]).difference(shapely.union_all(own.get("CUT", [])))
+    ledges = [shapely.box(*one.bounds) for one in own.get("LEDGE", [])]
+
+    def floor(level):
+        below = placed.features.drop is not None and level < 0.0
+        for one in ledges:
+            x0, y0, x1, _ = one.bounds
+            beside = shapely.box(x0, y0, x1, tooled.width)
+            if placed.features.drop is not None and placed.features.drop.aside > 0.0:
+                return beside if below else track.difference(beside)
+        steps = [one.bounds[0] for one in own.get("STEP", [])]
+        if placed.features.drop is not None and steps:
+            upper = track.intersection(shapely.box(-1.0, 0.0, steps[0], 1.0))
+            return track.difference(upper) if below else upper
+        return track
+
+    # plates in the order of the chain; their openings to the right of the track, each with those of its gate
+    blades = [item for item in tooled.devices if item.features.blades]
+    plate, face = shapely.Polygon(), []
+    if placed in blades:
+        plate = own["GATE"][blades.index(placed)]
+        groups, right = [], tooled.length + 20e-3
+        for ring in sorted(rings["OPENING"], key=lambda ring: ring[:, 0].min()):
+            if not groups or ring[:, 0].min() > right + 20e-3:
+                groups.append((round(ring[:, 0].min() / 35e-3), []))
+            groups[-1][1].append(ring)
+            right = max(right, float(ring[:, 0].max()))
+        face = [shapely.union_all([shapely.Polygon(ring) for ring in groups[blades.index(placed)][1]])]
+
+    low = tooled.width + 28e-3
+    bores = [(x - placed.begin, y - low, size) for x, y, size in circles if placed.start < x < placed.end]
+    return views.View(floor, lambda height: plate, views.in_order(bores), face)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_chain_is_the_same_in_trial_print_bowl_and_drawing(seed):
+    found = list(differences(seed, 0.15, {"print": None, "bowl": None, "drawing": None}))
+    wrong = [(*names, f"{1e3 * size:.3f} mm") for *names, size in found if size > NEAR]
+    assert not wrong
+
+
+@pytest.mark.needs("OCP")
+@pytest.mark.parametrize("seed", [2, 6, 7])
+def test_rays_meet_the_step_file_where_they_meet_the_print(seed):
+    *_, tooled = drawn(seed, 0.15)
+    exact, flat = (printed.section_body(tooled, kit) for kit in (exact_body, facets))
+    rng, radius, met = np.random.default_rng(seed), tooled.track.radius, 0
+    for s, y in zip(rng.uniform(2e-3, tooled.length - 2e-3, 60), rng.uniform(1e-4, tooled.width - 1e-4, 60)):
+        off = radius - y
+        above = np.array([off * np.sin(s / radius), radius - off * np.cos(s / radius), 0.05])
+        one, other = facets.below(flat, above), exact_body.below(exact, above / MM)
+        met += one is not None
+        assert (one is None) == (other is None)
+        assert one is None or abs(one - other * MM) <= NEAR
+    assert met > 20
+
+
+@pytest.mark.needs("OCP")
+def test_the_exact_bowl_has_the_volume_of_its_facets():
+    _, every, _, tooled = drawn(7, 0.15)
+    planned, _ = bowl_of(tooled, every)
+    exact, flat = (pieces(planned, kit)[0] for kit in (exact_body, facets))
+    assert exact_body.volume(exact) == pytest.approx(flat.volume(), rel=1e-3)

@@ -1,0 +1,186 @@
+"""One tooled track as each consumer has it, in the same coordinates: s along the wall, y from it, z over it.
+
+Each view is made of what leaves the program: the plates and borders of the trial, the mesh of the printed
+section or its body with exact faces, the mesh of the bowl, and the lines of the DXF file.
+"""
+
+import functools
+import io
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import ezdxf
+import numpy as np
+import shapely
+from shapely import affinity
+
+from feederscrew.output import tooling_drawing
+from feederscrew.solidbowl import facets
+from feederscrew.solidbowl import section as printed
+
+MM = 1e-3
+UNDER = 6e-5  # [m] below a surface, where it is cut
+FINE = 1e-3  # [m] of a line, between places that are unbent
+REFINED = 2.0  # [mm] of an edge of a mesh as it is unrolled
+WALL_DEPTH = 5e-4  # [m] behind the wall's face, where bores are seen
+
+
+@dataclass(frozen=True)
+class View:
+    """One device as a consumer has it; s from its begin, z over the track there."""
+
+    floor: Callable  # level [m] -> material just below a surface at that level
+    over: Callable  # height [m] -> material there, of what stands on the track
+    bores: list  # (s, z, diameter) [m] of nozzles in the wall
+    faces: list = ()  # of blades, seen along the track: distance from the wall and height [m]
+
+
+def unbent(area, radius):
+    """An area of the bowl's plan, the wall tangent to X at the origin, as lengths and distances [m]."""
+
+    def laid(points):
+        x, y = points.T
+        return np.column_stack([radius * np.arctan2(x, radius - y), radius - np.hypot(x, radius - y)])
+
+    return shapely.make_valid(shapely.transform(shapely.segmentize(area, FINE), laid))
+
+
+def trial(stage, start, track):
+    """A stage of the trial, its device at ``start`` [m]."""
+    plates = [_plate(stage, row) for row in stage.plates]
+    floors = [one for one in plates if abs(one[1][2, 2]) > 0.5]
+    blades = [one for one in plates if abs(one[1][2, 2]) <= 0.5]
+
+    def laid(areas):
+        return affinity.translate(unbent(shapely.union_all(areas), track.radius), -start, 0.0)
+
+    def floor(level):
+        return laid([ring for origin, _, _, ring in floors if abs(origin[2] - level) < 1e-7])
+
+    jets = stage.air.jets
+    theta = [np.arctan2(j["mouth_x"], track.radius - j["mouth_y"]) for j in jets]
+    bores = [(track.radius * t - start, j["mouth_z"], 2.0 * j["radius"]) for t, j in zip(theta, jets)]
+    faces = []
+    for origin, axes, _, area in blades:
+        inwards = np.array([-origin[0], track.radius - origin[1]]) / track.radius
+        faces.append(affinity.scale(area, float((axes[0, :2] * inwards).sum()), 1.0, origin=(0.0, 0.0)))
+    return View(floor, lambda height: laid([_slab(one, height) for one in blades]), in_order(bores), faces)
+
+
+def _plate(stage, row):
+    """Origin (3,), axes (3, 3), depth [m] and area of a plate in its own plane."""
+    names = [f"{head}_{end}" for head in ("origin", "first", "second", "front") for end in "xyz"]
+    frame = np.array([row[name] for name in names]).reshape(4, 3)
+    area, ring = shapely.Polygon(), []
+    for border in stage.borders[row["begin"] : row["end"]]:
+        ring.append((border["start_x"], border["start_y"]))
+        if ring[0] == (border["end_x"], border["end_y"]):
+            area, ring = area.symmetric_difference(shapely.Polygon(ring).buffer(0.0)), []
+    return frame[0], frame[1:], row["depth"], area
+
+
+def _slab(plate, height):
+    """What a blade is, seen from above, at a height [m]."""
+    origin, (along, _, front), depth, area = plate
+    z = height - origin[2]
+    level = shapely.LineString([(-1.0, z), (1.0, z)]).intersection(area)
+    rings = []
+    for near, _, far, _ in (one.bounds for one in shapely.get_parts(level) if one.length > 0.0):
+        sides = ((near, 0.0), (far, 0.0), (far, depth), (near, depth))
+        rings.append(shapely.Polygon([(origin + x * along - d * front)[:2] for x, d in sides]))
+    return shapely.union_all(rings)
+
+
+def section(tooled, placed, body=None):
+    """A device on the printed section; ``body`` [mm] in place of its mesh."""
+    if body is None:
+        vertices, faces = printed.solid(tooled)
+        body = facets.manifold3d.Manifold(facets.manifold3d.Mesh64(vertices / MM, faces.astype(np.uint64)))
+    radius = tooled.track.radius
+
+    def cut(z):
+        face = facets.cut_face(body, 2, placed.level + z)
+        return affinity.translate(unbent(face, radius), -placed.begin, 0.0)
+
+    def laid(points):
+        x, y, z = np.asarray(points).T * MM
+        s, off = radius * np.arctan2(x, radius - y), radius - np.hypot(x, radius - y)
+        return np.column_stack([s, off, z - placed.level]) / MM
+
+    bores = []
+    if placed.features.jets:
+        bores = _round_holes(body.refine_to_length(REFINED).warp_batch(laid), placed)
+    return View(lambda level: cut(level - UNDER), cut, bores)
+
+
+def _round_holes(flat, placed, start=0.0):
+    """Middles and diameters of round holes in an unrolled wall, beside a device."""
+    bores = []
+    for part in shapely.get_parts(facets.cut_face(flat, 1, -WALL_DEPTH)):
+        for ring in part.interiors:
+            hole = shapely.Polygon(ring)
+            s, z = hole.centroid.x - start, hole.centroid.y
+            if 4.0 * np.pi * hole.area / hole.length**2 > 0.95 and placed.start < s < placed.end:
+                bores.append((s - placed.begin, z, np.sqrt(4.0 * hole.area / np.pi)))
+    return in_order(bores)
+
+
+def in_order(bores):
+    """Bores along the wall, those above each other upwards."""
+    return sorted(bores, key=lambda bore: (round(bore[0], 4), bore[1]))
+
+
+def bowl(flat, plan, placed):
+    """A device on the bowl's solid, unrolled."""
+    start = plan.first + placed.begin
+
+    def cut(z, level=0.0):
+        return affinity.translate(facets.cut_face(flat(placed.level + level), 2, z), -start, 0.0)
+
+    bores = _round_holes(flat(placed.level), placed, plan.first) if placed.features.jets else []
+    return View(lambda level: cut(-UNDER, level), cut, bores)
+
+
+def unrolled(made):
+    """The tooled stretch of a bowl's mesh [mm]: s, y and height square to the track at a level."""
+    plan = made.plan
+    way, wall = plan.path, plan.material.wall
+    level = replace(way, drops=())
+    ends = plan.first, way.end - 1e-4
+    sides = -3.0 * wall, 1.2 * plan.width
+    ring = np.array([[s, y] for y, s in ((sides[0], ends[0]), (sides[0], ends[1]), (sides[1], ends[1]),
+                                         (sides[1], ends[0]))])  # fmt: skip
+    low = min(float(way.height(at)) for at in np.linspace(*ends, 99)) - 2.0 * plan.material.plate
+    whole = facets.unplaced(made)
+    for _, vertices, faces in made.gates:
+        gate = facets.manifold3d.Mesh64(vertices / MM, faces.astype(np.uint64))
+        whole = whole + facets.manifold3d.Manifold(gate)
+    piece = whole ^ facets.over(way, ring, low, plan.top + 1.0, 0.05 * plan.chord)
+
+    def laid(points, below):
+        x, y, z = np.asarray(points).T * MM
+        theta = np.arctan2(y, x)
+        s = way.at(np.where(theta > 1e-9, theta - 2.0 * np.pi, theta))
+        out, up = way.wall_radius(s) - np.hypot(x, y), z - level.height(s) - below
+        bank = way.bank_at(s)
+        off, square = out * np.cos(bank) + up * np.sin(bank), up * np.cos(bank) - out * np.sin(bank)
+        # square to its climb as well: the foot lies further along
+        climb = np.arctan((level.risen(s + 1e-6) - level.risen(s - 1e-6)) / 2e-6)
+        along = square * np.sin(climb) * way.wall_radius(s) / np.hypot(x, y)
+        return np.column_stack([s + along, off, square * np.cos(climb)]) / MM
+
+    piece = piece.refine_to_length(REFINED)
+    return functools.cache(lambda below: piece.warp_batch(functools.partial(laid, below=below)))
+
+
+def drawing(tooled):
+    """The outlines [m] of the DXF file by layer, its number left out, and the circles of its bores."""
+    file = ezdxf.read(io.StringIO(tooling_drawing.dxf(tooled).decode()))
+    rings, circles = {}, []
+    for line in file.modelspace().query("LWPOLYLINE"):
+        layer = line.dxf.layer.rstrip("0123456789").rstrip("_")
+        rings.setdefault(layer, []).append(np.array([point[:2] for point in line.get_points()]) * MM)
+    for circle in file.modelspace().query("CIRCLE"):
+        middle = circle.dxf.center
+        circles.append((middle.x * MM, middle.y * MM, 2.0 * circle.dxf.radius * MM))
+    return rings, circles
