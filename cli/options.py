@@ -656,6 +656,12 @@ bowl = group(  # the keywords of ``feederscrew.bowl.read``
     "bowl",
     option("--config path", "FILE", "Bowl file (YAML); without it, the defaults.", type=FILE),
     overrides,
+    choice(
+        "--lining",
+        ("steel", "nickel", "pu", "brush"),
+        "Lining of the track, pu: polyurethane. Friction is that of a table for the part's material, unless "
+        "a coefficient is given.",
+    ),
 )
 rule = option(
     "--rule",
