@@ -21,7 +21,7 @@ class Lining(enum.StrEnum):
     BRUSH = "brush"  # bristles that lean the way parts travel
 
 
-class Family(enum.StrEnum):
+class PartMaterial(enum.StrEnum):
     """What parts are made of, as far as friction tells it."""
 
     STEEL = "steel"
@@ -53,53 +53,61 @@ RUBBER_RANGE = (
 )
 STEEL_RANGE = "0.45 to 0.80 static, 0.40 to 0.70 kinetic in public tables: middle"
 ASSUMPTION = "assumption"
+GLASS_RANGE = f"{CHART}: glass on metal 0.5 to 0.7; kinetic: {ASSUMPTION}"
+SMOOTH_PLASTIC = f"{RUBBER_RANGE}, more on smooth plastic than on ground steel"
 
 ON_STEEL = {
-    Family.STEEL: TabledFriction(0.6, 0.55, STEEL_RANGE),
-    Family.BRASS: TabledFriction(0.51, 0.44, f"{CHART}; kinetic: public tables"),
-    Family.COPPER: TabledFriction(0.53, 0.36, TEXTBOOK),
-    Family.ALUMINIUM: TabledFriction(0.61, 0.47, TEXTBOOK),
-    Family.ZINC: TabledFriction(0.5, 0.4, ASSUMPTION),
-    Family.PLASTIC: TabledFriction(0.33, 0.27, LUST),
-    Family.RUBBER: TabledFriction(0.8, 0.7, ASSUMPTION),
-    Family.GLASS: TabledFriction(0.6, 0.5, f"{CHART}: glass on metal 0.5 to 0.7; kinetic: {ASSUMPTION}"),
+    PartMaterial.STEEL: TabledFriction(0.6, 0.55, STEEL_RANGE),
+    PartMaterial.BRASS: TabledFriction(0.51, 0.44, f"{CHART}; kinetic: public tables"),
+    PartMaterial.COPPER: TabledFriction(0.53, 0.36, TEXTBOOK),
+    PartMaterial.ALUMINIUM: TabledFriction(0.61, 0.47, TEXTBOOK),
+    PartMaterial.ZINC: TabledFriction(0.5, 0.4, ASSUMPTION),
+    PartMaterial.PLASTIC: TabledFriction(0.33, 0.27, LUST),
+    PartMaterial.RUBBER: TabledFriction(0.8, 0.7, ASSUMPTION),
+    PartMaterial.GLASS: TabledFriction(0.6, 0.5, GLASS_RANGE),
 }
-METAL_ON_NICKEL = TabledFriction(0.4, 0.38, f"{ASSUMPTION}: a hard, smooth metal")
-ON_NICKEL = {
-    family: METAL_ON_NICKEL if family not in (Family.PLASTIC, Family.RUBBER, Family.GLASS) else own
-    for family, own in ON_STEEL.items()
-} | {
-    Family.PLASTIC: TabledFriction(0.3, 0.25, f"{ASSUMPTION}: no more than on steel"),
-    Family.GLASS: TabledFriction(0.78, 0.6, f"{CHART}; kinetic: {ASSUMPTION}"),
+ON_NICKEL = dict.fromkeys(
+    PartMaterial, TabledFriction(0.4, 0.38, f"{ASSUMPTION}: a metal on a hard, smooth metal")
+) | {
+    PartMaterial.PLASTIC: TabledFriction(0.3, 0.25, f"{ASSUMPTION}: no more than on steel"),
+    PartMaterial.RUBBER: ON_STEEL[PartMaterial.RUBBER],
+    PartMaterial.GLASS: TabledFriction(0.78, 0.6, f"{CHART}; kinetic: {ASSUMPTION}"),
 }
-ON_POLYURETHANE = dict.fromkeys(Family, TabledFriction(0.7, 0.6, RUBBER_RANGE)) | {
-    Family.PLASTIC: TabledFriction(0.8, 0.7, f"{RUBBER_RANGE}, more on smooth plastic than on ground steel"),
-    Family.RUBBER: TabledFriction(0.9, 0.8, ASSUMPTION),
+ON_POLYURETHANE = dict.fromkeys(PartMaterial, TabledFriction(0.7, 0.6, RUBBER_RANGE)) | {
+    PartMaterial.PLASTIC: TabledFriction(
+        0.8, 0.7, f"{RUBBER_RANGE}, more on smooth plastic than on ground steel"
+    ),
+    PartMaterial.RUBBER: TabledFriction(0.9, 0.8, ASSUMPTION),
 }
 ON_BRUSH = dict.fromkeys(
-    Family, TabledFriction(0.4, 0.35, f"{ASSUMPTION}: bristles hold a part that slides back", 0.9, 0.8)
+    PartMaterial, TabledFriction(0.4, 0.35, f"{ASSUMPTION}: bristles hold a part that slides back", 0.9, 0.8)
 )
-TABLE: dict[Lining, dict[Family, TabledFriction]] = {
+TABLE: dict[Lining, dict[PartMaterial, TabledFriction]] = {
     Lining.STEEL: ON_STEEL,
     Lining.NICKEL: ON_NICKEL,
     Lining.POLYURETHANE: ON_POLYURETHANE,
     Lining.BRUSH: ON_BRUSH,
 }
-LININGS, FAMILIES = tuple(map(str, Lining)), tuple(map(str, Family))
+LININGS, FAMILIES = tuple(map(str, Lining)), tuple(map(str, PartMaterial))
 PLASTICS = {
     "abs", "pa6", "pa66", "pa66-gf30", "pom", "pp", "pe-hd", "pe-ld", "pc", "pvc", "pet", "pbt", "pmma", "ps",
     "ptfe", "peek",
 }  # fmt: skip
 BY_MATERIAL = (
-    {material.name: Family.PLASTIC for material in MATERIALS if material.name in PLASTICS}
-    | dict.fromkeys(("rubber", "epdm", "silicone"), Family.RUBBER)
-    | dict.fromkeys(("steel", "stainless steel", "stainless steel 1.4401", "cast iron"), Family.STEEL)
-    | {"brass": Family.BRASS, "bronze": Family.BRASS, "copper": Family.COPPER, "zinc": Family.ZINC}
-    | {"aluminium": Family.ALUMINIUM, "glass": Family.GLASS, "alumina": Family.GLASS}
+    {material.name: PartMaterial.PLASTIC for material in MATERIALS if material.name in PLASTICS}
+    | dict.fromkeys(("rubber", "epdm", "silicone"), PartMaterial.RUBBER)
+    | dict.fromkeys(("steel", "stainless steel", "stainless steel 1.4401", "cast iron"), PartMaterial.STEEL)
+    | {
+        "brass": PartMaterial.BRASS,
+        "bronze": PartMaterial.BRASS,
+        "copper": PartMaterial.COPPER,
+        "zinc": PartMaterial.ZINC,
+    }
+    | {"aluminium": PartMaterial.ALUMINIUM, "glass": PartMaterial.GLASS, "alumina": PartMaterial.GLASS}
 )
 
 
-def find_family(material: str) -> Family | None:
+def find_family(material: str) -> PartMaterial | None:
     """Return what a material of the material table counts as; None of one that the table of friction lacks.
 
     Parameters
@@ -109,7 +117,7 @@ def find_family(material: str) -> Family | None:
 
     Returns
     -------
-    Family or None
+    PartMaterial or None
     """
     known = MATERIAL_BY_NAME.get(material.casefold())
     return None if known is None else BY_MATERIAL.get(known.name)
@@ -130,9 +138,9 @@ def find_friction(family: str, lining: str) -> TabledFriction | None:
     TabledFriction or None
     """
     own = TABLE.get(Lining(lining))
-    return None if own is None else own[Family(family)]
+    return None if own is None else own[PartMaterial(family)]
 
 
 def rows() -> Sequence[tuple[str, str, TabledFriction]]:
     """Return the whole table: family, lining, friction."""
-    return [(family, lining, own[family]) for lining, own in TABLE.items() for family in Family]
+    return [(family, lining, own[family]) for lining, own in TABLE.items() for family in PartMaterial]

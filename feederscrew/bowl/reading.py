@@ -449,7 +449,7 @@ def friction_remarks(settings: Sequence[Setting], material: str) -> tuple[str, .
         return () if own is None else (f"friction {_pair(own)} of {' on '.join(words)}: {own.source}",)
     given = any(by_name[f"friction.{word}"].is_own for word in TABLED_WORDS)
     own = None if family is None else friction_table.find_friction(family, friction_table.Lining.STEEL)
-    if given or own is None or family == friction_table.Family.STEEL:
+    if given or own is None or family == friction_table.PartMaterial.STEEL:
         return ()
     what = f"{static.text} is the default, of steel; for {family} on steel the table has {_pair(own)}"
     return (f"friction: {what} ({own.source}) - give --lining steel, or friction.static",)

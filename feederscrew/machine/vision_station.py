@@ -42,7 +42,7 @@ LIGHTS = {  # by what a sensor sees (assumption)
 
 
 @dataclass(frozen=True)
-class Camera:
+class VisionCamera:
     """An industrial camera by the chip in it."""
 
     chip: str
@@ -57,9 +57,9 @@ class Camera:
 
 
 CAMERAS = (  # of the chips' data sheets, the cheapest first
-    Camera("1.6 MP global shutter (IMX273)", 1440, 1080, 3.45e-6),
-    Camera("5 MP global shutter (IMX250)", 2448, 2048, 3.45e-6),
-    Camera("12 MP global shutter (IMX253)", 4096, 3000, 3.45e-6),
+    VisionCamera("1.6 MP global shutter (IMX273)", 1440, 1080, 3.45e-6),
+    VisionCamera("5 MP global shutter (IMX250)", 2448, 2048, 3.45e-6),
+    VisionCamera("12 MP global shutter (IMX253)", 4096, 3000, 3.45e-6),
 )
 
 
@@ -67,7 +67,7 @@ CAMERAS = (  # of the chips' data sheets, the cheapest first
 class Lens:
     """A lens before a camera, focused on the track."""
 
-    camera: Camera
+    camera: VisionCamera
     focal_length: float  # [m]
     distance: float  # [m] from the lens to the track
     magnification: float  # [1] picture over part

@@ -118,7 +118,7 @@ def _inline_rows(inline: InlineTrack) -> Iterator[tuple[str, str]]:
     yield "gap to the inline track", f"{_length(inline.gap)} at rest; {passes}"
     height = "" if math.isnan(inline.height) else f", {_length(inline.height)} over the floor's edge"
     yield "height of the inline track", f"{_length(inline.step)} below the outlet{height}"
-    sides = "slot" if inline.hangs else "between its sides"
+    sides = "between its rails" if inline.hangs else "between its sides"
     yield "width of the inline track", f"{_length(inline.width)} {sides}"
     yield "cover", f"{_length(inline.cover)} over its surface"
     yield "length of the stub", _length(inline.length)
@@ -194,7 +194,7 @@ def _inline_document(inline: InlineTrack) -> dict[str, Any]:
     finite = {name: value if math.isfinite(value) else None for name, value in values.items()}
     return {
         **finite,
-        "slot": inline.hangs,
+        "between_rails": inline.hangs,
         "dwell_ms": inline.dwell / MS if math.isfinite(inline.dwell) else None,
         "speed_mm_s": inline.speed / MM_S,
         "lacks": inline.lacks or None,

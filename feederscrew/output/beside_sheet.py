@@ -12,6 +12,7 @@ from feederscrew.units import MM
 
 SCALES = (2.0, 1.0, 0.5, 0.4, 0.2, 0.1, 0.05)  # ISO 5455, with 1:2.5
 ROW_MM, LETTERS, WIDTHS_MM = 4.6, 110, (12.0, 52.0, 172.0)
+SHORT_MM = 9.0  # [mm] of paper: a number does not fit between the arrows of less
 CAMERA_MM = 70.0  # [mm] of paper from the track to a camera
 
 
@@ -64,7 +65,7 @@ def _draw_inline(drawing: Drawing, inline: InlineTrack, outlet: tuple[float, flo
     top = max(y + wide * scale, sides[-1][1])
     drawing.text(first, top + 2.0, "outlet of the bowl", 2.2)
     drawing.text(max(start, first + 32.0), top + 2.0, "inline track, stub", 2.2)
-    drawing.length((end, middle - half), (end, middle + half), (8.0, 0.0), scale, decimals=2)
+    _dimension_across(drawing, (end, middle - half), (end, middle + half), scale)
     below = min(y, sides[0][0])
     for name, at in (("low", inline.low_at), ("full", inline.full_at)):
         place = x + at / MM * scale
@@ -76,7 +77,7 @@ def _draw_inline(drawing: Drawing, inline: InlineTrack, outlet: tuple[float, flo
         drawing.outline(_corners(left, upper - thick * scale, right, upper), "SECTION")
     cover, foot = side - drop + inline.cover / MM * scale, side - drop - thick * scale
     drawing.lines([[(start, cover), (end, cover)]], "OUTLINE")
-    drawing.length((end, side - drop), (end, cover), (8.0, 0.0), scale)
+    _dimension_across(drawing, (end, side - drop), (end, cover), scale)
     for k, at in enumerate((inline.low_at, inline.full_at, inline.length)):
         place = x + at / MM * scale
         drawing.length((x, foot), (place, foot), (0.0, -6.0 - 5.0 * k), scale, decimals=1)
@@ -85,6 +86,21 @@ def _draw_inline(drawing: Drawing, inline: InlineTrack, outlet: tuple[float, flo
         words += f", {inline.height / MM:.1f} over the floor's edge"
     drawing.text(25.0, foot - 22.0, words, 2.2)
     return foot - 27.0
+
+
+def _dimension_across(
+    drawing: Drawing, low: tuple[float, float], high: tuple[float, float], scale: float
+) -> None:
+    """Dimension an upright length to the right of two places; a short one has its number beside its line."""
+    long = high[1] - low[1]
+    if long > SHORT_MM:
+        drawing.length(low, high, (8.0, 0.0), scale)
+        return
+    right, (x, bottom), top = low[0] + 6.0, low, high[1]
+    drawing.lines([[(x + 0.6, y), (right + 1.0, y)] for y in (bottom, top)], "DIMENSION")
+    drawing.lines([[(right, bottom), (right, top)]], "DIMENSION")
+    number = f"{long / scale:.2f}".rstrip("0").rstrip(".")
+    drawing.text(right + 2.0, 0.5 * (bottom + top) - 1.2, number)
 
 
 def _corners(left: float, low: float, right: float, high: float) -> list[tuple[float, float]]:

@@ -44,6 +44,7 @@ DEVELOPED_PLACES = 61  # along a piece at which it is developed
 OUTLET_BOX = 335.0, 136.0, 408.0, 206.0  # [mm] left, low, right, high: the part as it leaves
 POSE_BOX = 356.0, 62.5, 409.0, 77.0  # [mm] the same as a small picture, in the title block
 DATUM_CLEAR_RAD = np.radians(35.0)  # from the ray of the datum to that of the track's width, from above
+NUMBERS_MM = 25.0  # [mm] from the wall of the unrolled track to the list of devices: room for numbers
 POSE_ROWS = 6  # devices on one sheet of poses
 POSE_LETTERS = 72  # of a line of the pose in the title block
 POSES_HEAD = (
@@ -498,8 +499,9 @@ def _draw_devices(
     for words, start, stop in changes:
         angles = [f"{_angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])
-    line = min(4.6, 130.0 / len(rows))
-    low = drawing.table(25.0, 175.0, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=line)
+    top = min(175.0, float(view.at[1]) - NUMBERS_MM)  # below the numbers along the track
+    line = min(4.6, (top - 45.0) / len(rows))
+    low = drawing.table(25.0, top, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=line)
     notes = [
         f"from and to: along the wall from D; cuts {CUT_TOLERANCE}, everything else {GENERAL}; "
         "* before the outlet",

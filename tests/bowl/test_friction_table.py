@@ -7,7 +7,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import friction_table, schema
-from feederscrew.bowl.friction_table import FAMILIES, LININGS, Family, Lining
+from feederscrew.bowl.friction_table import FAMILIES, LININGS, Lining, PartMaterial
 from feederscrew.errors import FeederError
 from feederscrew.part.density import MATERIALS
 from feederscrew.studies import arguments
@@ -78,7 +78,10 @@ def test_where_friction_is_the_default_a_line_says_what_the_table_has():
 
 def test_every_material_that_parts_may_have_is_in_a_family_or_in_none():
     families = {material.name: friction_table.find_family(material.name) for material in MATERIALS}
-    assert families["pp"] == families["pa66-gf30"] == Family.PLASTIC and families["bronze"] == Family.BRASS
-    assert families["stainless steel"] == Family.STEEL and families["neodymium magnet"] is None
-    assert set(filter(None, families.values())) == set(Family)
+    assert (
+        families["pp"] == families["pa66-gf30"] == PartMaterial.PLASTIC
+        and families["bronze"] == PartMaterial.BRASS
+    )
+    assert families["stainless steel"] == PartMaterial.STEEL and families["neodymium magnet"] is None
+    assert set(filter(None, families.values())) == set(PartMaterial)
     assert schema.BY_NAME["friction.lining"].choices == tuple(map(str, Lining))
