@@ -83,9 +83,7 @@ SETTING_COLUMNS: tuple[Column[Setting], ...] = (
 )
 
 
-def settings(
-    path: str | PathLike[str] | None = None, overrides: Iterable[str] = (), *, lining: str | None = None
-) -> tuple[Setting, ...]:
+def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
     """Return every value in effect: of a bowl file, or the defaults, and of overrides over it.
 
     Parameters
@@ -94,8 +92,6 @@ def settings(
         Of a bowl file; without it the defaults.
     overrides : iterable of str
         'drive.frequency=50 Hz'; of one key the last holds.
-    lining : str, optional
-        Of the track, in place of ``friction.lining`` of the file.
 
     Returns
     -------
@@ -107,8 +103,6 @@ def settings(
     Faults
         Every fault of the file and of the overrides, one a line; those of overrides are `ArgumentError`.
     """
-    if lining is not None:
-        overrides = (*overrides, f"friction.lining={lining}")
     in_file, faults = ({}, []) if path is None else _settings_of(*documents.read(path))
     return _overridden(in_file, overrides, faults)
 
