@@ -106,7 +106,7 @@ def _vision_rows(station: VisionStation, start: float) -> Iterator[tuple[str, st
     for hole in station.holes:
         thread = f"{hole.thread}, " if hole.thread else ""
         at = f"{_length(start + hole.place)} from D, {_length(hole.height)} over the track"
-        yield "hole in the wall", f"{hole.what}: {thread}Ø{hole.size / MM:.3g}, {at}"
+        yield "hole to drill in the wall", f"{hole.what}: {thread}Ø{hole.size / MM:.3g}, {at}"
     if station.lacks:
         yield "does not do", station.lacks
 
