@@ -101,6 +101,9 @@ def bowl(
         return
     out.warn(*bowls.assumptions(settings))
     solid = out.part(part) if part["source"] else None
+    if solid is not None:
+        settings = bowls.with_part_material(settings, solid.material)
+        out.warn(*bowls.friction_remarks(settings, solid.material))
     inputs = bowls.identity(path)
     if solid:
         place = out.folder_of(solid, inputs, settings=settings)

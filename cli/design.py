@@ -174,20 +174,26 @@ def design(
     out.tell_unread(bowl["path"])
     settings, path = bowls.settings(**bowl), bowl["path"]
     out.warn(*bowls.assumptions(settings))
-    record, user_keys = bowls.record(settings), {s.key.name for s in settings if s.is_own}
     own = request_options | {"jobs": request_options["jobs"] or os.cpu_count(), "rule": rule}
+
+    def in_effect(settings: Sequence["Setting"]) -> "tuple[Bowl, set[str]]":
+        """The bowl of some settings, and the names of the keys that the user gave."""
+        return bowls.record(settings), {s.key.name for s in settings if s.is_own}
 
     def design_part(
         solid: "Part", values: Values, aspect_shares: "Shares | None" = None, *, is_shown: bool = False
     ) -> "DesignStudy":
+        own_settings = bowls.with_part_material(settings, solid.material)
+        out.warn(*bowls.friction_remarks(own_settings, solid.material))
+        record, user_keys = in_effect(own_settings)
         inputs = (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
         request = DesignRequest(**values)
-        with out.folder_of(solid, inputs, settings=settings) as folder:
+        with out.folder_of(solid, inputs, settings=own_settings) as folder:
             with _stoppable(out) as search:
                 study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
-            call = out.arguments if is_shown else calls.call_words(request, solid, settings)
+            call = out.arguments if is_shown else calls.call_words(request, solid, own_settings)
             study = dataclasses.replace(study, call=call)
-            study = _write(out, folder, study, settings)
+            study = _write(out, folder, study, own_settings)
             if is_shown:
                 out.show(designs.summary(study), designs.document(study))
         return study
@@ -197,11 +203,12 @@ def design(
     if more_parts:
         parts = [out.part(part | {"source": source}) for source in (part["source"], *more_parts)]
         study: FamilyStudy | DesignStudy = _family(
-            out, parts, (record, user_keys, DesignRequest(**own)), settings, path
+            out, parts, (*in_effect(settings), DesignRequest(**own)), settings, path
         )
     else:
         solid, aspect_shares = out.part(part), None
         if any(value is not None for value in share_options.values()):
+            record, _ = in_effect(bowls.with_part_material(settings, solid.material))
             loop.check_request(solid, record, DesignRequest(**own))
             aspect_shares = orientation.shares(out, solid, record, share_options, own)
         study = design_part(solid, own, aspect_shares, is_shown=True)

@@ -652,10 +652,26 @@ overrides = option(
     multiple=True,
     shell_complete=_complete(_bowl_keys),
 )
+
+
+def _bowl_values(path: str | None, overrides: Sequence[str], lining: str | None) -> Values:
+    """The bowl file and what goes over it; a lining is the key of that name."""
+    return {
+        "path": path,
+        "overrides": overrides if lining is None else [*overrides, f"friction.lining={lining}"],
+    }
+
+
 bowl = group(  # the keywords of ``feederscrew.bowl.read``
     "bowl",
     option("--config path", "FILE", "Bowl file (YAML); without it, the defaults.", type=FILE),
     overrides,
+    choice(
+        "--lining",
+        ("steel", "nickel", "pu", "brush"),
+        "Lining of the track: friction of a table.",
+    ),
+    pack=_bowl_values,
 )
 rule = option(
     "--rule",

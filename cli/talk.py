@@ -263,9 +263,10 @@ class Output:
         settings : tuple of Setting
         bowl : Bowl
         """
-        from feederscrew.bowl import record
+        from feederscrew.bowl import record, with_part_material
 
         solid, settings = self.part(part), self.settings(bowl)
+        settings = with_part_material(settings, solid.material)
         return solid, settings, record(settings)
 
     def show(

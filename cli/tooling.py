@@ -12,7 +12,7 @@ from feederscrew_cli.options import Output, Values
 
 @grouped.command(
     short_help="Which cuts let only one orientation leave the bowl.",
-    rare=("step", "cutter", "play", "tolerance", "cad", "verdicts", "seconds"),
+    rare=("lining", "step", "cutter", "play", "tolerance", "cad", "verdicts", "seconds"),
 )
 @options.part
 @options.aspect("Aspect on which the part must leave.  [default: every orientation]")
@@ -96,11 +96,11 @@ def tooling(
 ) -> None:
     """Example: feeder tooling lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
-    Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
-    table has every orientation with its share and its limits (least track width, greatest canyon and
-    gap). It has the devices that isolate it, their margin, the efficiency and the purity. With an aspect,
-    it has the chain of fewest devices. Each has the smallest cut that still returns and the largest that
-    still passes. Devices that the bowl file already lists stay before the design.
+    Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect,
+    the table has every orientation with its share and its limits (least track width, greatest canyon
+    and gap). It has the devices that isolate it, with margin, efficiency and purity. With an aspect, it
+    has the chain of fewest devices. Each has the smallest cut that returns and the largest that passes.
+    Devices of the bowl file stay before the design.
 
     A few parts of each orientation are sent through what is proposed, of the table through the best
     three. What that trial says comes first. Where it denies the chain of one orientation, up to four others

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import generated
 
-from feederscrew.bowl import documentation
+from feederscrew.bowl import documentation, friction_table
 from feederscrew.bowl.schema import BOWL_KEYS
 
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
@@ -42,7 +42,13 @@ def filled(text):
         meaning, example = value["description"].split(". Example: ")
         old = former.get(value["description"])
         devices += f"| `{kind}` | {f'`{old}`' if old else ''} | `{example}` | {meaning} |\n"
-    return between(between(text, "bowl keys", "".join(parts)), "devices", devices)
+    friction = "| Lining | Part | Static | Kinetic | Down the track | Source |\n|---|---|---|---|---|---|\n"
+    for family, lining, own in friction_table.rows():
+        back = own.static_backward, own.kinetic_backward
+        down = "" if back[0] is None else f"{back[0]:g}, {back[1]:g}"
+        friction += f"| {lining} | {family} | {own.static:g} | {own.kinetic:g} | {down} | {own.source} |\n"
+    text = between(text, "bowl keys", "".join(parts))
+    return between(between(text, "devices", devices), "friction", friction)
 
 
 def _row(name, value):

@@ -34,6 +34,8 @@ def other_value(key):
         return OTHER[key.name]
     if key.dimension == "count":
         return round(key.value(key.lowest)) + 1.0
+    if key.choices:  # a word that changes something
+        return key.choices[-1]
     default = key.default if key.default[:1].isdigit() else "0.7"
     low, value = key.value(key.lowest), key.value(default)
     return 0.9 * value + 0.1 * low if value > low else 0.9 * value + 0.1 * key.value(key.highest)

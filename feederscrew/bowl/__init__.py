@@ -14,12 +14,14 @@ from feederscrew.bowl.reading import (
     at_strokes,
     bowl_names,
     effective,
+    friction_remarks,
     key_ranges,
     record,
     remarks,
     settings,
     swept,
     texts,
+    with_part_material,
 )
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
 from feederscrew.bowl.verified import verified
@@ -34,6 +36,7 @@ __all__ = [
     "at_strokes",
     "bowl_names",
     "default",
+    "friction_remarks",
     "identity",
     "key_ranges",
     "name",
@@ -44,6 +47,7 @@ __all__ = [
     "swept",
     "texts",
     "verified",
+    "with_part_material",
 ]
 
 

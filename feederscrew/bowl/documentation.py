@@ -25,7 +25,7 @@ The part slides without hopping, whether its friction is a fifth lower or half a
 forces on floor and track can be followed; drives that throw it run faster (100 Hz, 0.15 mm and 20 deg:
 56 mm/s).
 Measure your own: tilt the track until the part slides, and write the tangent of that angle as static
-friction; there are no tables of friction on coatings to rely on.
+friction. friction.lining takes it from a table by lining and part: ranges and assumptions, not measurements.
 """
 
 

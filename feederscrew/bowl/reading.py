@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check, documents, units
-from feederscrew.bowl import devices, schema, verified
+from feederscrew.bowl import devices, friction_table, schema, verified
 from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track, vibration_angle
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
 from feederscrew.columns import Column
@@ -34,6 +34,8 @@ DEPENDENT_KEYS = {
     for field in dataclasses.fields(kind)
     if field.default is None
 }
+TABLED_WORDS = ("static", "kinetic", "static_backward", "kinetic_backward")
+FROM_LINING = "from friction.lining"  # where a coefficient is from
 SMALLEST = 1e-15  # [SI] a number nearer to 0 is 0: squared, or divided by, it would leave the range of floats
 TOP_LEVEL = (
     *BOWL_SECTIONS,
@@ -246,7 +248,8 @@ def record(settings: Sequence[Setting]) -> Bowl:
     """
     keyed = [s for s in settings if s.key.field != DEVICES_SECTION]
     fields = {s.key.field: s.value if s.key.choices else s.size for s in keyed}
-    fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and not s.is_own}
+    kept = [s for s in keyed if s.is_own or s.where == FROM_LINING]
+    fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and s not in kept}
     sections: dict[str, dict[str, Any]] = {name: {} for name in RECORDS}
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
@@ -365,10 +368,89 @@ def _effective(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
     if key.name == "machine.supply" and "machine.mains" in own_settings:
         text = f"{own_settings['machine.mains'].text} full wave"
         return Setting(key, text, key.value(text), "from machine.mains", is_own=False)
+    tabled = _tabled(key, own_settings)
+    if tabled is not None:
+        return tabled
     if key.default in BY_NAME:
         followed = _effective(BY_NAME[key.default], own_settings)
         return Setting(key, followed.text, followed.value, f"as {key.default}", is_own=False)
     return Setting(key, key.default, key.value(key.default), "default", is_own=False)
+
+
+def _tabled(key: Key, own_settings: Mapping[str, Setting]) -> Setting | None:
+    """A coefficient of friction by the lining of the track; None where one is given, or no lining is."""
+    word = key.name.removeprefix("friction.")
+    if word not in TABLED_WORDS or any(f"friction.{name}" in own_settings for name in TABLED_WORDS):
+        return None
+    family, lining = (
+        _effective(BY_NAME[f"friction.{name}"], own_settings).value for name in ("part_material", "lining")
+    )
+    own = friction_table.find_friction(family, lining)
+    value = None if own is None else getattr(own, word)
+    if value is None:
+        return None
+    return Setting(key, f"{value:g}", value, FROM_LINING, is_own=False)
+
+
+def with_part_material(settings: Sequence[Setting], material: str) -> tuple[Setting, ...]:
+    """Return settings in which the table of friction takes a part for what it is made of.
+
+    Parameters
+    ----------
+    settings : sequence of Setting
+        As of ``settings``.
+    material : str
+        Of the part: 'brass', 'pp'.
+
+    Returns
+    -------
+    tuple of Setting
+        The same where no lining is given, where the file says what parts are made of, or where the material
+        is not known.
+    """
+    own_settings = {s.key.name: s for s in settings if s.is_own}
+    family = friction_table.find_family(material)
+    key = BY_NAME["friction.part_material"]
+    if "friction.lining" not in own_settings or key.name in own_settings or family is None:
+        return tuple(settings)
+    return effective(
+        own_settings | {key.name: Setting(key, str(family), str(family), f"{OVERRIDES} {key.name}")}
+    )
+
+
+def friction_remarks(settings: Sequence[Setting], material: str) -> tuple[str, ...]:
+    """Return what the table of friction has for a part, where friction is the default: a line, or none.
+
+    With a lining the line says which numbers were taken, and where they are from.
+
+    Parameters
+    ----------
+    settings : sequence of Setting
+        As of ``settings``, with the part's material.
+    material : str
+        Of the part.
+
+    Returns
+    -------
+    tuple of str
+    """
+    by_name = {s.key.name: s for s in settings}
+    static = by_name["friction.static"]
+    family = friction_table.find_family(material)
+    if static.where == FROM_LINING:
+        words = by_name["friction.part_material"].text, by_name["friction.lining"].text
+        own = friction_table.find_friction(*words)
+        return () if own is None else (f"friction {_pair(own)} of {' on '.join(words)}: {own.source}",)
+    given = any(by_name[f"friction.{word}"].is_own for word in TABLED_WORDS)
+    own = None if family is None else friction_table.find_friction(family, friction_table.Lining.STEEL)
+    if given or own is None or family == friction_table.PartMaterial.STEEL:
+        return ()
+    what = f"{static.text} is the default, of steel; for {family} on steel the table has {_pair(own)}"
+    return (f"friction: {what} ({own.source}) - give --lining steel, or friction.static",)
+
+
+def _pair(own: friction_table.TabledFriction) -> str:
+    return f"{own.static:g} static and {own.kinetic:g} kinetic"
 
 
 def _derived(key: Key, value: float, where: str) -> Setting:

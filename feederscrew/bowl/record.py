@@ -160,6 +160,8 @@ class Sizing:
     drains: float = 0.0  # holes in the floor
     drain_hole: float = 4e-3  # [m] diameter
     mains: str = "50 Hz"  # where the bowl is to run
+    lining: str = "unsaid"  # of the track, for the table of friction
+    part_material: str = "steel"  # what parts are made of, for that table
     control: str = "mains"  # or 'frequency': the controller makes any
 
     @property

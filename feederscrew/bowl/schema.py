@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
+from feederscrew.bowl.friction_table import FAMILIES, LININGS
 from feederscrew.bowl.record import Machine, Unbalance
 from feederscrew.errors import FeederError
 
@@ -568,6 +569,16 @@ BOWL_KEYS = (
         "10",
         "friction.kinetic",
         "part on bowl wall, while sliding",
+    ),
+    _choice(
+        "friction.lining",
+        LININGS,
+        "of the track, pu: polyurethane; with it friction is that of a table, unless a coefficient is given",
+    ),
+    _choice(
+        "friction.part_material",
+        FAMILIES,
+        "what parts are made of, for that table; of a part whose material is known that one",
     ),
     Key(
         "restitution",

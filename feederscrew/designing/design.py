@@ -178,6 +178,8 @@ def design(
         jobs=arguments.whole("jobs", jobs),
     )
     plain = arguments.a_bowl(bowls.default() if bowl is None else bowl)
+    if not isinstance(part, (list, tuple)):
+        part, plain = arguments.part_in_bowl(part, plain)
     kept_keys = frozenset(setting.key.name for setting in plain.settings if setting.is_own)
     kept_settings = settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:

@@ -17,17 +17,19 @@ from numpy.typing import ArrayLike
 from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import Verified
+from feederscrew.output import beside_bowl, beside_sheet, pose_sheet, tooling_drawing
 from feederscrew.output import machine_sheet as sheets
-from feederscrew.output import pose_sheet, tooling_drawing
 from feederscrew.output import solidbowl_views as views
 from feederscrew.output.drafting import FRAME, Drawing, scale_words
 from feederscrew.output.marking import SheetFields, of_trial
+from feederscrew.output.outlet_poses import OutletPoses, find_outlet_poses
 from feederscrew.output.tooling_drawing import EDGES, View
 from feederscrew.solidbowl import facets, segments, track
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.measuring import Measures, measures
 from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
 from feederscrew.studies.bowl import MachineSheet, Order
+from feederscrew.tooling.devices.pneumatics import SEEN_BY
 from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack
 from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
@@ -42,6 +44,7 @@ DEVELOPED_PLACES = 61  # along a piece at which it is developed
 OUTLET_BOX = 335.0, 136.0, 408.0, 206.0  # [mm] left, low, right, high: the part as it leaves
 POSE_BOX = 356.0, 62.5, 409.0, 77.0  # [mm] the same as a small picture, in the title block
 DATUM_CLEAR_RAD = np.radians(35.0)  # from the ray of the datum to that of the track's width, from above
+NUMBERS_MM = 25.0  # [mm] from the wall of the unrolled track to the list of devices: room for numbers
 POSE_ROWS = 6  # devices on one sheet of poses
 POSE_LETTERS = 72  # of a line of the pose in the title block
 POSES_HEAD = (
@@ -78,15 +81,17 @@ def draw_sheets(
     wide, deep, high = (float(x) for x in np.ptp(solid.vertices, axis=0))
     sizes = replace(measures(whole), extent=(wide, deep, high))
     scale = min(_scale(max(wide, deep) / MM, VIEW_ROOM[0]), _scale(sizes.height / MM, VIEW_ROOM[1]))
-    poses = pose_sheet.find_outlet_poses(study, trial)
+    poses = find_outlet_poses(study, trial)
     rows = [] if poses is None else list(enumerate(poses.devices, start=1))
     of_poses = [rows[k : k + POSE_ROWS] for k in range(0, len(rows), POSE_ROWS)]
-    count = 2 + (solid.plan.stretch is not None) + len(of_poses)
+    beside = beside_bowl.find_beside(study, trial)
+    count = 2 + (solid.plan.stretch is not None) + len(of_poses) + (beside is not None)
     drawing.box(*FRAME)
     _draw_from_above(drawing, solid, sizes, scale)
     _draw_side_views(drawing, solid, sizes, scale)
     _draw_springs(drawing, study.bowl, whole.plan.turned)
-    _draw_list(drawing, study, whole, (246.0, 134.0))
+    of_beside = [] if beside is None else _list_beside(beside, count - 1)
+    _draw_list(drawing, study, whole, (246.0, 134.0), of_beside)
     if poses is not None:
         pose_sheet.draw_outlet_views(drawing, poses.leaving, OUTLET_BOX)
     _draw_title_block(drawing, study, order, whole, sizes, scale, trial, fields, f"1 of {count}", poses)
@@ -101,6 +106,13 @@ def draw_sheets(
         _draw_title(drawing, order.part.name, None, fields, f"{k} of {count}")
         _draw_head(drawing, 25.0, 281.0, POSES_HEAD, None)
         pose_sheet.draw_device_poses(drawing, group, 25.0, 276.0)
+        drawing.mark(of_trial(trial, mark))
+    if beside is not None:
+        drawing.new_sheet()
+        _draw_title(drawing, order.part.name, None, fields, f"{count - 1} of {count}")
+        _draw_head(drawing, 25.0, 281.0, "what stands beside the bowl", None)
+        outlet, plate = (whole.plan.outlet, whole.plan.width), whole.plan.material.plate / MM
+        beside_sheet.draw_beside(drawing, beside, outlet, plate)
         drawing.mark(of_trial(trial, mark))
     _draw_track(drawing, whole.plan, order.part.name, fields, f"{count} of {count}")
     drawing.mark(of_trial(trial, mark))
@@ -300,7 +312,19 @@ def _draw_springs(drawing: Drawing, bowl: Bowl, outlet: float) -> None:
         drawing.text(140.0, 19.0 - 4.0 * k, line, 2.2)
 
 
-def _draw_list(drawing: Drawing, study: MachineSheet, solid: BowlSolid, corner: tuple[float, float]) -> None:
+def _list_beside(beside: beside_bowl.Beside, sheet: int) -> list[tuple[str, str]]:
+    """What stands beside the bowl, as quantity and what, for the parts list: details are on its sheet."""
+    listed = []
+    for station in beside.vision:
+        what = SEEN_BY[station.sees][0]
+        listed.append(("1", f"{what} with light, trigger and valve, device {station.number}: sheet {sheet}"))
+    return [*listed, ("1", f"inline track with two level sensors: sheet {sheet}")]
+
+
+def _draw_list(
+    drawing: Drawing, study: MachineSheet, solid: BowlSolid, corner: tuple[float, float],
+    beside: Sequence[tuple[str, str]],
+) -> None:  # fmt: skip
     under, banks = study.bowl.machine, sheets.spring_banks(study.bowl)
     plan, cut, (weight, angle) = solid.plan, solid.segments, solid.balance
     turn = (angle - plan.turned) / DEG % 360.0
@@ -326,6 +350,7 @@ def _draw_list(drawing: Drawing, study: MachineSheet, solid: BowlSolid, corner: 
         ("1", f"coil, force amplitude {study.force:.3g} N, {supply} Hz"),
         ("1", f"controller, set to {share:.3g} %: {peak:.3g} mm peak to peak"),
     ]
+    rows += beside
     numbered = [[str(k), *row] for k, row in enumerate(rows, start=1)]
     line = min(4.6, 54.0 / (len(rows) + 1))
     drawing.table(*corner, [10.0, 18.0, 136.0], [["pos.", "quantity", "what"], *numbered], line=line)
@@ -333,7 +358,7 @@ def _draw_list(drawing: Drawing, study: MachineSheet, solid: BowlSolid, corner: 
 
 def _draw_title_block(
     drawing: Drawing, study: MachineSheet, order: Order, solid: BowlSolid, sizes: Measures, scale: float,
-    trial: Verified | None, fields: SheetFields | None, sheet: str, poses: pose_sheet.OutletPoses | None,
+    trial: Verified | None, fields: SheetFields | None, sheet: str, poses: OutletPoses | None,
 ) -> None:  # fmt: skip
     """The title block in the lower right corner; of a bowl that was tried as it was tried."""
     left, low, right, high = 246.0, 10.0, 410.0, 78.0
@@ -468,8 +493,9 @@ def _draw_devices(
     for words, start, stop in changes:
         angles = [f"{_angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])
-    line = min(4.6, 130.0 / len(rows))
-    low = drawing.table(25.0, 175.0, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=line)
+    top = min(175.0, float(view.at[1]) - NUMBERS_MM)  # below the numbers along the track
+    line = min(4.6, (top - 45.0) / len(rows))
+    low = drawing.table(25.0, top, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=line)
     notes = [
         f"from and to: along the wall from D; cuts {CUT_TOLERANCE}, everything else {GENERAL}; "
         "* before the outlet",

@@ -9,13 +9,32 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.reading import Setting
-from feederscrew.bowl.verified import AMONG, DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
+from feederscrew.bowl.verified import (
+    AMONG,
+    DRAWS_HELD,
+    HELD,
+    PURE,
+    RATE_KEPT,
+    SHOWN_PURITY,
+    Status,
+    Verified,
+)
 from feederscrew.designing import texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.next_tries import next_tries
 from feederscrew.designing.record import DesignStudy
-from feederscrew.output import designs, machine, marking, poses, solidbowl, solidbowl_views, tables, tooling
+from feederscrew.output import (
+    beside_bowl,
+    designs,
+    machine,
+    marking,
+    poses,
+    solidbowl,
+    solidbowl_views,
+    tables,
+    tooling,
+)
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import LOWER_BOUND
 from feederscrew.output.next_tries import reason
@@ -41,6 +60,7 @@ from feederscrew.output.style import png
 from feederscrew.output.tables import Frame
 from feederscrew.output.trial import rides
 from feederscrew.resting.aspects import find
+from feederscrew.studies.bowl import MachineSheet
 
 MEASURE = (
     "Stroke: a stroke gauge, a printed sticker on the bowl's rim, shows it peak to peak; if it is below the "
@@ -268,6 +288,10 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
     if drawn:
         lead = Text("The part over the cut, what each device does, and the drawing of the cuts.")
         yield Chapter((lead, *drawn), anchor="tooling", title="The tooling")
+    beside = None if build.drawn is None else beside_bowl.find_beside(build.drawn, designs.trial_of(study))
+    if beside is not None:
+        lead = Text("What is bought and set beside the bowl: bowl.pdf shows where it stands.")
+        yield Chapter((lead, Table(beside_bowl.table(beside))), anchor="beside", title="Beside the bowl")
     if build.sheet is not None:
         rows = [row for row in machine.summary(build.sheet).rows() if row["quantity"] in SHOP]
         blocks: list[Block] = [Table(tables.of_rows(rows, ("quantity", "value")))]
@@ -330,12 +354,18 @@ def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None 
         files += machine.offers(sheet, trial)
     if drawn is not None:
         files += solidbowl.offers(drawn, trial)
-        files.append(offer.document("bowl_solid.json", solidbowl.document, drawn.solid))
+        files.append(offer.document("bowl_solid.json", _solid_document, drawn, trial))
     if study.tooling is not None:
         own = tooling.offers(study.tooling, settings, mark=marking.of_trial(trial))
         files += [item for item in own if item.name != "tooling.yaml"]  # design.yaml has the devices
     files = [replace(item, make=cache(item.make)) for item in files]  # the page shows some of them
     return [*files, offer.text("design.html", page, study, build, files)]
+
+
+def _solid_document(drawn: MachineSheet, trial: Verified | None) -> dict[str, Any]:
+    """The bowl as a solid, and what stands beside it."""
+    own = {} if drawn.solid is None else solidbowl.document(drawn.solid)
+    return own | beside_bowl.document(beside_bowl.find_beside(drawn, trial))
 
 
 # --- A family: several parts, one bowl or a bowl for each ---

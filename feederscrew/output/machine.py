@@ -14,8 +14,8 @@ from feederscrew.heavy import heavy
 from feederscrew.machine import drive_sizing
 from feederscrew.machine.condition import MeasuredMachine
 from feederscrew.machine.springs import LeafSet, Rocking, mean_pull
+from feederscrew.output import beside_bowl, marking, proof, solidbowl, tables
 from feederscrew.output import machine_sheet as sheets
-from feederscrew.output import marking, proof, solidbowl, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import row_of
 from feederscrew.studies.bowl import MachineSheet, Order
@@ -35,7 +35,7 @@ def offers(
     """
 
     def document_with_trial() -> dict[str, Any]:
-        return document(study) | ({} if trial is None else {"verified": proof.block(trial)})
+        return document(study, trial) | ({} if trial is None else {"verified": proof.block(trial)})
 
     alt = "The bowl from above and in section, with its sizes, and what it does from full to empty"
     drawn = offer.picture("bowl.png", alt, lambda: figures.bowl(study, trial))
@@ -51,8 +51,11 @@ def offers(
     )
 
 
-def document(study: MachineSheet) -> dict[str, Any]:
-    """Return everything of a MachineSheet as the JSON document; where springs do not make the drive, both."""
+def document(study: MachineSheet, trial: Verified | None = None) -> dict[str, Any]:
+    """Return everything of a MachineSheet as the JSON document; where springs do not make the drive, both.
+
+    With an order it has what stands beside the bowl, for the pose that the trial counted.
+    """
     drive, other = study.bowl.drive, study.mismatch
     machine, sizing, leap = study.bowl.machine, study.bowl.sizing, hop(study.bowl)
     ends = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
@@ -111,6 +114,7 @@ def document(study: MachineSheet) -> dict[str, Any]:
         "emptying": emptying(study),
         "remarks": list(study.remarks),
         "warnings": list(study.remarks),
+        **beside_bowl.document(beside_bowl.find_beside(study, trial)),
         **({} if study.solid is None else solidbowl.document(study.solid)),
         **({} if (rocking := study.rocking) is None else _rocking_entries(study, *rocking)),
     }

@@ -26,7 +26,7 @@ def offers(
     What a trial of the bowl has shown is in the title block, and across what falls short; ``mark`` stands
     on every drawing and solid in its place.
     """
-    from feederscrew.output import bowl_sheet, solid_files, solidbowl_views
+    from feederscrew.output import beside_bowl, bowl_sheet, solid_files, solidbowl_views
 
     solid, order, mark = study.solid, study.order, marking.of_trial(trial, mark)
     if solid is None or order is None:
@@ -48,6 +48,8 @@ def offers(
     if solid.step is not None:
         pieces.append(file("bowl.step", marking.mark_step, solid.step.data))
     alt = "The bowl, parts on its track"
+    beside = beside_bowl.find_beside(study, trial)
+    stations = () if beside is None else (offer.table("bowl_stations.csv", beside_bowl.table, beside),)
     picture = offer.picture("bowl_solid.png", alt, solidbowl_views.figure, solid, order.part)
     return (
         *pieces,
@@ -55,6 +57,7 @@ def offers(
         file("bowl.3mf", solid_files.bowl_3mf, solid, title),
         offer.text("bowl.pdf", lambda: sheets().pdf(sheet_title)),
         offer.text("bowl.dxf", lambda: sheets().dxf()),
+        *stations,
         *marking.pictures([replace(picture, is_apart=True)], mark),
     )
 

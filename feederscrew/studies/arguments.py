@@ -4,7 +4,7 @@ import functools
 import inspect
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from os import PathLike
 from typing import Any, TypeAlias, TypeVar, Unpack, cast
@@ -13,7 +13,7 @@ from feederscrew import bowl as bowls
 from feederscrew import check, documents
 from feederscrew import units as si
 from feederscrew.bowl import Bowl
-from feederscrew.bowl.reading import Setting, settings_of_text
+from feederscrew.bowl.reading import Setting, record, settings_of_text, with_part_material
 from feederscrew.bowl.values import BowlValues, Overrides, adjusted, refuse_unknown, value_texts
 from feederscrew.dropping import launch_conditions as condition_keys
 from feederscrew.errors import ArgumentError
@@ -105,6 +105,35 @@ def a_part(part: object) -> Part:
 def a_bowl(bowl: object) -> Bowl:
     """Return the bowl; raises ArgumentError where it is none."""
     return cast(Bowl, check.kind("bowl", bowl, Bowl, BOWL_MEND))
+
+
+def part_in_bowl(part: object, bowl: object) -> tuple[Part, Bowl]:
+    """Return a part and the bowl with the friction of that part, where its lining says it.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+
+    Returns
+    -------
+    (Part, Bowl)
+
+    Raises
+    ------
+    ArgumentError
+        If either is none.
+    """
+    own, given = a_part(part), a_bowl(bowl)
+    settings = with_part_material(given.settings, own.material) if given.settings else given.settings
+    return own, given if settings == given.settings else record_in_place(given, settings)
+
+
+def record_in_place(bowl: Bowl, settings: Sequence[Setting]) -> Bowl:
+    """Return the bowl of some settings, of the same file as another one: what was tried may hold for it."""
+    changed = record(settings)
+    object.__setattr__(changed, "source", bowl.source)
+    return changed
 
 
 def some_bowls(bowls: object) -> tuple[Bowl, ...]:

@@ -107,7 +107,7 @@ def shares(
     FeederError
         Every fault of the file; if the part has no shape to drop.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
+    part, bowl = arguments.part_in_bowl(part, bowl)
     run = OnCores(jobs, progress, before)
     require_rule(rule)
     seed, fed = arguments.whole("seed", seed, 0), arguments.count("fed", fed)
@@ -379,7 +379,7 @@ def rate(
         If the part has no outline, more facets than can be followed past devices, or no such aspect, no such
         rule has probabilities of it, or the bowl has no steady state.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
+    part, bowl = arguments.part_in_bowl(part, bowl)
     mend = "give devices in a list, as a bowl's devices are"
     chain = bowl.devices if devices is None else arguments.several("devices", devices, Device, mend)
     aspect_shares = the_shares(aspect_shares)

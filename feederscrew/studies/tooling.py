@@ -307,7 +307,7 @@ def tooling(
     found; of the first orientation the first chain there is. A second one is raised.
     """
     begun = time.monotonic()
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
+    part, bowl = arguments.part_in_bowl(part, bowl)
     looked = check.kind("search", search or ToolingSearch(), ToolingSearch, "give a ToolingSearch")
     rule = looked.rule
     aspect, angle = arguments.an_aspect(aspect), arguments.angle("heading", heading)

@@ -137,7 +137,7 @@ def tune(
     FeederError
         If the part never leaves in that orientation, or no setting gives the rate.
     """
-    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
+    part, bowl = arguments.part_in_bowl(part, bowl)
     wanted_rate = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)

@@ -61,7 +61,7 @@ def test_the_shipped_files(file):
     """The template holds the defaults; the schema beside it is as the program has it."""
     path = file(documentation.template())
     assert bowl.read(path) == bowl.default()
-    assert values(path)["drive.amplitude"][1] == "bowl.yaml:12"
+    assert values(path)["drive.amplitude"][1] == "bowl.yaml:13"
     assert values(path)["friction.kinetic"][1] == "as friction.static"
     assert (CONFIGS / "bowl.yaml").read_text() == documentation.template()
     assert (CONFIGS / documentation.SCHEMA_FILE).read_text() == documentation.schema_text()

@@ -16,7 +16,7 @@ from matplotlib.text import Text
 from solids import STEEP, STEPPED, TRACK, built, device, planned
 
 from feederscrew import bowl as bowls
-from feederscrew.output import bowl_sheet, pose_sheet
+from feederscrew.output import bowl_sheet, outlet_poses
 from feederscrew.output.drafting import FRAME
 from feederscrew.output.marking import SheetFields
 from feederscrew.rates import stream
@@ -50,6 +50,7 @@ def posed():
     on_track = stream.follow_orientations(part, find(part), TRACK, devices)
     sheet = study(body(planned(devices, turns=1.8)))
     sheet.bowl = replace(sheet.bowl, devices=devices, track=TRACK)
+    sheet.answer = SimpleNamespace(velocity=0.05)
     sheet.order.part, sheet.order.on_track, sheet.order.rule = part, on_track, "hops"
     return sheet
 
@@ -71,7 +72,7 @@ def test_the_part_stands_at_the_outlet_as_it_leaves_and_beside_each_device(posed
     assert f"A3, 3 of {len(drawing.sheets)}" in " ".join(of_poses)
     # what a trial has counted goes before what leaves most often
     other = next(one for one in coming.lying if one.name != leaves.name and not one.returned)
-    posed_as = pose_sheet.find_outlet_poses(posed, SimpleNamespace(wanted=f"{other.name} or X@1"))
+    posed_as = outlet_poses.find_outlet_poses(posed, SimpleNamespace(wanted=f"{other.name} or X@1"))
     assert posed_as.leaving is other
 
 
