@@ -44,7 +44,7 @@ def find_beside(study: MachineSheet, trial: Verified | None = None) -> Beside | 
     vision = plan_vision_stations(study.bowl, order.on_track.lying)
     starts = [0.0] * len(vision)
     if plan is not None and plan.stretch is not None:
-        starts = [plan.stretch.devices[one.number - 1].start for one in vision]
+        starts = [plan.stretch.devices[one.number - 1].begin for one in vision]
     inline = plan_inline_track(study.bowl, found[1], max(speed, 0.0), height)
     return Beside(vision, tuple(starts), inline)
 
