@@ -337,7 +337,8 @@ def size_bowl(
     """
     space = arguments.amount("gap", gap, "length", 0.0)
     wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)
-    angle, solid = arguments.angle("heading", heading), arguments.a_part(part)
+    aspect, angle = arguments.an_orientation(aspect, heading)
+    solid = arguments.a_part(part)
     chosen = arguments.a_bowl(bowls.default() if bowl is None else bowl)
     effective = arguments.settings_of(chosen)
     name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
