@@ -139,7 +139,8 @@ def tune(
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     wanted_rate = arguments.amount("target", target, "rate", MIN_POSITIVE)
-    aspect, angle = arguments.an_orientation(aspect, heading)
+    named, angle = arguments.an_orientation(aspect, heading)
+    aspect = named or aspect
     space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     arriving = aspect_shares if callable(aspect_shares) else None
