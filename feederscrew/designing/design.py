@@ -122,7 +122,7 @@ def design(
     bowl : Bowl, optional
         What its file or ``with_values`` gave is kept, its devices too; the rest is designed.
     aspect : str, optional
-        On which parts leave; the one that delivers most without it.
+        On which parts leave, 'A' or 'A@354'; the one that delivers most without it.
     heading : str or float [rad], optional
         Of that aspect.
     up : str or sequence of str
@@ -157,10 +157,11 @@ def design(
         whether all is ``shared``, and the worst ``status``.
     """
     looked = check.kind("search", search or DesignSearch(), DesignSearch, "give a DesignSearch")
+    wanted, angle = arguments.an_orientation(aspect, heading)
     request = DesignRequest(
         target=arguments.amount("target", target, "rate", MIN_POSITIVE),
-        aspect=arguments.an_aspect(aspect),
-        heading=arguments.angle("heading", heading),
+        aspect=wanted,
+        heading=angle,
         up=names_of(up),
         outcome=check.choice("outcome", outcome, OutcomeKind),
         without=may_be_left_out(without),

@@ -21,6 +21,7 @@ from feederscrew.part.record import PART_MEND, Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules.formulas import EXPONENTS
 from feederscrew.signatures import with_shown_signature
+from feederscrew.tooling.devices.orientation_names import split_name
 from feederscrew.units import Quantity
 
 Path: TypeAlias = str | PathLike[str]
@@ -163,6 +164,37 @@ def settings_of(bowl: Bowl) -> tuple[Setting, ...]:
 def an_aspect(name: str | None) -> str | None:
     """Return the name of an aspect; None stays None."""
     return None if name is None else check.kind("aspect", name, str, "give the name of an aspect, 'A'")
+
+
+def an_orientation(aspect: str | None, heading: Quantity | None) -> tuple[str | None, float | None]:
+    """Return the aspect and the heading that two arguments name together.
+
+    Parameters
+    ----------
+    aspect : str or None
+        'A', or as tables print it with its heading: 'A@354'.
+    heading : str, float [rad], a quantity of pint or None
+        Of that aspect.
+
+    Returns
+    -------
+    str or None
+        Name of the aspect.
+    float [rad] or None
+        None where neither says a heading.
+
+    Raises
+    ------
+    ArgumentError
+        If they are no aspect and no angle, or name two headings.
+    """
+    name, own = an_aspect(aspect), angle("heading", heading)
+    if name is None:
+        return name, own
+    name, named = split_name(name)
+    if named is not None and own is not None:
+        raise ArgumentError("heading", f"{aspect} has a heading of its own", "leave one of the two out")
+    return name, own if named is None else named
 
 
 def several(name: str, items: object, wanted: type, mend: str) -> tuple[Any, ...]:

@@ -337,8 +337,8 @@ def size_bowl(
     """
     space = arguments.amount("gap", gap, "length", 0.0)
     wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)
-    angle, solid = arguments.angle("heading", heading), arguments.a_part(part)
-    solid, chosen = arguments.part_in_bowl(solid, bowls.default() if bowl is None else bowl)
+    aspect, angle = arguments.an_orientation(aspect, heading)
+    solid, chosen = arguments.part_in_bowl(arguments.a_part(part), bowls.default() if bowl is None else bowl)
     effective = arguments.settings_of(chosen)
     name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
     tried = bowls.verified(chosen.source)

@@ -122,7 +122,7 @@ def floor(
     part : Part
     bowl : Bowl
     aspect : str, optional
-        Its name; the likeliest without it.
+        Its name, 'A', or with its heading, 'A@354'; the likeliest without it.
     heading : str or float [rad]
         '90 deg': how it lies to the drive.
 
@@ -136,7 +136,8 @@ def floor(
         If the part has no such aspect, or the drive is not ``limits.plain``.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
-    angle = arguments.amount("heading", heading, "angle")
+    aspect, named = arguments.an_orientation(aspect, None)
+    angle = arguments.amount("heading", heading, "angle") if named is None else named
     limits.plain(bowl)
     stand, why = choose_posture(part, aspect, "floor", partial(likeliest, bowl=bowl))
     now = floor_balance.motion(stand, bowl, angle)

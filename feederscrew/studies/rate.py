@@ -343,7 +343,7 @@ def rate(
         From a mesh.
     bowl : Bowl
     aspect : str, optional
-        The one wanted, as ``aspects`` names it; without it the orientation that leaves most often.
+        The one wanted, 'A', or with its heading, 'A@354'; without it the orientation that leaves most often.
     heading : str or float [rad], optional
         Without one, the most frequent that stays on the track.
     devices : sequence of Device
@@ -383,7 +383,8 @@ def rate(
     mend = "give devices in a list, as a bowl's devices are"
     chain = bowl.devices if devices is None else arguments.several("devices", devices, Device, mend)
     aspect_shares = the_shares(aspect_shares)
-    angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
+    aspect, angle = arguments.an_orientation(aspect, heading)
+    space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     check.argument("sigma", sigma, 0.0)
     require_rule(rule)

@@ -266,7 +266,7 @@ def tooling(
         From a mesh.
     bowl : Bowl
     aspect : str, optional
-        The one wanted; every orientation without it.
+        The one wanted, 'A', or with its heading, 'A@354'; every orientation without it.
     heading : str or float [rad], optional
         Of that aspect.
     up : str or sequence of str
@@ -310,7 +310,7 @@ def tooling(
     part, bowl = arguments.part_in_bowl(part, bowl)
     looked = check.kind("search", search or ToolingSearch(), ToolingSearch, "give a ToolingSearch")
     rule = looked.rule
-    aspect, angle = arguments.an_aspect(aspect), arguments.angle("heading", heading)
+    aspect, angle = arguments.an_orientation(aspect, heading)
     lengths = {"margin": margin, "play": play, "tolerance": tolerance}
     clear, play, tolerance = (arguments.amount(k, value, "length", 0.0) for k, value in lengths.items())
     clear += play + tolerance

@@ -90,7 +90,7 @@ def track(
     part : Part
     bowl : Bowl
     aspect : str, optional
-        Its name; the likeliest without it.
+        Its name, 'A', or with its heading, 'A@354'; the likeliest without it.
     heading : str or float [rad], optional
         As laid down: pushed to the wall, the part turns to the stable heading of that range. The most
         frequent that stays on the track without it.
@@ -106,7 +106,7 @@ def track(
         drive is not ``limits.plain``.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
-    angle = arguments.angle("heading", heading)
+    aspect, angle = arguments.an_orientation(aspect, heading)
     limits.plain(bowl)
     posture, why = choose_posture(part, aspect, "track", partial(likeliest, bowl=bowl))
     seat, headings, row = motion_maps.seated(posture, bowl, angle)

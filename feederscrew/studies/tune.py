@@ -139,7 +139,9 @@ def tune(
     """
     part, bowl = arguments.part_in_bowl(part, bowl)
     wanted_rate = arguments.amount("target", target, "rate", MIN_POSITIVE)
-    angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
+    named, angle = arguments.an_orientation(aspect, heading)
+    aspect = named or aspect
+    space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     arriving = aspect_shares if callable(aspect_shares) else None
     shared = None if callable(aspect_shares) else the_shares(aspect_shares)

@@ -25,6 +25,7 @@ from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import ToolingSearch, ToolingStudy, tooling
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
+from feederscrew.tooling.devices.features import ShopWork
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import add_travel, orientations
 from feederscrew.tooling.tooled_track import bend_ring, lay_out
@@ -260,6 +261,10 @@ def test_the_slot_that_parts_hang_in_is_open_at_the_outlet(behind):
     file = ezdxf.read(io.StringIO(tooling_drawing.dxf(strip).decode()))
     cuts = [one for one in file.modelspace().query("LWPOLYLINE") if one.dxf.layer.startswith("CUT")]
     assert max(p[0] for cut in cuts for p in cut.get_points()) == pytest.approx(1e3 * strip.length, abs=1e-6)
+    # The list of devices says what the shop must do: the last slot is open, one before other rails runs on.
+    listed = [row[-1] for row in tooling_drawing.device_rows(strip.devices, strip.width, lambda s: s)]
+    ends = [ShopWork.RUNS_INTO_NEXT] * (len(spans) - 1) + [ShopWork.OPEN_AT_OUTLET]
+    assert [words for words in listed if words in (ShopWork.RUNS_INTO_NEXT, ShopWork.OPEN_AT_OUTLET)] == ends
     # Rays from above find no web: between the rails from where they begin, and past the end of the track.
     vertices, faces = printed.solid(strip)
     mesh = trimesh.Trimesh(vertices, faces)
