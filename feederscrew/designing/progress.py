@@ -25,13 +25,17 @@ class SearchStage(enum.StrEnum):
     LONG_PROOF = "long proof"
 
 
-# [s] a trial, a draw, all queues, all runs of a long proof, before any was timed
+# [s] a trial, all draws of a design, all its queues, all runs of a long proof, before any was timed
 USUAL_S = {
-    SearchStage.TRIAL: 4.0,
-    SearchStage.DRAWS: 1.0,
-    SearchStage.QUEUE: 60.0,
+    SearchStage.TRIAL: 2.0,
+    SearchStage.DRAWS: 5.0,
+    SearchStage.QUEUE: 50.0,
     SearchStage.LONG_PROOF: 7200.0,
 }
+# [1] of a stage that is done, from which its own pace is what counts: the fill that is followed first is the
+# slowest by far, so that queues show theirs late
+OWN_PACE_SHARE = {SearchStage.DRAWS: 0.1, SearchStage.QUEUE: 0.5, SearchStage.LONG_PROOF: 0.0}
+LONGER_SHARE = 0.25  # [1] of the time gone, that a stage which takes longer than usual goes on
 
 
 def _silent(text: str) -> None:
@@ -48,43 +52,55 @@ class TrialBudget:
 
 
 class Clock:
-    """Time that the stages of a design take, and a guess of the time still to come."""
+    """How long the stages of a design take, and a guess of what is still to come."""
 
     def __init__(self) -> None:
         self.begun = self.last = self.since = time.monotonic()
         self.stage: SearchStage | None = None
         self.done, self.total, self.counts = 0, 0, True
         self.found = 0  # done before the stage began: runs that were kept
-        self.durations: dict[
-            SearchStage, tuple[float, float]
-        ] = {}  # of each stage seconds, and how many they were
+        self.proofs = 0  # that were begun: all but the last of them denied their designs
+        self.durations: dict[SearchStage, tuple[float, int]] = {}  # of each stage seconds, and how many
 
     @property
     def seconds(self) -> float:
         """Seconds since it began."""
         return time.monotonic() - self.begun
 
-    @property
-    def _count_done(self) -> float:
-        """Draws that are done, or how much of the queues at all fills."""
-        return float(self.done) if self.stage is SearchStage.DRAWS else self.done / max(self.total, 1)
-
     def begin(self, stage: SearchStage, *, counts: bool = True) -> None:
-        """Begin a stage; one that waits for the compiler does not count."""
+        """Begin a stage.
+
+        Parameters
+        ----------
+        stage : SearchStage
+        counts : bool
+            Whether its time is the one of such stages; one that waits for the compiler does not count.
+        """
         self.end()
         self.stage, self.done, self.total, self.counts = stage, 0, 1, counts
-        self.since = time.monotonic()
+        self.found, self.since = 0, time.monotonic()
+        self.proofs += stage is SearchStage.DRAWS
 
     def end(self) -> None:
-        """End the stage that runs, and note how long it took."""
-        count = 1.0 if self.stage is SearchStage.TRIAL else self._count_done
-        if self.stage is not None and self.counts and count > 0.0:
-            seconds, number = self.durations.get(self.stage, (0.0, 0.0))
-            self.durations[self.stage] = seconds + time.monotonic() - self.since, number + count
+        """End the stage that runs, and note how long it took, however far it came."""
+        if self.stage is not None and self.counts and (self.stage is SearchStage.TRIAL or self.done > 0):
+            seconds, number = self.durations.get(self.stage, (0.0, 0))
+            self.durations[self.stage] = seconds + time.monotonic() - self.since, number + 1
         self.stage = None
 
     def reach(self, stage: SearchStage, done: int, total: int) -> bool:
-        """Note how many of a stage are done; return whether it is time to tell so."""
+        """Note how many of a stage are done; return whether it is time to tell so.
+
+        Parameters
+        ----------
+        stage : SearchStage
+        done, total : int
+            Draws, periods of queues, or runs.
+
+        Returns
+        -------
+        bool
+        """
         if stage is not self.stage or done < self.done:
             self.begin(stage)
             self.found = done
@@ -95,7 +111,16 @@ class Clock:
         return True
 
     def each(self, stage: SearchStage) -> float:
-        """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine."""
+        """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine.
+
+        Parameters
+        ----------
+        stage : SearchStage
+
+        Returns
+        -------
+        float [s]
+        """
         if stage in self.durations:
             seconds, number = self.durations[stage]
             return seconds / number
@@ -104,36 +129,52 @@ class Clock:
         usual = USUAL_SLOWNESS_S + sum(number * USUAL_S[name] for name, (_, number) in self.durations.items())
         return USUAL_S[stage] * seconds / usual
 
-    def rest(self, trials: int, limit: int, draws: int) -> float:
+    def rest_of_stage(self, stage: SearchStage) -> float:
+        """Return a guess of the seconds to go of a stage that runs: at its own pace as soon as it has one.
+
+        Parameters
+        ----------
+        stage : SearchStage
+
+        Returns
+        -------
+        float [s]
+            What is left of it at its own pace; until ``OWN_PACE_SHARE`` of it is done, what such a stage
+            takes less the time gone, or ``LONGER_SHARE`` of that.
+        """
+        gone, made, left = time.monotonic() - self.since, self.done - self.found, self.total - self.done
+        if made > 0 and made >= OWN_PACE_SHARE[stage] * self.total:
+            return left * gone / made
+        return max(self.each(stage) - gone, LONGER_SHARE * gone)
+
+    def rest(self, trials: int, limit: int) -> float:
         """Return a guess of the seconds to go: as if a usual number of trials led to one proof.
+
+        Where a proof has denied a design, the next may be denied as well: one more round of trials and proof,
+        as long as those before, is counted.
 
         Parameters
         ----------
         trials, limit : int
             Short trials that were made, and those allowed.
-        draws : int
-            Draws of a proof.
 
         Returns
         -------
         float [s]
         """
-        if self.stage is SearchStage.DRAWS:
-            return max(draws - self._count_done, 0.0) * self.each(SearchStage.DRAWS) + self.each(
-                SearchStage.QUEUE
-            )
         if self.stage is SearchStage.LONG_PROOF:
-            made = self.done - self.found
-            gone = time.monotonic() - self.since
-            return (self.total - self.done) * gone / made if made else USUAL_S[SearchStage.LONG_PROOF]
+            return self.rest_of_stage(SearchStage.LONG_PROOF)
         if self.stage is SearchStage.QUEUE:
-            return max(1.0 - self._count_done, 0.1) * self.each(SearchStage.QUEUE)
-        left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
-        return (
-            left * self.each(SearchStage.TRIAL)
-            + draws * self.each(SearchStage.DRAWS)
-            + self.each(SearchStage.QUEUE)
-        )
+            rest = self.rest_of_stage(SearchStage.QUEUE)
+        elif self.stage is SearchStage.DRAWS:
+            rest = self.rest_of_stage(SearchStage.DRAWS) + self.each(SearchStage.QUEUE)
+        else:
+            left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
+            rest = left * self.each(SearchStage.TRIAL)
+            rest += self.each(SearchStage.DRAWS) + self.each(SearchStage.QUEUE)
+        is_proving = self.stage in (SearchStage.DRAWS, SearchStage.QUEUE)
+        denied = self.proofs - is_proving
+        return rest + (self.seconds / (denied + 1) if denied > 0 else 0.0)
 
 
 @dataclass(eq=False)
@@ -151,8 +192,8 @@ class SearchProgress:
             self.before()
         number = len(budget.attempts) + 1
         self.clock.begin(SearchStage.TRIAL, counts=runs.is_compiled())
-        most = max(budget.limit, number)
-        self.tell(f"trial {number} of at most {most}: {text}{self._so_far(budget)}")
+        most = max(budget.limit, number)  # of the search that runs: others may follow, so it is no bound
+        self.tell(f"trial {number}: {text}{self._so_far(budget)}")
         self._report(SearchStage.TRIAL, number - 1, most, budget)
 
     def begin_proof(self, text: str, budget: TrialBudget) -> None:
@@ -183,7 +224,7 @@ class SearchProgress:
         return replace(run, progress=reach)
 
     def _rest(self, budget: TrialBudget) -> float:
-        return self.clock.rest(len(budget.attempts), budget.limit, budget.draws)
+        return self.clock.rest(len(budget.attempts), budget.limit)
 
     def _report(self, stage: SearchStage, done: int, total: int, budget: TrialBudget) -> None:
         if self.report:

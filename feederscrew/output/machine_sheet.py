@@ -172,7 +172,7 @@ def _reading_rows(study: MachineSheet) -> Pairs:
     moved, rules = study.stroke, study.bowl.sizing
     full = moved.peak_to_peak / rules.controller / MM
     at = f"at {100 * rules.controller:.3g} % of the controller, {full:.3g} at 100 %"
-    yield "stroke, as on a sticker [mm]", f"{moved.peak_to_peak / MM:.3g} {at}"
+    yield "stroke, peak to peak [mm]", f"{moved.peak_to_peak / MM:.3g} {at}"
     parts = f"rms {moved.rms:.3g}, horizontal {moved.horizontal:.3g}, vertical {moved.vertical:.3g}"
     yield "accelerometer [m/s2]", f"{moved.acceleration:.3g} peak; {parts}"
     ratio = moved.acceleration / study.bowl.gravity

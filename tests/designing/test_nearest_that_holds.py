@@ -258,8 +258,8 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
     search.progress.clock.end()
     search.begin_trial("A@0, calmer drive")
     assert order == [0]  # what is compiled is told before the first trial, once
-    assert said[0].startswith("trial 1 of at most 7: A@0, no device")
-    assert "trial 2 of at most 7" in said[1] and "trial 1: A@0 is lost (turned on the track)" in said[1]
+    assert said[0].startswith("trial 1: A@0, no device")
+    assert said[1].startswith("trial 2: ") and "trial 1: A@0 is lost (turned on the track)" in said[1]
     assert [row[:3] for row in told] == [("trial", 0, 7), ("trial", 1, 7)]
     assert all(gone >= 0.0 and rest > 0.0 for *_, gone, rest in told)
     search.begin_proof("draws: A@0")

@@ -61,7 +61,7 @@ SAID = {
     "height of the outlet": ("bowl bowl_depth_mm", "bowl_solid outlet_height_mm",
         "file sizing.outlet_height 1e3", "drawing outlet # over", "quotation bowl depth [mm]"),
     "stroke": ("design bowl.peak_to_peak_mm", "bowl peak_to_peak_mm", "file drive.amplitude 2e3",
-        "picture # mm peak to peak", "drawing : # mm peak to peak", "sheet stroke, as on a sticker [mm]",
+        "picture # mm peak to peak", "drawing : # mm peak to peak", "sheet stroke, peak to peak [mm]",
         "acceptance stroke at the rim, peak to peak"),
     "frequency": ("design bowl.frequency_hz", "bowl drive_frequency_hz", "file drive.frequency 1",
         "picture # Hz, ", "drawing drive\n# Hz", "acceptance frequency of the drive"),

@@ -1,0 +1,73 @@
+"""The guess of the time to go: stages by their own pace, and what is denied comes again."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from feederscrew.designing import progress
+from feederscrew.designing.progress import USUAL_S, Clock, SearchStage
+
+
+@pytest.fixture
+def at(monkeypatch):
+    """Sets the clock [s] that a search reads."""
+    now = [0.0]
+    monkeypatch.setattr(progress, "time", SimpleNamespace(monotonic=lambda: now[0]))
+
+    def set_to(seconds):
+        now[0] = seconds
+
+    return set_to
+
+
+def run(clock, at, stage, seconds, done=1, total=1):
+    """One stage from now on, for some seconds."""
+    begun = clock.begun + clock.seconds
+    clock.begin(stage)
+    at(begun + seconds)
+    clock.reach(stage, done, total)
+    clock.end()
+
+
+def test_a_stage_counts_by_its_own_pace_as_soon_as_it_has_one(at):
+    clock = Clock()
+    clock.begin(SearchStage.DRAWS)
+    at(1.0)
+    clock.reach(SearchStage.DRAWS, 1, 20)  # 5 %: as usual, less the time gone
+    assert clock.rest_of_stage(SearchStage.DRAWS) == pytest.approx(USUAL_S[SearchStage.DRAWS] - 1.0)
+    at(30.0)
+    clock.reach(SearchStage.DRAWS, 5, 20)  # 6 s each
+    assert clock.rest_of_stage(SearchStage.DRAWS) == pytest.approx(90.0)
+    at(120.0)
+    clock.reach(SearchStage.DRAWS, 20, 20)
+    assert clock.rest(1, 16) == pytest.approx(clock.each(SearchStage.QUEUE))
+
+
+def test_queues_count_by_what_they_took_however_far_they_came(at):
+    """Two that were refused after 20 s and 40 s, at a hundredth of the periods that were expected."""
+    clock = Clock()
+    for seconds in (20.0, 40.0):
+        run(clock, at, SearchStage.QUEUE, seconds, 900, 90_000)
+    assert clock.each(SearchStage.QUEUE) == pytest.approx(30.0)
+    clock.begin(SearchStage.QUEUE)
+    at(70.0)
+    clock.reach(SearchStage.QUEUE, 900, 90_000)
+    assert clock.rest_of_stage(SearchStage.QUEUE) == pytest.approx(20.0)
+    at(160.0)
+    clock.reach(SearchStage.QUEUE, 9000, 90_000)
+    assert clock.rest_of_stage(SearchStage.QUEUE) == pytest.approx(25.0)  # a quarter as long again
+    clock.reach(SearchStage.QUEUE, 60_000, 90_000)
+    assert clock.rest_of_stage(SearchStage.QUEUE) == pytest.approx(50.0)
+
+
+def test_where_a_proof_has_denied_a_design_one_more_round_is_counted(at):
+    clock = Clock()
+    run(clock, at, SearchStage.TRIAL, 10.0)
+    clock.begin(SearchStage.TRIAL)
+    # trials at their own pace; the rest as usual on a machine that took 20 s where 12 s are usual
+    assert clock.rest(1, 16) == pytest.approx(4 * 10.0 + (5.0 + 50.0) * 20.0 / 12.0)
+    run(clock, at, SearchStage.DRAWS, 10.0, 20, 20)
+    run(clock, at, SearchStage.QUEUE, 80.0)
+    clock.begin(SearchStage.TRIAL)  # goes on: it was denied
+    own = 4 * 5.0 + 10.0 + 80.0  # four more trials, which took 5 s in the mean, draws and queues
+    assert clock.rest(1, 16) == pytest.approx(own + clock.seconds / 2.0, rel=0.01)
