@@ -50,7 +50,7 @@ LINE_LETTERS = 92  # of a line in the last column
 
 @dataclass(frozen=True)
 class View:
-    """Where unrolled lengths [m] lie on a sheet [mm]."""
+    """Place of unrolled lengths [m] on a sheet [mm]."""
 
     at: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0

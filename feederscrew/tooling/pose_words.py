@@ -98,7 +98,7 @@ def _where(what: str, off: Vector, size: Vector) -> str:
 
 
 def _heavy_side(orientation: Orientation) -> str:
-    """Whether the heavier half is down or up; '' where neither is, and of a part that rolls."""
+    """Tell whether the heavier half is down or up; '' where neither is, and of a part that rolls."""
     off = orientation.posture.height / orientation.height - 0.5
     if abs(off) < OFF_SHARE or orientation.kind == "rolling":
         return ""
