@@ -264,7 +264,7 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
 
 
 def _leaves_over_slot(study: DesignStudy, candidate: Candidate) -> bool:
-    """Whether what leaves lying, most of it, is an orientation of which parts hang in the trial."""
+    """Tell whether what leaves lying, most of it, is an orientation of which parts hang in the trial."""
     rows = {candidate.orientations.lying[k].name for k in candidate.shown or ()}
     named = [pose for pose, _ in study.left_instead if pose.kind is PoseKind.ORIENTATION]
     return bool(named) and named[0].name in rows

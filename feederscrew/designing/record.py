@@ -120,7 +120,7 @@ class Attempt:
 
     @property
     def clean(self) -> bool:
-        """Whether only what is wanted leaves and nothing stays."""
+        """Tell whether only what is wanted leaves and nothing stays."""
         return self.efficiency > 0.0 and not self.faults
 
 
@@ -136,12 +136,12 @@ class RobustRun:
 
     @property
     def worst_text(self) -> str:
-        """What went wrong most often, in words, and in how many draws; '' where nothing did."""
+        """Return the most frequent fault in words, and in how many draws it came; '' without any."""
         return "" if self.worst is None else texts.counted_fault_text(self.worst)
 
     @property
     def share(self) -> float:
-        """Share of the draws that sort [1]; 0 of none."""
+        """Return the share of the draws that sort [1]; 0 without draws."""
         return self.held / self.draws if self.draws else 0.0
 
 
@@ -322,14 +322,14 @@ class DesignStudy(ReadableRecord):
 
     @property
     def outcome(self) -> OutcomeKind:
-        """Whether what leaves lies on the track or hangs by its head."""
+        """Return whether what leaves lies on the track or hangs by its head."""
         hangs = any(device.hangs for device in self.devices)
         own = OutcomeKind.HANGING if hangs else OutcomeKind.LYING
         return self.request.outcome if self.bowl is None else own
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return a sentence for each thing that a user must not overlook."""
         allowances = {"margin": DESIGN_MARGIN_M, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         warnings = [*self.part.warnings, *small_part_remarks(self.part, allowances, width)]
@@ -386,7 +386,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def efficiency(self) -> float:
-        """Share [1] of the parts offered that left as wanted, of the worst fill; NaN of none."""
+        """Return the share [1] of offered parts that left as wanted, of the worst fill; NaN without."""
         shares = (queue.right / queue.offered for queue in self.queues if queue.offered)
         return min(shares, default=np.nan)
 
@@ -412,7 +412,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def trial_parts(self) -> int:
-        """How many parts were tried one at a time."""
+        """Return how many parts were tried one at a time."""
         return sum(attempt.parts for attempt in self.attempts)
 
     @property
@@ -428,7 +428,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def hooking(self) -> Hooking | None:
-        """How two of its parts hook; None of parts that come apart by themselves."""
+        """Return how two of its parts hook; None of parts that come apart by themselves."""
         return next((risk.hooking for risk in self.risks if risk.hooking is not None), None)
 
     @property
@@ -440,7 +440,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def proved_so_far(self) -> tuple[str, ...]:
-        """What was counted until now, a sentence each; of a design that was stopped it decides nothing."""
+        """Return what was counted until now, a sentence each; of a stopped design it decides nothing."""
         if self.bowl is None:
             return (f"{counted(len(self.attempts), 'short trial')} made, none of a design was proved",)
         robust = self.robust
@@ -504,7 +504,7 @@ class DesignStudy(ReadableRecord):
         return self.fills_of(FillState.OPEN)
 
     def _lacks_of(self, queue: FilledQueue) -> list[str]:
-        """What a fill lacks, a sentence each; its jams are counted with those of the others."""
+        """Return what a fill lacks, a sentence each; its jams are counted with those of the others."""
         minute, (low, high), target = 60.0, queue.ends, self.request.target
         at, lines = f"at {queue.fill} fill", []
         if low < RATE_KEPT * target:
@@ -529,7 +529,7 @@ class DesignStudy(ReadableRecord):
         return lines
 
     def _jams_of(self, queue: FilledQueue) -> str:
-        """How many jams a fill of a long proof had, what that shows, and what is agreed."""
+        """Return how many jams a fill of a long proof had, what that shows, and what is agreed."""
         shown, agreed = HOUR * rate_at_most(queue.jams, queue.seconds), HOUR * self.request.agreed_jams
         return (
             f"at {queue.fill} fill {counted(queue.jams, 'jam')} in {queue.seconds / MINUTE:.3g} min: "
@@ -539,7 +539,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def cause(self) -> Cause:
-        """What keeps it from holding; unknown of one that holds or was stopped."""
+        """Return the cause why it does not hold; unknown of one that holds or was stopped."""
         return self._cause[0]
 
     @property
@@ -636,7 +636,7 @@ class DesignStudy(ReadableRecord):
 
 
 def _instead(study: DesignStudy, queue: FilledQueue) -> str:
-    """What left a fill instead of what is wanted, and the option that counts it at any heading."""
+    """Return the poses that left a fill instead of the wanted one, and the option that counts them."""
     if not queue.left_instead:
         return ""
     lines = []

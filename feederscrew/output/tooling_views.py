@@ -62,7 +62,7 @@ def _caption_lines(words: Sequence[str]) -> list[tuple[str, bool]]:
 def _views(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> list[Any]:
-    """What leaves, and what falls by least, of those that come often: passage, lines of text, colour."""
+    """Return what leaves, and what falls by least, of the frequent: passage, lines of text, colour."""
     placed, views, rejected = [device for device in devices if device.placed], [], []
     passages = _drawable(track_sections.until_returned(placed, orientations[wanted_row], orientations))
     if passages:

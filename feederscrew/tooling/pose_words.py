@@ -60,7 +60,7 @@ def _long_side(orientation: Orientation) -> str:
 
 
 def _leads(orientation: Orientation) -> str:
-    """What of a part is ahead or behind, at the wall or at the free edge; '' where nothing tells it."""
+    """Return what of a part is ahead or behind, at the wall or at the free edge; '' if nothing tells it."""
     if neck(orientation) is not None:
         return "head ahead" if head_first(orientation) else "head behind"
     plan = orientation.outline
