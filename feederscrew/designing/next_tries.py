@@ -135,7 +135,7 @@ def _of_nearest(study: DesignStudy) -> NextTry:
 
 
 def _clean_ways(study: DesignStudy) -> Iterator[NextTry]:
-    """What got through a short trial too slowly, of each aspect at the rate of its fastest trial."""
+    """Yield what got through a short trial too slowly, of each aspect at the rate of its fastest trial."""
     request, fastest = study.request, dict[str, Attempt]()
     for attempt in study.attempts:
         if attempt.clean and attempt.rate > fastest.get(attempt.aspect, attempt).rate:
@@ -156,7 +156,7 @@ def _clean_ways(study: DesignStudy) -> Iterator[NextTry]:
 
 
 def _trials(study: DesignStudy) -> Counter[str]:
-    """How often each aspect was wanted in a short trial."""
+    """Count how often each aspect was wanted in a short trial."""
     return Counter(attempt.aspect for attempt in study.attempts)
 
 

@@ -177,7 +177,17 @@ class WantedTrials:
 
     @classmethod
     def of(cls, attempts: Iterable[Attempt]) -> tuple["WantedTrials", ...]:
-        """Return those of some trials, one for each orientation, that of most trials first."""
+        """Return what became of each orientation in some trials, that of most trials first.
+
+        Parameters
+        ----------
+        attempts : iterable of Attempt
+
+        Returns
+        -------
+        tuple of WantedTrials
+            One for each orientation that was wanted.
+        """
         by_name: dict[str, list[Attempt]] = {}
         for attempt in attempts:
             by_name.setdefault(attempt.wanted, []).append(attempt)
@@ -455,7 +465,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def delivers(self) -> bool:
-        """Whether any wanted part has left its queues, and it was not stopped: what may be built from."""
+        """Tell whether it may be built from: a wanted part has left its queues, and it was not stopped."""
         is_proved = self.status is not Status.NOT_PROVED
         return self.bowl is not None and is_proved and self.delivered[0] > 0.0
 
@@ -485,11 +495,20 @@ class DesignStudy(ReadableRecord):
 
     @property
     def wanted_trials(self) -> tuple[WantedTrials, ...]:
-        """What became of each orientation that was asked for in its short trials."""
+        """Return what became of each orientation that was asked for in its short trials."""
         return WantedTrials.of(_asked_for(self))
 
     def fills_of(self, state: FillState) -> tuple[FilledQueue, ...]:
-        """Return the queues of the fills of one state, for the rate that is asked for."""
+        """Return the queues of the fills of one state, for the rate that is asked for.
+
+        Parameters
+        ----------
+        state : FillState
+
+        Returns
+        -------
+        tuple of FilledQueue
+        """
         least, longest = RATE_KEPT * self.request.target, longest_time(self.request.target)
         return tuple(queue for queue in self.queues if judge_fill(queue, least, longest) is state)
 
