@@ -354,16 +354,7 @@ def _machine_words(facts: Mapping[str, Any]) -> tuple[str, str, str]:
 
 
 def attempts(study: DesignStudy) -> Frame:
-    """Return the history of the loop: one short trial a row.
-
-    Parameters
-    ----------
-    study : DesignStudy
-
-    Returns
-    -------
-    Frame
-    """
+    """Return the history of the loop: one short trial a row."""
     names = (
         "wanted why=step bank_deg velocity_mm_s parts efficiency purity stopped peak_to_peak_mm throw_number",
         "rate_per_minute cause",

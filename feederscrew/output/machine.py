@@ -28,10 +28,21 @@ def offers(
     study: MachineSheet, trial: Verified | None = None, mark: str | None = None,
     fields: marking.SheetFields | None = None,
 ) -> tuple[offer.Offer, ...]:  # fmt: skip
-    """Return the files of a MachineSheet, its drawings with date and revision of ``fields`` (SheetFields).
+    """Return the files of a machine.
 
-    ``trial`` is what a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is
-    marked. ``mark`` stands across every drawing in place of the trial's.
+    Parameters
+    ----------
+    study : MachineSheet
+    trial : Verified, optional
+        What a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is marked.
+    mark : str, optional
+        Stands across every drawing in place of the trial's.
+    fields : SheetFields, optional
+        Date and revision of the drawings.
+
+    Returns
+    -------
+    tuple of Offer
     """
 
     def document_with_trial() -> dict[str, Any]:
@@ -52,7 +63,16 @@ def offers(
 
 
 def document(study: MachineSheet) -> dict[str, Any]:
-    """Return everything of a MachineSheet as the JSON document; where springs do not make the drive, both."""
+    """Return everything of a machine as the JSON document; where springs do not make the drive, both.
+
+    Parameters
+    ----------
+    study : MachineSheet
+
+    Returns
+    -------
+    dict
+    """
     drive, other = study.bowl.drive, study.mismatch
     machine, sizing, leap = study.bowl.machine, study.bowl.sizing, hop(study.bowl)
     ends = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
@@ -159,7 +179,17 @@ def _angles(study: MachineSheet) -> Frame:
 
 
 def leaf_sets(sets: Sequence[LeafSet]) -> Frame:
-    """Return sets of leaves, each a LeafSet, as a frame."""
+    """Return sets of leaves as a frame.
+
+    Parameters
+    ----------
+    sets : sequence of LeafSet
+
+    Returns
+    -------
+    Frame
+        A row for each.
+    """
     table = tables.table_of(
         sets,
         "change=name leaf_thickness_mm=thickness leaves natural_frequency_hz by_t_squared_hz=by_square",
@@ -169,7 +199,16 @@ def leaf_sets(sets: Sequence[LeafSet]) -> Frame:
 
 
 def emptying(study: MachineSheet) -> Frame:
-    """Return the bowl from full to empty as a frame, with rates where parts are counted."""
+    """Return the bowl from full to empty as a frame, with rates where parts are counted.
+
+    Parameters
+    ----------
+    study : MachineSheet
+
+    Returns
+    -------
+    Frame
+    """
     columns = row_of(
         study.emptying,
         "fill_percent=levels parts_kg=masses natural_frequency_hz=natural_frequencies gain=gains",
@@ -184,12 +223,32 @@ def emptying(study: MachineSheet) -> Frame:
 
 
 def summary(study: MachineSheet, trial: Verified | None = None) -> Frame:
-    """Return the record as a frame for people: the quotation sheet, with what was tried, or the machine."""
+    """Return the machine as a frame for people: the quotation sheet, with what was tried, or the machine.
+
+    Parameters
+    ----------
+    study : MachineSheet
+    trial : Verified, optional
+        That a bowl file records of exactly this bowl.
+
+    Returns
+    -------
+    Frame
+    """
     return Frame.of_rows(sheets.quotation(study, trial), ("quantity", "value"))
 
 
 def measured_summary(condition: MeasuredMachine) -> Frame:
-    """Return what was measured beside what should be, and the likely cause, as a table."""
+    """Return what was measured beside what should be, and the likely cause, as a table.
+
+    Parameters
+    ----------
+    condition : MeasuredMachine
+
+    Returns
+    -------
+    Frame
+    """
     should, stroke = condition.should, condition.stroke
     pairs = (
         ("stroke, peak to peak [mm]", should["stroke"] / MM, stroke and stroke / MM),
@@ -206,7 +265,16 @@ def measured_summary(condition: MeasuredMachine) -> Frame:
 
 
 def measured_document(condition: MeasuredMachine) -> dict[str, Any]:
-    """Return a MeasuredMachine as the JSON document."""
+    """Return a machine that was measured as the JSON document.
+
+    Parameters
+    ----------
+    condition : MeasuredMachine
+
+    Returns
+    -------
+    dict
+    """
     names = "stroke_mm acceleration_m_s2 frequency_hz velocity_mm_s"
     should = SimpleNamespace(**condition.should, velocity=condition.velocity_should)
     return {

@@ -61,6 +61,16 @@ def row_of(record: Any, *names: str) -> dict[str, Any]:
     'climb_deg=track.climb' that of a record in it. 'x_mm/y_mm=places' are the columns of an array (N, 2),
     'rate..=parts' is a record with an interval: 'rate', 'rate_low', 'rate_high'. Each text may hold several,
     with blanks between. None stays None, arrays stay arrays.
+
+    Parameters
+    ----------
+    record : object
+    *names : str
+
+    Returns
+    -------
+    dict of str to values
+        By the names, in the units that they end in.
     """
     values: dict[str, Any] = {}
     for entry in " ".join(names).split():
@@ -89,7 +99,19 @@ def _in_unit(name: str, value: Any) -> Any:
 
 
 def table_of(records: Iterable[Any], *names: str) -> Frame:
-    """Return a table with a row for each record, of fields as ``row_of`` has them."""
+    """Return a table of fields of records.
+
+    Parameters
+    ----------
+    records : iterable
+        A row for each.
+    *names : str
+        As for ``row_of``.
+
+    Returns
+    -------
+    Frame
+    """
     rows = [row_of(record, *names) for record in records]
     columns = [entry.partition("=")[0] for entry in " ".join(names).split()]
     return Frame.of({name: [row[name] for row in rows] for name in columns})
@@ -106,30 +128,73 @@ of_cells = Frame.of_cells
 
 
 def data_frame(frame: Frame) -> "DataFrame":
-    """Return the table as a pandas DataFrame, as users of the library expect one."""
+    """Return the table as a pandas DataFrame, as users of the library expect one.
+
+    Parameters
+    ----------
+    frame : Frame
+
+    Returns
+    -------
+    pandas.DataFrame
+    """
     import pandas as pd
 
     return pd.DataFrame(frame)
 
 
 def joined(frames: "Iterable[DataFrame]") -> "DataFrame":
-    """Return data frames below each other as one, its rows numbered anew."""
+    """Return data frames below each other as one, its rows numbered anew.
+
+    Parameters
+    ----------
+    frames : iterable of pandas.DataFrame
+
+    Returns
+    -------
+    pandas.DataFrame
+    """
     import pandas as pd
 
     return pd.concat(list(frames), ignore_index=True)
 
 
 def is_numeric(column: object) -> bool:
-    """Return whether a column of a Frame holds numbers."""
+    """Tell whether a column of a Frame holds numbers.
+
+    Parameters
+    ----------
+    column : object
+
+    Returns
+    -------
+    bool
+    """
     return isinstance(column, np.ndarray) and column.dtype.kind in "iuf"
 
 
 def text(frame: Frame, format: str, width: int | None = None) -> str:
-    """Return a frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
+    """Return a frame as text.
 
-    ``width`` are the letters of a line of the window: texts of a wider table go on below; where that is not
-    enough, it is folded, its first column at the head of each piece. The same frame always gives the same
-    bytes.
+    Texts of a table that is wider than the window go on below; where that is not enough, it is folded, its
+    first column at the head of each piece. The same frame always gives the same bytes.
+
+    Parameters
+    ----------
+    frame : Frame
+    format : str
+        'csv' (six significant digits), or 'table' for people.
+    width : int, optional
+        Letters of a line of the window; no limit without it.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ValueError
+        If the format is another one.
     """
     if format == "csv":
         lines = io.StringIO()
@@ -163,8 +228,18 @@ def text(frame: Frame, format: str, width: int | None = None) -> str:
 def to_page(frame: Frame, spare: Iterable[Sequence[str]], width: int = PAGE) -> tuple[Frame, list[str]]:
     """Leave columns out of a table for people until its lines have no more letters than a page.
 
-    ``spare`` names those that may go, in groups that go together, the first group first. Returns the
-    frame, and the headings of what went.
+    Parameters
+    ----------
+    frame : Frame
+    spare : iterable of sequences of str
+        Names of those that may go, in groups that go together, the first group first.
+    width : int
+        Letters of a line.
+
+    Returns
+    -------
+    Frame, list of str
+        The frame, and the headings of what went.
     """
     wide = {name: len(_align_cells(head_of(frame, name), cells)[0]) for name, cells in frame.items()}
     gone: list[str] = []
@@ -245,7 +320,22 @@ def _align_cells(head: ColumnHead, values: Array | Sequence[Any]) -> list[str]:
 def cells(
     head: ColumnHead, values: Array | Sequence[Any], share_digits: int = TABLE_DIGITS, nothing: str = "-"
 ) -> list[str]:
-    """Return the cells of a column as people read them: shares in percent, rounding as 0."""
+    """Return the cells of a column as people read them: shares in percent, rounding as 0.
+
+    Parameters
+    ----------
+    head : ColumnHead
+        Of the column.
+    values : array or sequence
+    share_digits : int
+        Significant digits of shares.
+    nothing : str
+        What stands for NaN and for None.
+
+    Returns
+    -------
+    list of str
+    """
     if not isinstance(values, np.ndarray) or not is_numeric(values):
         return [_word(value, nothing) for value in values]
     if np.issubdtype(values.dtype, np.integer):
@@ -264,7 +354,20 @@ def _word(value: Any, nothing: str) -> str:
 
 
 def number(value: float, digits: int = TABLE_DIGITS, nothing: str = "-") -> str:
-    """Return a number for people with so many significant digits; ``nothing`` of NaN."""
+    """Return a number for people.
+
+    Parameters
+    ----------
+    value : float
+    digits : int
+        That are significant.
+    nothing : str
+        What stands for NaN.
+
+    Returns
+    -------
+    str
+    """
     if value == 0.0 or math.isnan(value):
         return "0" if value == 0.0 else nothing
     if not 1e-4 <= abs(value) < 1e7:
@@ -281,7 +384,18 @@ def _is_share(name: str) -> bool:
 
 
 def head_of(frame: Frame, name: str) -> ColumnHead:
-    """Return what people read above a column of a table: what is declared of it, else its name."""
+    """Return what people read above a column of a table: what is declared of it, else its name.
+
+    Parameters
+    ----------
+    frame : Frame
+    name : str
+        Of the column.
+
+    Returns
+    -------
+    ColumnHead
+    """
     if name in frame.heads:
         return frame.heads[name]
     numeric = is_numeric(frame[name])
@@ -291,10 +405,22 @@ def head_of(frame: Frame, name: str) -> ColumnHead:
 
 
 def heading(name: str, numeric: bool = True) -> tuple[str, str]:
-    """Return a column's name and unit for people: ('height', '[mm]') of 'height_mm'; no unit is ''.
+    """Return a column's name and unit for people: ('height', '[mm]') of 'height_mm'.
 
-    A share is in percent, ('PMI', '[%]') of 'p_pmi', unless it is a word and not ``numeric``. The ends of an
-    interval, which follow their value, are ('low', '[%]') and ('high', '[%]').
+    A share is in percent, ('PMI', '[%]') of 'p_pmi', unless it is a word. The ends of an interval, which
+    follow their value, are ('low', '[%]') and ('high', '[%]').
+
+    Parameters
+    ----------
+    name : str
+        Of the column.
+    numeric : bool, optional
+        Whether it holds numbers.
+
+    Returns
+    -------
+    (str, str)
+        The unit in brackets; '' without one.
     """
     if not _is_share(name):
         ending = _unit_ending(name)
@@ -312,7 +438,17 @@ def heading(name: str, numeric: bool = True) -> tuple[str, str]:
 
 
 def title(name: str) -> str:
-    """Return a column's name and unit in one text: 'height [mm]'."""
+    """Return a column's name and unit in one text: 'height [mm]'.
+
+    Parameters
+    ----------
+    name : str
+        Of the column, 'height_mm'.
+
+    Returns
+    -------
+    str
+    """
     return " ".join(heading(name)).strip()
 
 
@@ -335,12 +471,30 @@ def row_for_people(column: DeclaredColumn[Any], document: Mapping[str, Any]) -> 
 
 
 def file_bytes(content: str | bytes) -> bytes:
-    """Return text as the bytes of a file: UTF-8, an escape for what a file name holds that is no letter."""
+    """Return text as the bytes of a file: UTF-8, an escape for what a file name holds that is no letter.
+
+    Parameters
+    ----------
+    content : str or bytes
+
+    Returns
+    -------
+    bytes
+    """
     return content if isinstance(content, bytes) else content.encode(errors="backslashreplace")
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    """Return a dict of numbers, texts, arrays, frames and dicts as JSON: full precision, null for NaN."""
+    """Return a dict of numbers, texts, arrays, frames and dicts as JSON: full precision, null for NaN.
+
+    Parameters
+    ----------
+    document : mapping
+
+    Returns
+    -------
+    str
+    """
     return json.dumps(_plain(document), indent=1, allow_nan=False) + "\n"
 
 
@@ -357,15 +511,33 @@ def _plain(value: Any) -> Any:
 
 
 def regime_words(regime: str) -> str:
-    """Return a regime as people read it: 'slips back only' for 'backward'."""
+    """Return a regime as people read it: 'slips back only' for 'backward'.
+
+    Parameters
+    ----------
+    regime : str
+
+    Returns
+    -------
+    str
+    """
     return REGIME_WORDS.get(regime, regime)
 
 
 def heading_note(text: str) -> str:
-    """Return what the headings in a printed table or message are turned from; '' where it names none.
+    """Return what the headings in a printed table or message are turned from.
 
     'A@188: aspect A, turned 188 deg counter-clockwise (seen from above): at heading 0 ...', as
     ``resting.posture.Posture`` has it: heading 0 has the thesis's Z' along the track.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+        '' where the text names no heading.
     """
     if named := re.search(r"\b([A-Z]+)@(\d+)", text):
         turned = f"turned {named[2]} deg counter-clockwise seen from above"
