@@ -63,16 +63,7 @@ def offers(
 
 
 def document(study: MachineSheet) -> dict[str, Any]:
-    """Return everything of a machine as the JSON document; where springs do not make the drive, both.
-
-    Parameters
-    ----------
-    study : MachineSheet
-
-    Returns
-    -------
-    dict
-    """
+    """Return everything of a MachineSheet as the JSON document; where springs do not make the drive, both."""
     drive, other = study.bowl.drive, study.mismatch
     machine, sizing, leap = study.bowl.machine, study.bowl.sizing, hop(study.bowl)
     ends = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
@@ -179,17 +170,7 @@ def _angles(study: MachineSheet) -> Frame:
 
 
 def leaf_sets(sets: Sequence[LeafSet]) -> Frame:
-    """Return sets of leaves as a frame.
-
-    Parameters
-    ----------
-    sets : sequence of LeafSet
-
-    Returns
-    -------
-    Frame
-        A row for each.
-    """
+    """Return sets of leaves, each a LeafSet, as a frame."""
     table = tables.table_of(
         sets,
         "change=name leaf_thickness_mm=thickness leaves natural_frequency_hz by_t_squared_hz=by_square",
@@ -265,16 +246,7 @@ def measured_summary(condition: MeasuredMachine) -> Frame:
 
 
 def measured_document(condition: MeasuredMachine) -> dict[str, Any]:
-    """Return a machine that was measured as the JSON document.
-
-    Parameters
-    ----------
-    condition : MeasuredMachine
-
-    Returns
-    -------
-    dict
-    """
+    """Return a MeasuredMachine as the JSON document."""
     names = "stroke_mm acceleration_m_s2 frequency_hz velocity_mm_s"
     should = SimpleNamespace(**condition.should, velocity=condition.velocity_should)
     return {

@@ -99,7 +99,16 @@ def _rates(trial: Verified) -> dict[str, float]:
 
 
 def block(trial: Verified) -> dict[str, Any]:
-    """Return what a trial has shown as a dict."""
+    """Return what a trial has shown as a dict.
+
+    Parameters
+    ----------
+    trial : Verified
+
+    Returns
+    -------
+    dict
+    """
     figures = row_of(trial, "purity jams queue_seconds draws draws_held=held")
     condition = {"condition": trial.condition} if trial.condition else {}
     return row_of(trial, "status wanted up") | condition | _rates(trial) | figures

@@ -514,16 +514,7 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
 
 
 def bowl_values(bowl: Bowl) -> dict[str, float]:
-    """Return a bowl as the script computes with it, in SI units: one setting, no arrays.
-
-    Parameters
-    ----------
-    bowl : Bowl
-
-    Returns
-    -------
-    dict of str to float
-    """
+    """Return a bowl as the script computes with it, in SI units: one setting, no arrays."""
     values = row_of(
         bowl,
         "amplitude=drive.amplitude frequency=drive.frequency angle=drive.vibration_angle phase=drive.phase",

@@ -61,16 +61,6 @@ def row_of(record: Any, *names: str) -> dict[str, Any]:
     'climb_deg=track.climb' that of a record in it. 'x_mm/y_mm=places' are the columns of an array (N, 2),
     'rate..=parts' is a record with an interval: 'rate', 'rate_low', 'rate_high'. Each text may hold several,
     with blanks between. None stays None, arrays stay arrays.
-
-    Parameters
-    ----------
-    record : object
-    *names : str
-
-    Returns
-    -------
-    dict of str to values
-        By the names, in the units that they end in.
     """
     values: dict[str, Any] = {}
     for entry in " ".join(names).split():
@@ -99,19 +89,7 @@ def _in_unit(name: str, value: Any) -> Any:
 
 
 def table_of(records: Iterable[Any], *names: str) -> Frame:
-    """Return a table of fields of records.
-
-    Parameters
-    ----------
-    records : iterable
-        A row for each.
-    *names : str
-        As for ``row_of``.
-
-    Returns
-    -------
-    Frame
-    """
+    """Return a table with a row for each record, of fields as ``row_of`` has them."""
     rows = [row_of(record, *names) for record in records]
     columns = [entry.partition("=")[0] for entry in " ".join(names).split()]
     return Frame.of({name: [row[name] for row in rows] for name in columns})
@@ -384,18 +362,7 @@ def _is_share(name: str) -> bool:
 
 
 def head_of(frame: Frame, name: str) -> ColumnHead:
-    """Return what people read above a column of a table: what is declared of it, else its name.
-
-    Parameters
-    ----------
-    frame : Frame
-    name : str
-        Of the column.
-
-    Returns
-    -------
-    ColumnHead
-    """
+    """Return what people read above a column of a table: what is declared of it, else its name."""
     if name in frame.heads:
         return frame.heads[name]
     numeric = is_numeric(frame[name])
