@@ -69,7 +69,17 @@ class PlainBowl:
     drive: DriveKind = DriveKind.LEAF_SPRING  # that is asked for
 
     def keeps(self, key: str) -> bool:
-        """Return whether the user gave a key of the bowl file, by its name."""
+        """Tell whether the user gave a key of the bowl file.
+
+        Parameters
+        ----------
+        key : str
+            Its name, 'drive.amplitude'.
+
+        Returns
+        -------
+        bool
+        """
         return key in self.kept_keys
 
     @property

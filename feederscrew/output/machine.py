@@ -180,16 +180,7 @@ def leaf_sets(sets: Sequence[LeafSet]) -> Frame:
 
 
 def emptying(study: MachineSheet) -> Frame:
-    """Return the bowl from full to empty as a frame, with rates where parts are counted.
-
-    Parameters
-    ----------
-    study : MachineSheet
-
-    Returns
-    -------
-    Frame
-    """
+    """Return the bowl from full to empty as a frame, with rates where parts are counted."""
     columns = row_of(
         study.emptying,
         "fill_percent=levels parts_kg=masses natural_frequency_hz=natural_frequencies gain=gains",

@@ -99,16 +99,7 @@ def _rates(trial: Verified) -> dict[str, float]:
 
 
 def block(trial: Verified) -> dict[str, Any]:
-    """Return what a trial has shown as a dict.
-
-    Parameters
-    ----------
-    trial : Verified
-
-    Returns
-    -------
-    dict
-    """
+    """Return what a trial has shown as a dict."""
     figures = row_of(trial, "purity jams queue_seconds draws draws_held=held")
     condition = {"condition": trial.condition} if trial.condition else {}
     return row_of(trial, "status wanted up") | condition | _rates(trial) | figures

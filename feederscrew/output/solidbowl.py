@@ -72,16 +72,7 @@ def offers(
 
 
 def document(solid: "BowlSolid") -> dict[str, Any]:
-    """Return what a BowlSolid measures and weighs, and of its STEP file what it was when opened again.
-
-    Parameters
-    ----------
-    solid : BowlSolid
-
-    Returns
-    -------
-    dict
-    """
+    """Return what a BowlSolid measures and weighs, and of its STEP file what it was when opened again."""
     plan, extent = solid.plan, solid.vertices.max(axis=0) - solid.vertices.min(axis=0)
     measures = {
         "diameter_mm": 2.0 * plan.path.radius / MM,

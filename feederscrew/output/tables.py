@@ -372,22 +372,10 @@ def head_of(frame: Frame, name: str) -> ColumnHead:
 
 
 def heading(name: str, numeric: bool = True) -> tuple[str, str]:
-    """Return a column's name and unit for people: ('height', '[mm]') of 'height_mm'.
+    """Return a column's name and unit for people: ('height', '[mm]') of 'height_mm'; no unit is ''.
 
-    A share is in percent, ('PMI', '[%]') of 'p_pmi', unless it is a word. The ends of an interval, which
-    follow their value, are ('low', '[%]') and ('high', '[%]').
-
-    Parameters
-    ----------
-    name : str
-        Of the column.
-    numeric : bool, optional
-        Whether it holds numbers.
-
-    Returns
-    -------
-    (str, str)
-        The unit in brackets; '' without one.
+    A share is in percent, ('PMI', '[%]') of 'p_pmi', unless it is a word and not ``numeric``. The ends of an
+    interval, which follow their value, are ('low', '[%]') and ('high', '[%]').
     """
     if not _is_share(name):
         ending = _unit_ending(name)
@@ -405,17 +393,7 @@ def heading(name: str, numeric: bool = True) -> tuple[str, str]:
 
 
 def title(name: str) -> str:
-    """Return a column's name and unit in one text: 'height [mm]'.
-
-    Parameters
-    ----------
-    name : str
-        Of the column, 'height_mm'.
-
-    Returns
-    -------
-    str
-    """
+    """Return a column's name and unit in one text: 'height [mm]'."""
     return " ".join(heading(name)).strip()
 
 
