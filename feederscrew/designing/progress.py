@@ -70,14 +70,7 @@ class Clock:
         return float(self.done) if self.stage is SearchStage.DRAWS else self.done / max(self.total, 1)
 
     def begin(self, stage: SearchStage, *, counts: bool = True) -> None:
-        """Begin a stage.
-
-        Parameters
-        ----------
-        stage : SearchStage
-        counts : bool, optional
-            Whether its time counts: not that of one that waits for the compiler.
-        """
+        """Begin a stage; one that waits for the compiler does not count."""
         self.end()
         self.stage, self.done, self.total, self.counts = stage, 0, 1, counts
         self.since = time.monotonic()
@@ -91,18 +84,7 @@ class Clock:
         self.stage = None
 
     def reach(self, stage: SearchStage, done: int, total: int) -> bool:
-        """Note how many of a stage are done.
-
-        Parameters
-        ----------
-        stage : SearchStage
-        done, total : int
-
-        Returns
-        -------
-        bool
-            Whether it is time to tell so.
-        """
+        """Note how many of a stage are done; return whether it is time to tell so."""
         if stage is not self.stage or done < self.done:
             self.begin(stage)
             self.found = done
@@ -113,16 +95,7 @@ class Clock:
         return True
 
     def each(self, stage: SearchStage) -> float:
-        """Return how long one of a stage takes: as it did, or as usual on so fast a machine.
-
-        Parameters
-        ----------
-        stage : SearchStage
-
-        Returns
-        -------
-        float [s]
-        """
+        """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine."""
         if stage in self.durations:
             seconds, number = self.durations[stage]
             return seconds / number
@@ -173,14 +146,7 @@ class SearchProgress:
     clock: Clock = field(default_factory=Clock)
 
     def begin_trial(self, text: str, budget: TrialBudget) -> None:
-        """Tell which trial begins, of how many, what came of the last one, the time gone and to go.
-
-        Parameters
-        ----------
-        text : str
-            What is tried.
-        budget : TrialBudget
-        """
+        """Tell which trial begins, of how many, what came of the last one, the time gone and to go."""
         if self.before and not budget.attempts:
             self.before()
         number = len(budget.attempts) + 1
@@ -190,14 +156,7 @@ class SearchProgress:
         self._report(SearchStage.TRIAL, number - 1, most, budget)
 
     def begin_proof(self, text: str, budget: TrialBudget) -> None:
-        """Tell that draws begin, what came of the last trial, the time gone and to go.
-
-        Parameters
-        ----------
-        text : str
-            What is proved.
-        budget : TrialBudget
-        """
+        """Tell that draws begin, what came of the last trial, the time gone and to go."""
         self.clock.begin(SearchStage.DRAWS)
         self.tell(f"{text}{self._so_far(budget)}")
 
