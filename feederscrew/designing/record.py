@@ -1,4 +1,4 @@
-"""What is asked of a design, and what it stands on."""
+"""A design: what is asked of it, and what it stands on."""
 
 import enum
 from collections import Counter
@@ -55,7 +55,7 @@ class ProofKind(enum.StrEnum):
 
 @dataclass(frozen=True)
 class DesignRequest:
-    """What shall leave a bowl, and what the search for it may use."""
+    """A wish: the part that shall leave a bowl, and what the search for that bowl may use."""
 
     target: float  # [1/s]
     aspect: str | None = None
@@ -167,7 +167,7 @@ class Alternative:
 
 @dataclass(frozen=True)
 class WantedTrials:
-    """What became of one orientation in the short trials in which it was wanted."""
+    """Outcome of the short trials in which one orientation was wanted."""
 
     wanted: str  # 'A@2'; 'A' of an aspect that counts at any heading
     aspect: str
@@ -205,7 +205,7 @@ class WantedTrials:
 
 @dataclass(frozen=True)
 class QuickAnswer:
-    """What a design without a proof says of the rate, for a quotation."""
+    """Bound on the rate of a design without a proof, for a quotation."""
 
     wanted: str  # orientation of which it speaks: that of the chain, or the one that may bring most
     share: float  # [1] of the parts that come so
@@ -217,7 +217,7 @@ class QuickAnswer:
 
 @dataclass(frozen=True)
 class NearestDesign:
-    """What holds where a design does not, as it was tried; or that nothing that was tried holds."""
+    """The nearest that holds where a design does not, as it was tried; or that nothing tried holds."""
 
     rate: float | None  # [1/s] that holds; None where none of what was tried does
     change: str  # what is changed for it: 'a lower rate', 'a calmer drive: 0.8 mm peak to peak'
@@ -282,7 +282,7 @@ class RiskKind(enum.StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Risk:
-    """What may go wrong between parts, or with one that comes seldom."""
+    """A risk between parts, or with one that comes seldom."""
 
     kind: RiskKind
     text: str

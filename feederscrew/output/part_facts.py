@@ -1,4 +1,4 @@
-"""What every document says of its part, in units of the shop: mm, g, degrees."""
+"""Facts of a part that every document says, in units of the shop: mm, g, degrees."""
 
 from collections.abc import Iterable
 from typing import Any

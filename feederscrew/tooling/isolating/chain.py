@@ -123,7 +123,16 @@ class DesignConstraints:
     isolating: bool = False  # a chain that does not isolate is of no use: none is looked for where none can
 
     def allows(self, *kinds: str) -> bool:
-        """Return whether some kinds of devices may all be used."""
+        """Tell whether some kinds of devices may all be used.
+
+        Parameters
+        ----------
+        *kinds : str
+
+        Returns
+        -------
+        bool
+        """
         return not set(kinds) & set(self.without)
 
     @property
