@@ -1,4 +1,4 @@
-"""A design: what is asked of it, and what it stands on."""
+"""Request of a design, and the records on which the design stands."""
 
 import enum
 from collections import Counter
@@ -55,7 +55,7 @@ class ProofKind(enum.StrEnum):
 
 @dataclass(frozen=True)
 class DesignRequest:
-    """A wish: the part that shall leave a bowl, and what the search for that bowl may use."""
+    """Request of a design: what shall leave a bowl, and what the search for it may use."""
 
     target: float  # [1/s]
     aspect: str | None = None
@@ -205,7 +205,7 @@ class WantedTrials:
 
 @dataclass(frozen=True)
 class QuickAnswer:
-    """Bound on the rate of a design without a proof, for a quotation."""
+    """Answer of a design without a proof on the rate, for a quotation."""
 
     wanted: str  # orientation of which it speaks: that of the chain, or the one that may bring most
     share: float  # [1] of the parts that come so
@@ -217,7 +217,7 @@ class QuickAnswer:
 
 @dataclass(frozen=True)
 class NearestDesign:
-    """The nearest that holds where a design does not, as it was tried; or that nothing tried holds."""
+    """Nearest design that holds where a design does not, as it was tried; or that nothing tried holds."""
 
     rate: float | None  # [1/s] that holds; None where none of what was tried does
     change: str  # what is changed for it: 'a lower rate', 'a calmer drive: 0.8 mm peak to peak'
@@ -282,7 +282,7 @@ class RiskKind(enum.StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Risk:
-    """A risk between parts, or with one that comes seldom."""
+    """Risk between parts, or with one that comes seldom."""
 
     kind: RiskKind
     text: str

@@ -63,7 +63,7 @@ def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any)
         Of the file.
     make : callable
         Returns the frame, or its columns as a dict, of the other arguments.
-    *arguments, **keywords :
+    *arguments, **keywords
         For ``make``.
 
     Returns
@@ -87,7 +87,7 @@ def document(name: str, make: Callable[..., Any], *arguments: Any, **keywords: A
         Of the file.
     make : callable
         Returns the document of the other arguments.
-    *arguments, **keywords :
+    *arguments, **keywords
         For ``make``.
 
     Returns
@@ -107,7 +107,7 @@ def text(name: str, make: Callable[..., str | bytes], *arguments: Any, **keyword
         Of the file.
     make : callable
         Returns what is in it, of the other arguments.
-    *arguments, **keywords :
+    *arguments, **keywords
         For ``make``.
 
     Returns
@@ -128,7 +128,7 @@ def picture(name: str, alt: str, draw: Callable[..., Any], *arguments: Any, **ke
         What the picture shows, in words.
     draw : callable
         Returns the figure of the other arguments.
-    *arguments, **keywords :
+    *arguments, **keywords
         For ``draw``.
 
     Returns

@@ -57,19 +57,49 @@ class View:
     right: float = field(default=np.inf)  # [m] where the drawn stretch ends
 
     def placed(self, places: ArrayLike) -> Floats:
-        """Return places (..., 2) [mm] of the sheet."""
+        """Return where lengths of the track lie on the sheet.
+
+        Parameters
+        ----------
+        places : (..., 2) array_like [m]
+            Along the wall and off it; what is beyond the right end lies there.
+
+        Returns
+        -------
+        (..., 2) array [mm]
+        """
         lengths = np.array(places, float)
         lengths[..., 0] = np.minimum(lengths[..., 0], self.right)
         return np.asarray(self.at) + lengths / MM * self.scale
 
 
 def dxf(*drawn: Any, **sheet: Any) -> bytes:
-    """Return the drawing of ``draw`` as the bytes of a DXF file."""
+    """Return the drawing of a track section as a DXF file.
+
+    Parameters
+    ----------
+    *drawn, **sheet
+        As for ``draw``.
+
+    Returns
+    -------
+    bytes
+    """
     return draw(*drawn, **sheet)[0].dxf()
 
 
 def svg(*drawn: Any, **sheet: Any) -> str:
-    """Return the drawing of ``draw`` as an SVG file of its true size."""
+    """Return the drawing of a track section as an SVG file of its true size.
+
+    Parameters
+    ----------
+    *drawn, **sheet
+        As for ``draw``.
+
+    Returns
+    -------
+    str
+    """
     drawing, low, high = draw(*drawn, **sheet)
     return drawing.svg(low, high)
 
@@ -146,7 +176,17 @@ def draw(
 
 
 def title_fields(fields: marking.SheetFields | None) -> list[tuple[str, str]]:
-    """Return names and values of the fields that the user gives, empty where nothing is given."""
+    """Return the fields of a title block that the user gives, and the kind of its views.
+
+    Parameters
+    ----------
+    fields : SheetFields or None
+
+    Returns
+    -------
+    list of (str, str)
+        Names and values; a value that is not given is ''.
+    """
     fields = fields or marking.SheetFields()
     views = "labelled views (ISO 128-3)"
     return [("projection", views), ("date", fields.date), ("rev", fields.revision)]
@@ -365,7 +405,19 @@ def edges(placed: PlacedDevice, width: float) -> list[tuple[str, Floats]]:
 
 
 def ledge_ring(placed: PlacedDevice, width: float) -> Floats:
-    """Return what is missing of the upper track beside a ledge (4, 2) [m], as it is made."""
+    """Return what is missing of the upper track beside a ledge, as it is made.
+
+    Parameters
+    ----------
+    placed : PlacedDevice
+    width : float [m]
+        Of the track.
+
+    Returns
+    -------
+    (4, 2) array [m]
+        Along the wall and off it; (0, 2) where it is no ledge.
+    """
     drop = placed.features.drop
     if drop is None:
         return np.empty((0, 2))

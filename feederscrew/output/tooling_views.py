@@ -221,7 +221,18 @@ def _on_section(points: Points, angle: float, radius: float) -> Points:
 
 
 def section_of(passage: Passage, orientations: Sequence[Orientation]) -> TooledTrack:
-    """Return a track section with nothing but the device of a passage, and the part before it."""
+    """Return a track section with nothing but the device of a passage, and the part before it.
+
+    Parameters
+    ----------
+    passage : Passage
+    orientations : sequence of Orientation
+        All of the part.
+
+    Returns
+    -------
+    TooledTrack
+    """
     return lay_out(passage.orientation.track, [passage.device], orientations, lead=1.0)
 
 
