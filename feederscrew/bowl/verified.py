@@ -62,7 +62,21 @@ class VoidTrial:
     faults: tuple[str, ...]  # what is wrong with it, a sentence each
 
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
-        """Say what is wrong with it, as ``Verified.void`` does of a block that can be one."""
+        """Say what is wrong with it, as ``Verified.void`` does of a block that can be one.
+
+        Parameters
+        ----------
+        part : Part or None
+        bowl : Bowl
+        version : str
+        wanted : str, optional
+            As for ``Verified.void``: nothing of them is looked at.
+
+        Yields
+        ------
+        str
+            A sentence for each fault.
+        """
         yield from self.faults
 
 

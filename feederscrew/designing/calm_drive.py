@@ -69,7 +69,17 @@ class PlainBowl:
     drive: DriveKind = DriveKind.LEAF_SPRING  # that is asked for
 
     def keeps(self, key: str) -> bool:
-        """Return whether the user gave a key of the bowl file, by its name."""
+        """Tell whether the user gave a key of the bowl file.
+
+        Parameters
+        ----------
+        key : str
+            Its name, 'drive.amplitude'.
+
+        Returns
+        -------
+        bool
+        """
         return key in self.kept_keys
 
     @property
@@ -149,8 +159,9 @@ def drive_at(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> B
 
     Of the drives that the machine can make it is the one of the lowest hop, and of these the one of the least
     stroke, that is as fast as asked for, and at the worst friction ``LEAST_VELOCITY_KEPT`` times that; else,
-    or where the velocity is infinite, the fastest. Through tooling it is no slower than
-    ``LEAST_VELOCITY_M_S``. What the user gave of the drive is kept.
+    or where the velocity is infinite, the fastest. It keeps to the usual speeds, ``sizing.slowest`` to
+    ``sizing.fastest``. Through tooling it is no slower than ``LEAST_VELOCITY_M_S``. What the user gave of the
+    drive is kept.
 
     The hop is the lower the higher the frequency, by its square (``conveying.hop``): twice the mains
     frequency comes first where it is fast enough. Below the throw number of 1 a leaf-spring drive carries
@@ -161,7 +172,7 @@ def drive_at(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> B
     plain_bowl : PlainBowl
     velocity : float [m/s]
     hops : bool, optional
-        Whether there is no tooling: a part may then creep, and hop.
+        Whether there is no tooling.
 
     Returns
     -------

@@ -79,12 +79,32 @@ class Fault:
         return any(end.on_bare_track for end in self.ends)
 
     def stops_at(self, kinds: Iterable[str]) -> bool:
-        """Return whether some of its parts stand at a device of one of these kinds."""
+        """Tell whether some of its parts stand at a device of one of some kinds.
+
+        Parameters
+        ----------
+        kinds : iterable of str
+
+        Returns
+        -------
+        bool
+        """
         kinds = set(kinds)
         return any(end.fate is Fate.STOPPED and end.kind in kinds for end in self.ends)
 
     def counted_in_draws(self, failures: int, draws: int) -> "Fault":
-        """Return the fault as so many of some draws show it."""
+        """Return the fault as so many of some draws show it.
+
+        Parameters
+        ----------
+        failures : int
+            Draws that show it.
+        draws : int
+
+        Returns
+        -------
+        Fault
+        """
         return replace(self, failures=failures, draws=draws)
 
 

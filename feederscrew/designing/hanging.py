@@ -123,7 +123,17 @@ class Shown:
 
     @classmethod
     def before_trial(cls, hangs: Bools) -> "Shown":
-        """Return what is taken before any trial: what has the head hangs, the rest needs a device."""
+        """Return what is taken before any trial: what has the head hangs, the rest needs a device.
+
+        Parameters
+        ----------
+        hangs : (M,) array of bool
+            Orientations that have the head.
+
+        Returns
+        -------
+        Shown
+        """
         return cls(hangs, *np.zeros((3, len(hangs)), bool))
 
 
@@ -161,7 +171,18 @@ class RailsSearch:
                 yield RailsTry(proposal, USUAL_RAILS)
 
     def moves(self, tried: RailsTry, trial: ShortTrial) -> Iterator[RailsTry]:
-        """Yield what changes a chain where a trial shows it to fail, the likeliest first."""
+        """Yield what changes a chain where a trial shows it to fail, the likeliest first.
+
+        Parameters
+        ----------
+        tried : RailsTry
+        trial : ShortTrial
+            Of that chain.
+
+        Yields
+        ------
+        RailsTry
+        """
         proposal, setting = tried.proposal, tried.setting
         shown = shown_by(trial, proposal, len(self.lying))
         sweep = _sweep_of(proposal)

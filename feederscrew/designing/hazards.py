@@ -484,9 +484,24 @@ class PullTest:
         self.pair = queue.PartsOnTrack(self.setting, nowhere, 2)
 
     def pull_all(self, turn: Floats, place: Floats, most: float) -> tuple[int, int]:
-        """Return how often a pose was pulled, and how often in vain; 0 pulls where that decides nothing.
+        """Return how often a pose was pulled, and how often in vain.
 
-        It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
+        It ends as soon as too few can hold, or, where ``most`` is below 1, as soon as the first ``SURE``
+        pulls that decide anything have all held.
+
+        Parameters
+        ----------
+        turn : (3, 3) array
+            Of the second part to the first.
+        place : (3,) array [m]
+            Of the second part from the first.
+        most : float [1]
+            Share of pulls above which the pose is no hook.
+
+        Returns
+        -------
+        (int, int)
+            Pulls, and those in vain; 0 of both where that decides nothing.
         """
         away = vectors.unit(place) if vectors.norm(place) > 0.0 else place
         directions = [direction for direction in CUBE_DIRECTIONS if vectors.dot(direction, away) > -1e-9]
@@ -501,7 +516,21 @@ class PullTest:
         return pulls, held
 
     def pull_apart(self, turn: Floats, place: Floats, direction: Floats) -> bool | None:
-        """Return whether a pull (3,) [1] parts the two, or shaking after it; None where they overlap then."""
+        """Tell whether a pull parts the two, or shaking after it.
+
+        Parameters
+        ----------
+        turn : (3, 3) array
+        place : (3,) array [m]
+            As for ``pull_all``.
+        direction : (3,) array [1]
+            Of the pull.
+
+        Returns
+        -------
+        bool or None
+            None where they overlap then.
+        """
         states = np.zeros((2, body.STATE))
         states[:, 1:3] = HIGH
         states[1, :3] += place

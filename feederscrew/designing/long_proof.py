@@ -88,7 +88,16 @@ class RunCounts:
 
     @classmethod
     def of(cls, outcome: QueuedParts) -> "RunCounts":
-        """Return what a queue counted."""
+        """Return what a queue counted.
+
+        Parameters
+        ----------
+        outcome : QueuedParts
+
+        Returns
+        -------
+        RunCounts
+        """
         return cls(
             outcome.seconds, outcome.counted_seconds, outcome.delivered, outcome.jams, outcome.climbs,
             outcome.left_by_entry, outcome.returned_at,
@@ -103,7 +112,26 @@ class RunCounts:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Array], row: FedRow, run: Run) -> "RunCounts":
-        """Return the counts that arrays stand for; raises ValueError of those that are not of such a run."""
+        """Return the counts that arrays of a file stand for.
+
+        Parameters
+        ----------
+        arrays : mapping of str to array
+            As of ``to_arrays``.
+        row : FedRow
+            That was run.
+        run : Run
+            How it was run.
+
+        Returns
+        -------
+        RunCounts
+
+        Raises
+        ------
+        ValueError
+            If they are not of such a run, or contradict each other.
+        """
         known, aspects, devices = row.orientations, row.aspects.names, row.bowl.devices
         shapes = {
             "left": (len(known.lying), len(known.states) + 1, len(aspects) + 1),
@@ -130,7 +158,19 @@ class RunCounts:
         return counts
 
     def outcome(self, parts: int, *, partial: bool) -> QueuedParts:
-        """Return the counts as a queue of so many parts in the row has them."""
+        """Return the counts as a queue has them.
+
+        Parameters
+        ----------
+        parts : int
+            In the row.
+        partial : bool
+            Whether it was stopped.
+
+        Returns
+        -------
+        QueuedParts
+        """
         by_entry = self.returned.sum(axis=1)
         return QueuedParts(
             parts=parts,

@@ -67,16 +67,40 @@ def design(
     progress: Progress | None = None,
     with_nearest: bool = True,
 ) -> DesignStudy:
-    """Design a bowl that brings a part, from a mesh, at a rate, and try it.
+    """Design a bowl that brings a part at a rate, and try it.
 
-    ``plain`` is what the user gave, completed by the defaults: its devices and ``kept_keys``, names of
-    keys, are kept. ``shares`` are what arrives where the user says so, else what lies on the moving floor
-    of the designed bowl. A request that is ``quick`` ends with the first chain, which is not proved.
-    Called are ``tell`` with what is being tried, a sentence; ``before`` before anything is compiled, and
-    before the first trial is told; ``progress`` with what is done ('trial', 'draws', 'queue'), how many
-    of how many, the seconds gone and a guess of those to go. ``with_nearest``: the nearest that holds is
-    looked for where the design does not. Raises FeederError if the part has no surface or very many
-    facets, fits no bowl, or has no such aspect.
+    A request that is ``quick`` ends with the first chain, which is not proved.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    plain : Bowl
+        As the user gave it, completed by the defaults: its devices are kept.
+    kept_keys : collection of str
+        Names of keys that are kept of it.
+    request : DesignRequest
+    shares : Shares, optional
+        Arriving parts where the user says so, else those on the moving floor of the designed bowl.
+    tell : callable, optional
+        Called with what is being tried, a sentence.
+    before : callable, optional
+        Called before anything is compiled, and before the first trial is told.
+    progress : callable, optional
+        Called with what is done ('trial', 'draws', 'queue'), how many of how many, the seconds gone and a
+        guess of those to go.
+    with_nearest : bool, optional
+        Whether the nearest that holds is looked for where the design does not.
+
+    Returns
+    -------
+    DesignStudy
+        ``partial`` where it was stopped.
+
+    Raises
+    ------
+    FeederError
+        If the part has no surface or very many facets, fits no bowl, or has no such aspect.
     """
     check_request(part, plain, request, shares)
     said = SearchProgress(before=before, report=progress)
@@ -199,7 +223,20 @@ def _likeliest(search: Search) -> Candidate | None:
 
 
 def check_request(part: Part, plain: Bowl, request: DesignRequest, shares: Shares | None = None) -> None:
-    """Raise FeederError for what is asked for and is not there: an aspect, its heading, a kind of device."""
+    """Refuse what is asked for and is not there: an aspect, its heading, a kind of device.
+
+    Parameters
+    ----------
+    part : Part
+    plain : Bowl
+    request : DesignRequest
+    shares : Shares, optional
+        As for ``design``.
+
+    Raises
+    ------
+    FeederError
+    """
     refuse_many_facets(part)
     wide, aspects = plain.track.radius, None if shares is None else shares.aspects
     if part.vertices is not None:
@@ -264,7 +301,7 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
 
 
 def _leaves_over_slot(study: DesignStudy, candidate: Candidate) -> bool:
-    """Whether what leaves lying, most of it, is an orientation of which parts hang in the trial."""
+    """Tell whether what leaves lying, most of it, is an orientation of which parts hang in the trial."""
     rows = {candidate.orientations.lying[k].name for k in candidate.shown or ()}
     named = [pose for pose, _ in study.left_instead if pose.kind is PoseKind.ORIENTATION]
     return bool(named) and named[0].name in rows
@@ -286,10 +323,22 @@ def prove_design(
     robust: RobustRun | None = None,
     longest: float | None = None,
 ) -> DesignStudy:
-    """Return the design with its draws and its queue; unless ``whole``, only as far as it holds.
+    """Return the design with its draws and its queue.
 
-    ``robust`` are all draws of that candidate, where they were made: they would come out the same.
-    ``longest`` is the time [s] of each fill at the most, without it that of the target.
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+    whole : bool
+        Whether it is proved to the end; else only as far as it holds.
+    robust : RobustRun, optional
+        All draws of that candidate, where they were made: they would come out the same.
+    longest : float [s], optional
+        Time of each fill at the most; that of the target without it.
+
+    Returns
+    -------
+    DesignStudy
     """
     request, name, shares = search.request, candidate.attempt.wanted, search.arrivals
     if search.given_shares is None:  # the search took what arrives from one drive: here from the bowl's own
@@ -438,7 +487,16 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
 
 
 def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
-    """Return what of two designs is the better one: holds, then clean, then the most parts."""
+    """Return a key by which the better one of two designs is greater: holds, then clean, then the most parts.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    (bool, bool, float [1], float [1/s])
+    """
     return study.status in HELD, study.jams == 0, study.robust.share, study.delivered[1]
 
 
@@ -447,8 +505,18 @@ def alternatives(
 ) -> tuple[Alternative, ...]:
     """Return the best of each cost class, the cheapest class first.
 
-    The studies are those that were proved, as far as they were, ``attempts`` every short trial, ``classes``
-    the cost classes of which chains were looked for.
+    Parameters
+    ----------
+    studies : sequence of DesignStudy
+        That were proved, as far as they were.
+    attempts : sequence of Attempt
+        Every short trial.
+    classes : collection of int
+        Cost classes of which chains were looked for.
+
+    Returns
+    -------
+    tuple of Alternative
     """
     holds = any(study.status in HELD for study in studies)
     best_of: list[Alternative] = []

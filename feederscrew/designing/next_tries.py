@@ -1,4 +1,4 @@
-"""What to try where a design does not do what was asked: other requests, the likeliest first."""
+"""Requests to try where a design does not do what was asked, the likeliest first."""
 
 import enum
 import math
@@ -20,7 +20,7 @@ MORE_TRIALS = 2  # times the budget, where nothing else is left
 
 
 class TryKind(enum.StrEnum):
-    """What is changed of what was asked; files print the word."""
+    """Kinds of change to what was asked; files print the word."""
 
     PROOF = "proof"  # the same, to the end
     LOWER_RATE = "lower rate"
@@ -35,7 +35,7 @@ class TryKind(enum.StrEnum):
 
 
 class Evidence(enum.StrEnum):
-    """What is known of a request to try; files print the word."""
+    """Kinds of evidence for a request to try; files print the word."""
 
     HOLDS = "holds"  # its draws and its queues were run
     CLEAN = "clean in a short trial"
@@ -135,7 +135,7 @@ def _of_nearest(study: DesignStudy) -> NextTry:
 
 
 def _clean_ways(study: DesignStudy) -> Iterator[NextTry]:
-    """What got through a short trial too slowly, of each aspect at the rate of its fastest trial."""
+    """Yield what got through a short trial too slowly, of each aspect at the rate of its fastest trial."""
     request, fastest = study.request, dict[str, Attempt]()
     for attempt in study.attempts:
         if attempt.clean and attempt.rate > fastest.get(attempt.aspect, attempt).rate:
@@ -156,7 +156,7 @@ def _clean_ways(study: DesignStudy) -> Iterator[NextTry]:
 
 
 def _trials(study: DesignStudy) -> Counter[str]:
-    """How often each aspect was wanted in a short trial."""
+    """Count how often each aspect was wanted in a short trial."""
     return Counter(attempt.aspect for attempt in study.attempts)
 
 

@@ -61,7 +61,7 @@ class Recipe:
 
     @property
     def holes(self) -> bool:
-        """Whether holes of several corners may be used."""
+        """Tell whether holes of several corners may be used."""
         return not set(HOLES) <= set(self.excluded_kinds)
 
 
@@ -110,7 +110,7 @@ class Proposal:
 
     @property
     def cost_class(self) -> int:
-        """What it takes: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
+        """Return its cost class: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
         return cost_class(self.devices)
 
     @property
@@ -135,7 +135,7 @@ class Proposal:
 
     @property
     def hangs(self) -> bool:
-        """Whether parts leave hanging."""
+        """Tell whether parts leave hanging."""
         return any(cut.device.hangs for cut in self.cuts)
 
     @property
@@ -287,7 +287,7 @@ def _mend_cut(proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orie
 
 
 def _slips(cut: Cut, trial: ShortTrial, orientations: Sequence[Orientation]) -> bool:
-    """Whether something left otherwise that a cut should have returned."""
+    """Tell whether something left otherwise that a cut should have returned."""
     return any(trial.wrong[n] and orientations[k].name in cut.returns for n, k in enumerate(trial.rows))
 
 

@@ -34,7 +34,13 @@ class FollowedRow(FedRow):
     jobs: int = 1  # cores: fills are then followed side by side, with the same outcome
 
     def say(self, fill: FillLevel, seconds: float) -> None:
-        """Tell which fill is followed, and until when [s]."""
+        """Tell which fill is followed, and until when.
+
+        Parameters
+        ----------
+        fill : FillLevel
+        seconds : float [s]
+        """
         if self.tell:
             end = (
                 f"to {seconds:g} s"
@@ -44,7 +50,18 @@ class FollowedRow(FedRow):
             self.tell(f"queue of {fill.parts} at {fill} fill, {end}")
 
     def tell_periods(self, before: int) -> Callable[[int, int], None]:
-        """Return what is told how many periods of a queue are done; ``before`` of other fills are."""
+        """Return what is told how many periods of a queue are done.
+
+        Parameters
+        ----------
+        before : int
+            Periods of other fills that are done.
+
+        Returns
+        -------
+        callable
+            Takes the periods done, and how many there are, which is not looked at.
+        """
         rate = fill_verdicts.RATE_KEPT * USUAL_PARTS / self.least if self.least > 0.0 else self.longest
         expected = len(FILLS) * math.ceil(min(rate, self.longest) * self.bowl.drive.frequency)
 
@@ -55,7 +72,16 @@ class FollowedRow(FedRow):
         return tell
 
     def judge(self, queue: FilledQueue) -> FillState:
-        """Return what a fill has shown so far."""
+        """Return what a fill has shown so far.
+
+        Parameters
+        ----------
+        queue : FilledQueue
+
+        Returns
+        -------
+        FillState
+        """
         return fill_verdicts.judge_fill(queue, self.least, self.longest)
 
 

@@ -1,4 +1,4 @@
-"""What is asked of a design, and what it stands on."""
+"""Request of a design, and the records on which the design stands."""
 
 import enum
 from collections import Counter
@@ -55,7 +55,7 @@ class ProofKind(enum.StrEnum):
 
 @dataclass(frozen=True)
 class DesignRequest:
-    """What shall leave a bowl, and what the search for it may use."""
+    """Request of a design: what shall leave a bowl, and what the search for it may use."""
 
     target: float  # [1/s]
     aspect: str | None = None
@@ -120,7 +120,7 @@ class Attempt:
 
     @property
     def clean(self) -> bool:
-        """Whether only what is wanted leaves and nothing stays."""
+        """Tell whether only what is wanted leaves and nothing stays."""
         return self.efficiency > 0.0 and not self.faults
 
 
@@ -136,12 +136,12 @@ class RobustRun:
 
     @property
     def worst_text(self) -> str:
-        """What went wrong most often, in words, and in how many draws; '' where nothing did."""
+        """Return the most frequent fault in words, and in how many draws it came; '' without any."""
         return "" if self.worst is None else texts.counted_fault_text(self.worst)
 
     @property
     def share(self) -> float:
-        """Share of the draws that sort [1]; 0 of none."""
+        """Return the share of the draws that sort [1]; 0 without draws."""
         return self.held / self.draws if self.draws else 0.0
 
 
@@ -167,7 +167,7 @@ class Alternative:
 
 @dataclass(frozen=True)
 class WantedTrials:
-    """What became of one orientation in the short trials in which it was wanted."""
+    """Outcome of the short trials in which one orientation was wanted."""
 
     wanted: str  # 'A@2'; 'A' of an aspect that counts at any heading
     aspect: str
@@ -177,7 +177,17 @@ class WantedTrials:
 
     @classmethod
     def of(cls, attempts: Iterable[Attempt]) -> tuple["WantedTrials", ...]:
-        """Return those of some trials, one for each orientation, that of most trials first."""
+        """Return what became of each orientation in some trials, that of most trials first.
+
+        Parameters
+        ----------
+        attempts : iterable of Attempt
+
+        Returns
+        -------
+        tuple of WantedTrials
+            One for each orientation that was wanted.
+        """
         by_name: dict[str, list[Attempt]] = {}
         for attempt in attempts:
             by_name.setdefault(attempt.wanted, []).append(attempt)
@@ -195,7 +205,7 @@ class WantedTrials:
 
 @dataclass(frozen=True)
 class QuickAnswer:
-    """What a design without a proof says of the rate, for a quotation."""
+    """Answer of a design without a proof on the rate, for a quotation."""
 
     wanted: str  # orientation of which it speaks: that of the chain, or the one that may bring most
     share: float  # [1] of the parts that come so
@@ -207,7 +217,7 @@ class QuickAnswer:
 
 @dataclass(frozen=True)
 class NearestDesign:
-    """What holds where a design does not, as it was tried; or that nothing that was tried holds."""
+    """Nearest design that holds where a design does not, as it was tried; or that nothing tried holds."""
 
     rate: float | None  # [1/s] that holds; None where none of what was tried does
     change: str  # what is changed for it: 'a lower rate', 'a calmer drive: 0.8 mm peak to peak'
@@ -272,7 +282,7 @@ class RiskKind(enum.StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Risk:
-    """What may go wrong between parts, or with one that comes seldom."""
+    """Risk between parts, or with one that comes seldom."""
 
     kind: RiskKind
     text: str
@@ -322,14 +332,14 @@ class DesignStudy(ReadableRecord):
 
     @property
     def outcome(self) -> OutcomeKind:
-        """Whether what leaves lies on the track or hangs by its head."""
+        """Return whether what leaves lies on the track or hangs by its head."""
         hangs = any(device.hangs for device in self.devices)
         own = OutcomeKind.HANGING if hangs else OutcomeKind.LYING
         return self.request.outcome if self.bowl is None else own
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
+        """Return a sentence for each thing that a user must not overlook."""
         allowances = {"margin": DESIGN_MARGIN_M, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         warnings = [*self.part.warnings, *small_part_remarks(self.part, allowances, width)]
@@ -386,7 +396,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def efficiency(self) -> float:
-        """Share [1] of the parts offered that left as wanted, of the worst fill; NaN of none."""
+        """Return the share [1] of offered parts that left as wanted, of the worst fill; NaN without."""
         shares = (queue.right / queue.offered for queue in self.queues if queue.offered)
         return min(shares, default=np.nan)
 
@@ -412,7 +422,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def trial_parts(self) -> int:
-        """How many parts were tried one at a time."""
+        """Return how many parts were tried one at a time."""
         return sum(attempt.parts for attempt in self.attempts)
 
     @property
@@ -428,7 +438,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def hooking(self) -> Hooking | None:
-        """How two of its parts hook; None of parts that come apart by themselves."""
+        """Return how two of its parts hook; None of parts that come apart by themselves."""
         return next((risk.hooking for risk in self.risks if risk.hooking is not None), None)
 
     @property
@@ -440,7 +450,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def proved_so_far(self) -> tuple[str, ...]:
-        """What was counted until now, a sentence each; of a design that was stopped it decides nothing."""
+        """Return what was counted until now, a sentence each; of a stopped design it decides nothing."""
         if self.bowl is None:
             return (f"{counted(len(self.attempts), 'short trial')} made, none of a design was proved",)
         robust = self.robust
@@ -455,7 +465,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def delivers(self) -> bool:
-        """Whether any wanted part has left its queues, and it was not stopped: what may be built from."""
+        """Tell whether it may be built from: a wanted part has left its queues, and it was not stopped."""
         is_proved = self.status is not Status.NOT_PROVED
         return self.bowl is not None and is_proved and self.delivered[0] > 0.0
 
@@ -485,11 +495,20 @@ class DesignStudy(ReadableRecord):
 
     @property
     def wanted_trials(self) -> tuple[WantedTrials, ...]:
-        """What became of each orientation that was asked for in its short trials."""
+        """Return what became of each orientation that was asked for in its short trials."""
         return WantedTrials.of(_asked_for(self))
 
     def fills_of(self, state: FillState) -> tuple[FilledQueue, ...]:
-        """Return the queues of the fills of one state, for the rate that is asked for."""
+        """Return the queues of the fills of one state, for the rate that is asked for.
+
+        Parameters
+        ----------
+        state : FillState
+
+        Returns
+        -------
+        tuple of FilledQueue
+        """
         least, longest = RATE_KEPT * self.request.target, longest_time(self.request.target)
         return tuple(queue for queue in self.queues if judge_fill(queue, least, longest) is state)
 
@@ -504,7 +523,7 @@ class DesignStudy(ReadableRecord):
         return self.fills_of(FillState.OPEN)
 
     def _lacks_of(self, queue: FilledQueue) -> list[str]:
-        """What a fill lacks, a sentence each; its jams are counted with those of the others."""
+        """Return what a fill lacks, a sentence each; its jams are counted with those of the others."""
         minute, (low, high), target = 60.0, queue.ends, self.request.target
         at, lines = f"at {queue.fill} fill", []
         if low < RATE_KEPT * target:
@@ -529,7 +548,7 @@ class DesignStudy(ReadableRecord):
         return lines
 
     def _jams_of(self, queue: FilledQueue) -> str:
-        """How many jams a fill of a long proof had, what that shows, and what is agreed."""
+        """Return how many jams a fill of a long proof had, what that shows, and what is agreed."""
         shown, agreed = HOUR * rate_at_most(queue.jams, queue.seconds), HOUR * self.request.agreed_jams
         return (
             f"at {queue.fill} fill {counted(queue.jams, 'jam')} in {queue.seconds / MINUTE:.3g} min: "
@@ -539,7 +558,7 @@ class DesignStudy(ReadableRecord):
 
     @property
     def cause(self) -> Cause:
-        """What keeps it from holding; unknown of one that holds or was stopped."""
+        """Return the cause why it does not hold; unknown of one that holds or was stopped."""
         return self._cause[0]
 
     @property
@@ -636,7 +655,7 @@ class DesignStudy(ReadableRecord):
 
 
 def _instead(study: DesignStudy, queue: FilledQueue) -> str:
-    """What left a fill instead of what is wanted, and the option that counts it at any heading."""
+    """Return the poses that left a fill instead of the wanted one, and the option that counts them."""
     if not queue.left_instead:
         return ""
     lines = []

@@ -153,7 +153,19 @@ class Search:
         return cls(part, request, plain, frozenset(kept_keys), shares, said, policy, state)
 
     def beside(self, request: DesignRequest) -> "Search":
-        """Return a search for another request that tells and counts as this one does, and begins anew."""
+        """Return a search for another request that tells and counts as this one does, and begins anew.
+
+        Its trials are added to those of this one, and queues that were followed are shared; chains that this
+        one tried may be tried again.
+
+        Parameters
+        ----------
+        request : DesignRequest
+
+        Returns
+        -------
+        Search
+        """
         state = self.state
         new = SearchState(
             state.reserve, state.shares, state.attempts, min_speed=state.min_speed, start=len(state.attempts),
@@ -162,7 +174,17 @@ class Search:
         return replace(self, request=request, state=new)
 
     def keeps(self, key: str) -> bool:
-        """Return whether the user gave a key of the bowl file, by its name."""
+        """Tell whether the user gave a key of the bowl file.
+
+        Parameters
+        ----------
+        key : str
+            Its name, 'drive.amplitude'.
+
+        Returns
+        -------
+        bool
+        """
         return key in self.kept_keys
 
     @property
@@ -193,7 +215,21 @@ class Search:
         return tuple(shares.most_common())
 
     def through(self, bowl: Bowl) -> Orientations:
-        """Return what becomes of each orientation on the track and through the devices of a bowl."""
+        """Return what becomes of each orientation on the track and through the devices of a bowl.
+
+        Parameters
+        ----------
+        bowl : Bowl
+
+        Returns
+        -------
+        Orientations
+
+        Raises
+        ------
+        ValueError
+            If what arrives is not known yet.
+        """
         return proposals.follow_orientations(self.part, self.arrivals.aspects, bowl)
 
     def orientations_along(self, bowl: Bowl, shares: Shares | None = None) -> Orientations:
@@ -238,23 +274,61 @@ class Search:
         return TrialBudget(self.state.attempts, self.limit, self.request.draws)
 
     def tell(self, text: str) -> None:
-        """Tell the user a sentence."""
+        """Tell the user a sentence.
+
+        Parameters
+        ----------
+        text : str
+        """
         self.progress.tell(text)
 
     def begin_trial(self, text: str) -> None:
-        """Tell which trial begins."""
+        """Tell which trial begins.
+
+        Parameters
+        ----------
+        text : str
+            What is tried.
+        """
         self.progress.begin_trial(text, self.budget)
 
     def begin_proof(self, text: str) -> None:
-        """Tell that draws begin."""
+        """Tell that draws begin.
+
+        Parameters
+        ----------
+        text : str
+            What is proved.
+        """
         self.progress.begin_proof(text, self.budget)
 
     def run(self, stage: SearchStage) -> RunSettings:
-        """Return how draws or queues run: as was asked, and progress is told."""
+        """Return how draws or queues run: as was asked, and progress is told.
+
+        Parameters
+        ----------
+        stage : SearchStage
+
+        Returns
+        -------
+        RunSettings
+        """
         return self.progress.watch(self.request.run, stage, self.budget)
 
     def share_needed(self, attempt: Attempt) -> float:
-        """Return the share [1] of what is wanted that has to leave in a draw, for the target to be kept."""
+        """Return the share of what is wanted that has to leave in a draw, for the target to be kept.
+
+        Parameters
+        ----------
+        attempt : Attempt
+            Short trial that says what the chain would deliver.
+
+        Returns
+        -------
+        float [1]
+            ``RATE_KEPT`` times the target over the rate of the attempt, between ``LEAST_SHARE_LEAVING`` and
+            1.
+        """
         need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
         return float(np.clip(need, LEAST_SHARE_LEAVING, 1.0))
 
@@ -272,7 +346,16 @@ class Candidate:
     robust: RobustRun | None = None  # some draws that it did not all hold
 
     def plain_bowl(self, search: Search) -> calm_drive.PlainBowl:
-        """Return its bowl without devices, with the keys that the user gave."""
+        """Return its bowl without devices, with the keys that the user gave.
+
+        Parameters
+        ----------
+        search : Search
+
+        Returns
+        -------
+        PlainBowl
+        """
         bare = replace(self.bowl, devices=())
         return calm_drive.PlainBowl(bare, search.kept_keys, search.request.drive)
 
@@ -288,6 +371,16 @@ class Candidate:
         return None if self.robust is None else self.robust.worst
 
     def is_nearly_robust(self, policy: SearchPolicy) -> bool:
-        """Return whether all draws of its screening but one held."""
+        """Tell whether all draws of its screening but one held.
+
+        Parameters
+        ----------
+        policy : SearchPolicy
+            That says how many draws a screening has.
+
+        Returns
+        -------
+        bool
+        """
         robust = self.robust
         return robust is not None and robust.held == robust.draws - 1 >= policy.screening_draws - 1

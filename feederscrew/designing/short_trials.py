@@ -117,7 +117,16 @@ class ShortTrial:
         return self.efficiency / total if total > 0.0 else np.nan
 
     def join(self, other: "ShortTrial") -> "ShortTrial":
-        """Return what both trials of one bowl show, of other orientations or of more parts of the same."""
+        """Return what both trials of one bowl show, of other orientations or of more parts of the same.
+
+        Parameters
+        ----------
+        other : ShortTrial
+
+        Returns
+        -------
+        ShortTrial
+        """
         rows = list(dict.fromkeys([*self.rows.tolist(), *other.rows.tolist()]))
         place = {row: n for n, row in enumerate(rows)}
         counts: dict[str, Any] = {name: np.zeros(len(rows), int) for name in COUNTED}

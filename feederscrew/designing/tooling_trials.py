@@ -54,13 +54,13 @@ class TriedDesign:
 
     @property
     def agrees(self) -> bool:
-        """Whether the trial denies nothing and the rule's efficiency lies in its interval."""
+        """Tell whether the trial denies nothing and the rule's efficiency lies in its interval."""
         low, high = self.efficiency_ends
         return not self.faults and low - SLIGHT <= self.static_efficiency <= high + SLIGHT
 
     @property
     def verdict(self) -> str:
-        """What the trial says of the rule."""
+        """Return the verdict of the trial on the rule."""
         if self.faults:
             return "the trial denies it: " + "; ".join(texts.fault_texts(self.faults))
         return (
@@ -69,7 +69,7 @@ class TriedDesign:
 
     @property
     def figures(self) -> str:
-        """What leaves, with its intervals."""
+        """Return the shares that leave, with their intervals."""
         purity = "nothing leaves"
         if not np.isnan(self.purity):
             purity = f"{texts.percent(self.purity, self.purity_ends)} of what leaves"
@@ -77,7 +77,7 @@ class TriedDesign:
 
     @property
     def verdicts(self) -> str:
-        """What the static rule says, and what the trial."""
+        """Return the verdicts of the static rule and of the trial."""
         return (
             f"the static rule lets {100.0 * self.static_efficiency:.3g} % leave, of {self.parts} parts tried "
             f"{self.figures}; {self.verdict}"

@@ -33,11 +33,24 @@ PRINTED = (  # the table for people, unless they ask for more
 
 
 def select_columns(frame: Frame, choice: str | None = None) -> Frame:
-    """Return the columns of the table of an AspectsStudy that are printed for people.
+    """Return the columns of the table of aspects that are printed for people.
 
-    ``choice`` are names, or what the table heads them, with commas between, or 'all'; without it
-    those of ``PRINTED`` that there are, the likeliest answer first. Raises ArgumentError if there is no such
-    column.
+    Parameters
+    ----------
+    frame : Frame
+        Of an AspectsStudy.
+    choice : str, optional
+        Names, or what the table heads them, with commas between, or 'all'; without it those of ``PRINTED``
+        that there are, the likeliest answer first.
+
+    Returns
+    -------
+    Frame
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such column.
     """
     if choice is None:
         table = frame.only(name for name in PRINTED if name in frame)
@@ -61,13 +74,36 @@ def select_columns(frame: Frame, choice: str | None = None) -> Frame:
 
 
 def check_columns(study: AspectsStudy, choice: str) -> None:
-    """Refuse before a part is dropped what ``select_columns`` will, by the study of the closed form."""
+    """Refuse before a part is dropped what ``select_columns`` will.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+        Of the closed form, without drops.
+    choice : str
+        As for ``select_columns``.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such column.
+    """
     frame = study.table()
     select_columns(frame.taking(dict.fromkeys(DROP_COLUMNS, frame["aspect"])), choice)
 
 
 def document(study: AspectsStudy) -> dict[str, Any]:
-    """Return all of a part and its aspects; ``recommended``, the rule of that answer, is None for a card."""
+    """Return all of a part and its aspects as the JSON document.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    dict
+        ``recommended``, the rule of that answer, is None for a card.
+    """
     return part_facts.part(study.part, study.aspects.warnings) | {
         "recommended": None if study.recommended is None else study.recommended.rule,
         "aspects": study.table(),
@@ -75,7 +111,16 @@ def document(study: AspectsStudy) -> dict[str, Any]:
 
 
 def remarks(study: AspectsStudy) -> list[str]:
-    """Return what a user should know of pictures that are missing or not whole, a line each."""
+    """Return what a user should know of pictures that are missing or not whole, a line each.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    list of str
+    """
     count = len(study.aspects.names)
     if study.part.vertices is None:
         return ["a part card has no shape to draw: no aspects.png"]
@@ -84,10 +129,20 @@ def remarks(study: AspectsStudy) -> list[str]:
 
 
 def offers(study: AspectsStudy, *, with_graph: bool = False) -> list[offer.Offer]:
-    """Offer the table of aspects, its pictures and, with ``with_graph``, the tipping graph.
+    """Offer the table of aspects and its pictures.
 
     ``names.yaml``, the aspects by name to be edited and read again, and ``aspects.png`` only of a part that
     has a shape.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+    with_graph : bool, optional
+        Whether the tipping graph is offered too.
+
+    Returns
+    -------
+    list of Offer
     """
     by_rule = "Probability of each aspect by every rule"
     offered = [
@@ -134,7 +189,22 @@ MARKS = "osD^vPX*<>hp"  # of the rules: who does not see their colours tells the
 def profile_bars(
     names: Sequence[str], profiles: Mapping[str, Floats], title: str = "", ax: "style.Axes | None" = None
 ) -> "style.Figure":
-    """Draw profiles, (A,) shares [1] by rule or experiment, grouped by the A names; NaN draws no bar."""
+    """Draw profiles as bars, grouped by the names of the aspects; NaN draws no bar.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of A aspects.
+    profiles : mapping of str to (A,) array [1]
+        Shares by rule or experiment.
+    title : str, optional
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     width = float(np.clip(len(names) * (len(profiles) + 1.0) * 0.34 + 1.0, NARROW_IN, WIDE_IN))
     room = (width - 1.0) / (len(names) * (len(profiles) + 1.0))  # [in] of paper that a bar has
     figure, axes = style.chart(width, 3.4, ax=ax, title=title, **PROBABILITIES)
@@ -162,8 +232,21 @@ def answer_bars(
 ) -> "style.Figure":
     """Draw the recommended answer with its interval as a bar, and every rule as a small mark beside it.
 
-    ``answer`` is (3, A) [1], the probability of each aspect and the ends of its interval; ``profiles`` are
-    (A,) probabilities [1] by rule.
+    Parameters
+    ----------
+    names : sequence of str
+        Of A aspects.
+    answer : (3, A) array [1]
+        The probability of each aspect, and the ends of its interval.
+    profiles : mapping of str to (A,) array [1]
+        Probabilities by rule.
+    title : str, optional
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
     """
     width = float(np.clip(len(names) + 1.0, NARROW_IN, WIDE_IN))
     figure, axes = style.chart(width, 3.4, ax=ax, title=title, **PROBABILITIES)
@@ -196,9 +279,21 @@ BAR_PX, BARS_PX = 94, 140  # [px] length of a bar for a probability of 1, and wh
 def aspect_views(
     part: Part, aspects: Aspects, rows: Sequence[int], answer: Recommended | None = None
 ) -> "style.Figure":
-    """Draw a part with a mesh on those of its aspects whose ``rows`` are given, in this order.
+    """Draw a part on some of its aspects.
 
-    The recommended ``answer``, where there is one, stands first below each, with its interval.
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    aspects : Aspects
+    rows : sequence of int
+        Of those that are drawn, in this order.
+    answer : Recommended, optional
+        Stands first below each, with its interval.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
     """
     solid, count = shading.Rays(part.vertices, part.faces, part.centre_of_mass), len(rows)
     points = shading.outer_points(solid.points)
@@ -292,11 +387,23 @@ def tipping_graph(
     title: str, names: Sequence[str], tips: Sequence[Transition], shares: Floats,
     draw_aspect: Callable[[int], Array] | None = None,
 ) -> "style.Figure":  # fmt: skip
-    """Draw the A aspects on a ring, joined by arrows that carry the lift in mm.
+    """Draw the aspects on a ring, joined by arrows that carry the lift in mm.
 
-    ``tips`` are Transitions, ``shares`` (A,) [1] quasi-static probabilities: an aspect where it is NaN is
-    left out. ``draw_aspect`` gives the picture (H, W, C) of an aspect by its row; without it a disc stands
-    for each aspect, whose area grows with its share.
+    Parameters
+    ----------
+    title : str
+    names : sequence of str
+        Of A aspects.
+    tips : sequence of Transition
+    shares : (A,) array [1]
+        Quasi-static probabilities: an aspect where it is NaN is left out.
+    draw_aspect : callable, optional
+        Returns the picture (H, W, C) of an aspect by its row; without it a disc stands for each aspect, whose
+        area grows with its share.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
     """
     figure = style.figure(6.4, 6.4)
     axes, head = figure.add_subplot(), f"{title}: lift to tip [mm]"
@@ -335,7 +442,19 @@ def tipping_graph(
 
 
 def draw_tipping_graph(study: AspectsStudy, tips: Sequence[Transition], shares: Floats) -> "style.Figure":
-    """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape."""
+    """Draw the tipping graph with the part in each aspect, where it has a shape.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+    tips : sequence of Transition
+    shares : (A,) array [1]
+        As for ``tipping_graph``.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     part, aspects = study.part, study.aspects
     if part.vertices is None:
         return tipping_graph(part.name, aspects.names, tips, shares)

@@ -44,7 +44,17 @@ def thumbnail(part: Part, record: Aspects, aspect: str | None = None) -> bytes:
 
 
 def png_of_pixels(pixels: Array) -> bytes:
-    """Return an image (rows, columns, 3) from 0 to 1 as the bytes of a PNG, the same for the same image."""
+    """Return an image as the bytes of a PNG, the same for the same image.
+
+    Parameters
+    ----------
+    pixels : (R, C, 3) array
+        From 0 to 1.
+
+    Returns
+    -------
+    bytes
+    """
     buffer, metadata = io.BytesIO(), dict[str, Any](Software=None)  # None: no such entry
     mpl_image.imsave(buffer, pixels, format="png", metadata=metadata)
     return buffer.getvalue()
@@ -53,7 +63,14 @@ def png_of_pixels(pixels: Array) -> bytes:
 def sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> bytes:
     """Draw a contact sheet of parts, ``ACROSS`` in a row, as a PNG.
 
-    A tile is a thumbnail, or None where the part failed, its name, and its rate or the reason.
+    Parameters
+    ----------
+    tiles : sequence of (bytes or None, str, str)
+        A thumbnail, or None where the part failed, its name, and its rate or the reason.
+
+    Returns
+    -------
+    bytes
     """
     return style.png(_sheet(tiles))
 

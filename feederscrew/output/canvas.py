@@ -72,7 +72,17 @@ class PixelCanvas(Canvas):
     image: Array  # (rows, columns, 3) uint8
 
     def print_png(self, filename_or_obj: BinaryIO, *, metadata: Any = None, **_: Any) -> None:
-        """Write the pixels of the image."""
+        """Write the pixels of the image.
+
+        Parameters
+        ----------
+        filename_or_obj : file-like
+            Open for bytes.
+        metadata : dict, optional
+            Entries of the PNG.
+        **_ :
+            What matplotlib hands to other canvases; not looked at.
+        """
         imsave(filename_or_obj, self.image, format="png", dpi=self.figure.dpi, metadata=metadata)
 
 

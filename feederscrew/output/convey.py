@@ -41,7 +41,17 @@ UNSTEADY_WORDS = {
 
 
 def document(study: ConveyStudy) -> dict[str, Any]:
-    """Return a ConveyStudy as the JSON document."""
+    """Return conveying at one operating point as the JSON document, ``convey.json``.
+
+    Parameters
+    ----------
+    study : ConveyStudy
+
+    Returns
+    -------
+    dict
+        Units stand in the names of its keys.
+    """
     conveying = study.answer
 
     def change_entry(pair: Neighbours, change: float) -> dict[str, Any]:
@@ -63,7 +73,19 @@ def document(study: ConveyStudy) -> dict[str, Any]:
 
 
 def restitution_entry(bowl: Bowl, neighbours: Neighbours | None) -> dict[str, Any] | None:
-    """Return a document's entry on the spread of restitution; None where nothing is thrown up."""
+    """Return a document's entry on the spread of restitution.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    neighbours : Neighbours or None
+        Velocities at the lowest and at the highest restitution; None where nothing is thrown up.
+
+    Returns
+    -------
+    dict or None
+        None where nothing is thrown up.
+    """
     if neighbours is None:
         return None
     ends = dict(zip(("restitution_low", "restitution_high"), answer.rebounds(bowl)))
@@ -71,7 +93,17 @@ def restitution_entry(bowl: Bowl, neighbours: Neighbours | None) -> dict[str, An
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
-    """Return the document of one operating point as a frame for people."""
+    """Return the document of one operating point as a frame for people.
+
+    Parameters
+    ----------
+    document : mapping
+        Of ``document``.
+
+    Returns
+    -------
+    Frame
+    """
     d, margins = document, document["margins"]
 
     def limit(value: float, margin: float) -> str:
@@ -109,7 +141,17 @@ def summary(document: Mapping[str, Any]) -> Frame:
 
 
 def remarks(document: Mapping[str, Any]) -> list[str]:
-    """Return what a reader of the document of one operating point must not overlook, a sentence each."""
+    """Return what a reader of the document of one operating point must not overlook, a sentence each.
+
+    Parameters
+    ----------
+    document : mapping
+        Of ``document``.
+
+    Returns
+    -------
+    list of str
+    """
     low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
     if document["unsteady"]:
         return [f"no steady state: {UNSTEADY_WORDS[document['unsteady']]}, and no velocity is steady"]
@@ -144,7 +186,20 @@ def _number(value: float) -> str:
 
 
 def cell_remarks(status: Array, several: Bools) -> list[str]:
-    """Return how many cells of a map or a curve have no steady velocity, no period, several velocities."""
+    """Return how many cells of a map or a curve have no steady velocity, no period, several velocities.
+
+    Parameters
+    ----------
+    status : array of MotionStatus
+        Of each cell.
+    several : array of bool, of its shape
+        Whether several velocities are possible there.
+
+    Returns
+    -------
+    list of str
+        A sentence for each that occurs.
+    """
     counts = {
         "no steady state": (status == MotionStatus.NO_STEADY_STATE).sum(),
         "no period (averaged)": (status == MotionStatus.AVERAGED).sum(),
@@ -154,7 +209,16 @@ def cell_remarks(status: Array, several: Bools) -> list[str]:
 
 
 def phase_document(study: ConveyPhase) -> dict[str, Any]:
-    """Return a ConveyPhase as the JSON document."""
+    """Return the best phase of a drive as the JSON document.
+
+    Parameters
+    ----------
+    study : ConveyPhase
+
+    Returns
+    -------
+    dict
+    """
     phase = study.best
     over = of_arrays(OVER_FRICTION_COLUMNS, phase)
     best_phase = values(BEST_PHASE_COLUMNS, phase) | {"over_friction": over}
@@ -162,7 +226,17 @@ def phase_document(study: ConveyPhase) -> dict[str, Any]:
 
 
 def phase_summary(document: Mapping[str, Any]) -> Frame:
-    """Return the document of the best phase as a frame for people."""
+    """Return the document of the best phase as a frame for people.
+
+    Parameters
+    ----------
+    document : mapping
+        Of ``phase_document``.
+
+    Returns
+    -------
+    Frame
+    """
     best = document["best_phase"]
     tenths = _range_text(best["nine_tenths_from_deg"], best["nine_tenths_to_deg"])
     rows = [
@@ -179,7 +253,16 @@ def phase_summary(document: Mapping[str, Any]) -> Frame:
 
 
 def offers(study: ConveyStudy) -> list[offer.Offer]:
-    """Offer the files of a ConveyStudy."""
+    """Offer the files of conveying at one operating point.
+
+    Parameters
+    ----------
+    study : ConveyStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     return [
         offer.document("convey.json", document, study),
         offer.picture(
@@ -190,18 +273,45 @@ def offers(study: ConveyStudy) -> list[offer.Offer]:
 
 
 def curve_offers(study: ConveyCurve) -> list[offer.Offer]:
-    """Offer the files of a ConveyCurve."""
+    """Offer the files of a curve of velocities.
+
+    Parameters
+    ----------
+    study : ConveyCurve
+
+    Returns
+    -------
+    list of Offer
+    """
     name, alt = f"convey_{study.kind}", f"Velocity over {study.over}"
     return [offer.table(f"{name}.csv", study.table), offer.picture(f"{name}.png", alt, _curve, study, alt)]
 
 
 def phase_offers(study: ConveyPhase) -> list[offer.Offer]:
-    """Offer the files of a ConveyPhase."""
+    """Offer the files of the best phase, with its curve.
+
+    Parameters
+    ----------
+    study : ConveyPhase
+
+    Returns
+    -------
+    list of Offer
+    """
     return [offer.document("convey_phase.json", phase_document, study), *curve_offers(study.curve)]
 
 
 def map_offers(study: ConveyMap) -> list[offer.Offer]:
-    """Offer the files of a ConveyMap; over angle and stroke a bowl is drawn by its radius."""
+    """Offer the files of a map of velocities; over angle and stroke a bowl is drawn by its radius.
+
+    Parameters
+    ----------
+    study : ConveyMap
+
+    Returns
+    -------
+    list of Offer
+    """
     keys, line = [span.key for span in study.ranges], None
     names = (key.name.rpartition(".")[2].replace("_", " ") for key in keys)
     if study.line is not None and {key.field for key in keys} == {"drive.vibration_angle", "drive.amplitude"}:
@@ -232,7 +342,20 @@ SEVERAL_HATCH = "////"
 
 
 def cycle(trace: steady.CycleTrace, amplitude: float, solution: answer.Answer) -> "style.Figure":
-    """Draw plate and part over the trace of an answer; ``amplitude`` [m] is the plate's."""
+    """Draw plate and part over the trace of an answer.
+
+    Parameters
+    ----------
+    trace : CycleTrace
+    amplitude : float [m]
+        Of the plate.
+    solution : Answer
+        That the trace is of.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     figure = style.figure(6.4, 5.2)
     top, bottom = figure.subplots(2, 1, sharex=True)
     style.tidy(top, title=cycle_title(trace, solution), y="along the track [mm]")
@@ -253,7 +376,17 @@ def cycle(trace: steady.CycleTrace, amplitude: float, solution: answer.Answer) -
 
 
 def cycle_title(trace: steady.CycleTrace, solution: answer.Answer) -> str:
-    """Return what of a motion a trace shows, and how fast it is."""
+    """Return what of a motion a trace shows, and how fast it is.
+
+    Parameters
+    ----------
+    trace : CycleTrace
+    solution : Answer
+
+    Returns
+    -------
+    str
+    """
     periods, velocity = round(trace.time[-1]), f"{solution.velocity * 1e3:.4g} mm/s"
     if solution.unsteady == answer.UnsteadyMotion.KEEPS_SPEED:
         return f"No steady state: {periods} periods without friction, from rest"
@@ -269,8 +402,16 @@ def cycle_title(trace: steady.CycleTrace, solution: answer.Answer) -> str:
 def velocity_map(grid: Grid, curve: Sequence[Floats] | None = None) -> "style.Figure":
     """Draw velocity and regimes over two keys of the bowl; hatched where several velocities coexist.
 
-    ``grid`` is that of a ConveyMap; ``curve``, two (N,) arrays in the units of the axes, has the operating
-    points of one bowl over its radius.
+    Parameters
+    ----------
+    grid : Grid
+        Of a ConveyMap.
+    curve : two (N,) arrays, optional
+        Operating points of one bowl over its radius, in the units of the axes.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
     """
     figure = style.figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, sharey=True)

@@ -207,7 +207,17 @@ def _quick_tiles(quick: Mapping[str, Any] | None) -> tuple[Tile, ...]:
 
 
 def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
-    """What was wanted, with what became of it, then what left in its place, or what to try instead."""
+    """Return what was wanted, with what became of it, then what left in its place, or what to try instead.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    list of (str, str)
+        Orientations or aspects with words for each, those that the picture of a page opens with.
+    """
     wanted = (study.wanted or "").split(AMONG)[0]
     if study.delivers:
         words = "leaves correctly oriented"
@@ -226,7 +236,7 @@ def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
 
 
 def _what_to_try(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
-    """What was wanted and where it was lost, then the calls that may hold, to be pasted."""
+    """Yield what was wanted and where it was lost, then the calls that may hold, to be pasted."""
     tried = study.wanted_trials
     if tried and not study.delivers:
         lost = (texts.wanted_trials_text(one.wanted, one.trials, one.ends, one.others) for one in tried)
@@ -379,7 +389,17 @@ Change = tuple[str, str, tuple[str, ...]]  # what, how it is changed, and a text
 
 
 def family_document(study: FamilyStudy) -> dict[str, Any]:
-    """Return a FamilyStudy as the JSON document."""
+    """Return the design of a family as the JSON document, ``family.json``.
+
+    Parameters
+    ----------
+    study : FamilyStudy
+
+    Returns
+    -------
+    dict
+        ``parts`` holds the document of each design, ``changeover`` what is changed between them.
+    """
     names = [member.part.name for member in study.members]
     return {
         "status": study.status,
@@ -416,7 +436,17 @@ def _changes(study: FamilyStudy) -> list[Change]:
 
 
 def changeover(study: FamilyStudy) -> dict[str, list[str]]:
-    """Return the list for the shop: a row for what is changed, a column for each part."""
+    """Return the list for the shop of what is changed from one part to the next.
+
+    Parameters
+    ----------
+    study : FamilyStudy
+
+    Returns
+    -------
+    dict of str to list of str
+        Columns ``what`` and ``how``, and one for each part; empty where a part has no bowl.
+    """
     rows = _changes(study)
     columns = {"what": [what for what, _, _ in rows], "how": [how for _, how, _ in rows]}
     names = (member.part.name for member in study.members)
@@ -424,7 +454,16 @@ def changeover(study: FamilyStudy) -> dict[str, list[str]]:
 
 
 def family_summary(study: FamilyStudy) -> Frame:
-    """Return what is printed: a row for each part, then what is changed."""
+    """Return what is printed: a row for each part, then what is changed.
+
+    Parameters
+    ----------
+    study : FamilyStudy
+
+    Returns
+    -------
+    Frame
+    """
     rows = [("status", study.status), ("one bowl for all", "yes" if study.shared else "no")]
     for member in study.members:
         rate, low, _ = (value / units.PER_MINUTE for value in member.delivered)
@@ -439,7 +478,16 @@ def family_summary(study: FamilyStudy) -> Frame:
 
 
 def family_page(study: FamilyStudy) -> str:
-    """Return the page of a FamilyStudy as HTML that needs no other file."""
+    """Return the page of a family as HTML that needs no other file.
+
+    Parameters
+    ----------
+    study : FamilyStudy
+
+    Returns
+    -------
+    str
+    """
     if study.partial:
         status = "It was stopped before all parts were designed."
     elif not study.shared:
@@ -494,7 +542,17 @@ def family_page(study: FamilyStudy) -> str:
 
 
 def family_offers(study: FamilyStudy) -> list[offer.Offer]:
-    """Offer the files of a FamilyStudy itself; each part has its own folder."""
+    """Offer the files of a family itself; each part has its own folder.
+
+    Parameters
+    ----------
+    study : FamilyStudy
+
+    Returns
+    -------
+    list of Offer
+        Of one that was stopped, the document alone.
+    """
     files = [offer.document("family.json", family_document, study)]
     if study.partial:  # nothing to build from
         return files

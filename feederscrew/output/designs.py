@@ -59,7 +59,17 @@ NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed a
 
 
 def document(study: DesignStudy) -> dict[str, Any]:
-    """Return a DesignStudy as the JSON document."""
+    """Return a design as the JSON document, ``design.json``.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    dict
+        Units stand in the names of its keys, 'delivered_per_minute'. What was not proved is None.
+    """
     is_proved, proof = study.status != Status.NOT_PROVED, dict.fromkeys(PROOF)
     if is_proved:  # the figures that its queues have shown
         (purity, purity_low), high = study.purity, study.jams_per_hour_high
@@ -181,7 +191,16 @@ def _alternative(option: Alternative) -> dict[str, Any]:
 
 
 def alternatives(study: DesignStudy) -> Frame:
-    """Return the best of each cost class, one a row."""
+    """Return the best of each cost class, one a row.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    Frame
+    """
     rows = []
     for d in map(_alternative, study.alternatives):
         chain, needs = ", ".join(d["chain"]) or "none", ", ".join(d["needs"]) or "nothing more"
@@ -191,13 +210,33 @@ def alternatives(study: DesignStudy) -> Frame:
 
 
 def short_alternatives(study: DesignStudy) -> Frame:
-    """Return the best of each cost class for a page: its devices are in words."""
+    """Return the best of each cost class for a page: its devices are in words.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    Frame
+    """
     chains = ["; ".join(option.chain_words or option.chain) or "none" for option in study.alternatives]
     return tables.frame(alternatives(study) | {"chain": chains})
 
 
 def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
-    """Return the rows of a long ride as a table."""
+    """Return the rows of a long ride as a table.
+
+    Parameters
+    ----------
+    rows : sequence of mapping
+        Of the document: of each orientation its parts, what stays, what it becomes and its shares [1].
+
+    Returns
+    -------
+    Frame
+        Shares in %.
+    """
     becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
     table: dict[str, Any] = {name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")}
     table |= {"becomes": becomes, "left": [row["left"] for row in rows]}
@@ -207,7 +246,17 @@ def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
 
 
 def nearest(study: DesignStudy) -> dict[str, Any] | None:
-    """Return the nearest that holds as a dict, ``tried`` what was run for it; None of what holds."""
+    """Return the nearest that holds as a dict.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    dict or None
+        ``tried`` says what was run for it. None where it was not looked for, as of a design that holds.
+    """
     near = study.nearest
     if near is None:
         return None
@@ -226,7 +275,18 @@ def nearest(study: DesignStudy) -> dict[str, Any] | None:
 
 
 def machine_facts(study: DesignStudy) -> dict[str, Any] | None:
-    """Return the machine that a design asks for as a dict; None where there is no bowl."""
+    """Return the machine that a design asks for as a dict.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    dict or None
+        Its drive, stroke, throw number, cameras, valves and air, with units in the names of the keys. None
+        where there is no bowl.
+    """
     if study.bowl is None:
         return None
     drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
@@ -254,7 +314,17 @@ def machine_facts(study: DesignStudy) -> dict[str, Any] | None:
 
 
 def machine_text(facts: Mapping[str, Any]) -> str:
-    """Return the dict of ``machine`` as one sentence."""
+    """Return the machine as one sentence.
+
+    Parameters
+    ----------
+    facts : mapping
+        Of ``machine_facts``.
+
+    Returns
+    -------
+    str
+    """
     kind, angles, served_by = _machine_words(facts)
     travels = "" if facts["velocity_mm_s"] is None else f", {facts['velocity_mm_s']:.3g} mm/s"
     hops = f", parts hop {facts['hop']}" if facts["hop_height_mm"] > 0.0 else ""
@@ -297,7 +367,16 @@ def attempts(study: DesignStudy) -> Frame:
 
 
 def short_attempts(study: DesignStudy) -> Frame:
-    """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
+    """Return the history as a page has room for it: of each device its kind, and one number if it has one.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    Frame
+    """
     chains = [", ".join(attempt.chain_brief) or "none" for attempt in study.attempts]
     history = attempts(study).without(["peak_to_peak_mm"])  # the throw number says as much
     named = {"why": "what is new", "denied": "what goes wrong"}
@@ -307,7 +386,17 @@ def short_attempts(study: DesignStudy) -> Frame:
 
 
 def summary(study: DesignStudy) -> Frame:
-    """Return what is printed: the answer first, then what it stands on; long lines go on in the next row."""
+    """Return what is printed: the answer first, what it stands on, then what to try where it does not hold.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    Frame
+        Long lines go on in the next row; a command stands in one line.
+    """
     d = document(study)
     first, *rest = outcome(d, study.devices)
     lines = study.reason_lines or ([d["why"]] if d["why"] else [])
@@ -336,13 +425,33 @@ def summary(study: DesignStudy) -> Frame:
 
 
 def wrap_row(name: str, value: str) -> list[tuple[str, str]]:
-    """Return rows of a name and the lines of a long value."""
+    """Return rows of a name and the lines of a long value.
+
+    Parameters
+    ----------
+    name, value : str
+
+    Returns
+    -------
+    list of (str, str)
+    """
     lines = textwrap.wrap(value, 62, break_long_words=False, break_on_hyphens=False) or [""]
     return [(name, lines[0]), *(("", line) for line in lines[1:])]
 
 
 def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, str]]:
-    """Return rows of the answer of a design's document, and of its devices as the trade names them."""
+    """Return rows of the answer of a design, and of its devices as the trade names them.
+
+    Parameters
+    ----------
+    d : mapping
+        Of ``document``.
+    devices : sequence of Device
+
+    Returns
+    -------
+    list of (str, str)
+    """
     rows = [("status", d["status"])]
     if facts := d.get("machine"):
         kind, angles, served_by = _machine_words(facts)
@@ -385,7 +494,18 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
 
 
 def dimensions(d: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Return rows of what a design's document says of the bowl and its drive."""
+    """Return rows of what a design says of the bowl and its drive.
+
+    Parameters
+    ----------
+    d : mapping
+        Of ``document``.
+
+    Returns
+    -------
+    list of (str, str)
+        Of values that its answer does not give yet; empty where there is no bowl.
+    """
     return [
         (tables.title(name), f"{value:.4g}")
         for name, value in (d["bowl"] or {}).items()
@@ -394,7 +514,17 @@ def dimensions(d: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def acceptance(study: DesignStudy) -> Frame:
-    """Return the acceptance sheet: demand, plan and computed values of each line beside empty cells."""
+    """Return the acceptance sheet: demand, plan and computed values of each line beside empty cells.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    Frame
+        A row for each line of ``acceptance_sheet``.
+    """
     request = study.request
     lines: list[SheetLine] = []
     for filled in study.queues:
@@ -443,14 +573,38 @@ SET_KEYS = {  # keys of the bowl file that a design sets, by section
 
 
 def value_text(record: Drive | Track | Machine | Sizing, name: str, digits: int) -> str:
-    """Return a value of a section of the bowl, 'drive.amplitude', in the unit of its key: '0.35 mm'."""
+    """Return a value of a section of the bowl in the unit of its key: '0.35 mm'.
+
+    Parameters
+    ----------
+    record : Drive, Track, Machine or Sizing
+        The section.
+    name : str
+        Of the key, 'drive.amplitude'.
+    digits : int
+        That are significant.
+
+    Returns
+    -------
+    str
+    """
     key = schema.BY_NAME[name]
     scale = units.factor(key.unit, key.dimension) if key.unit else 1.0
     return f"{getattr(record, key.word) / scale:.{digits}g} {key.unit}".rstrip()
 
 
 def unbalance_texts(machine: Machine) -> dict[str, str]:
-    """Return what a bowl file says of where a Machine has its mass, by key; nothing of a balanced one."""
+    """Return what a bowl file says of where a machine has its mass.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    dict of str to str
+        Values with their units, by key; empty of a balanced one.
+    """
     return {
         word: f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
         for word, value in schema.unbalance_values(machine).items()
@@ -458,10 +612,24 @@ def unbalance_texts(machine: Machine) -> dict[str, str]:
 
 
 def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineSheet | None = None) -> str:
-    """Return a DesignStudy with a bowl as a bowl file; ``settings`` that it does not set are kept as given.
+    """Return a design with a bowl as a bowl file.
 
-    ``sheet`` is the MachineSheet of the machine below the bowl. Raises FeederError if a command that reads it
-    back would have another bowl than was tried.
+    Parameters
+    ----------
+    study : DesignStudy
+    settings : sequence of Setting
+        Those that it does not set are kept as given.
+    sheet : MachineSheet, optional
+        Of the machine below the bowl.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    FeederError
+        If a command that reads it back would have another bowl than was tried.
     """
     name, bowl = "design.yaml", cast(Bowl, study.bowl)
     parts: dict[str, Drive | Track | Machine | Sizing] = {"drive": bowl.drive, "track": bowl.track}
@@ -524,7 +692,17 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
 
 
 def trial_of(study: DesignStudy) -> Verified | None:
-    """Return what a DesignStudy has shown, as its bowl file says it; None where nothing has left a queue."""
+    """Return what a design has shown, as its bowl file says it.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    Verified or None
+        None where nothing has left a queue, or nothing was proved.
+    """
     has_left = study.status != Status.NOT_PROVED and any(filled.left for filled in study.queues)
     if study.bowl is None or study.wanted is None or not has_left:
         return None
@@ -539,7 +717,17 @@ def trial_of(study: DesignStudy) -> Verified | None:
 
 
 def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
-    """Return one row a line of the sheet: the demand, what was measured, and what that says."""
+    """Return the sheet as it is printed: the demand, what was measured, and what that says.
+
+    Parameters
+    ----------
+    lines : sequence of SheetLine
+
+    Returns
+    -------
+    Frame
+        A row for each line.
+    """
     names = ("quantity", "fill", "from", "to", "unit", "measured", "sample", "computed", "verdict", "why")
     rows = []
     for line in lines:
@@ -551,7 +739,17 @@ def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
 
 
 def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
-    """Return the sheet as the JSON document; ``accepted`` where every demand that was measured is shown."""
+    """Return the sheet as the JSON document.
+
+    Parameters
+    ----------
+    lines : sequence of SheetLine
+
+    Returns
+    -------
+    dict
+        ``accepted`` where every demand that was measured is shown.
+    """
     judged = [line.agrees for line in lines if line.agrees is not None]
     rows = []
     for line in lines:
@@ -571,7 +769,18 @@ def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
 
 
 def history_figure(study: DesignStudy, ax: "style.Axes | None" = None) -> "style.Figure":
-    """Draw every short trial of a DesignStudy: the rate it would deliver, and what it lost."""
+    """Draw every short trial of a design: the rate it would deliver, and what it lost.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     figure, axes = style.chart(7.0, 3.0, ax=ax, x="trial", y="parts per minute", grid="y")
     places = np.arange(1, len(study.attempts) + 1)
     rates = [attempt.rate / PER_MINUTE for attempt in study.attempts]
@@ -617,7 +826,18 @@ Body = tuple[Floats, Ints]  # corners (V, 3) [m] and faces (F, 3)
 
 
 def risk_picture(part: Part, risk: Risk) -> "style.Figure":
-    """Draw the pair of a Risk of a part from a mesh, as a Figure."""
+    """Draw the pair of a risk.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    risk : Risk
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     first, second = bodies(part, cast(Pair, risk.pair))
     everything = np.vstack([first[0], second[0]])
     centre = 0.5 * (everything.min(axis=0) + everything.max(axis=0))
@@ -638,7 +858,20 @@ def risk_picture(part: Part, risk: Risk) -> "style.Figure":
 
 
 def bodies(part: Part, pair: Pair) -> tuple[Body, Body]:
-    """Return the part and what it may be caught by, each as ((V, 3) float [m], (F, 3) int), in its axes."""
+    """Return the part and what it may be caught by, in the axes of the pair.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    pair : Pair
+        Another such part as it lies to the first, or two walls.
+
+    Returns
+    -------
+    two of ((V, 3) float [m], (F, 3) int)
+        Corners and faces of each.
+    """
     points, faces = part.corners, cast(Ints, part.faces)
     first = vectors.product(points, pair.axes.T)
     if pair.turn is not None and pair.place is not None:

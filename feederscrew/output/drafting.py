@@ -88,7 +88,15 @@ class Drawing:
     # entities
 
     def outline(self, corners: ArrayLike, layer: str, is_closed: bool = True) -> None:
-        """Draw a polyline through corners (K, 2) [mm]."""
+        """Draw a polyline.
+
+        Parameters
+        ----------
+        corners : (K, 2) array_like [mm]
+        layer : str
+        is_closed : bool, optional
+            Whether it goes back to the first corner.
+        """
         places = np.asarray(corners, float) + self.origin
         self.space.add_lwpolyline(places.tolist(), close=is_closed, dxfattribs=self._look(layer))
         points = np.vstack([places, places[:1]]) if is_closed else places
@@ -475,5 +483,15 @@ def spread(targets: ArrayLike, gap: float) -> Floats:
 
 
 def scale_words(scale: float) -> str:
-    """Return a scale as it is written: '1:2.5'."""
+    """Return a scale as it is written: '1:2.5'.
+
+    Parameters
+    ----------
+    scale : float
+        Length on paper over length of the part.
+
+    Returns
+    -------
+    str
+    """
     return f"1:{1.0 / scale:g}" if scale <= 1.0 else f"{scale:g}:1"

@@ -33,13 +33,32 @@ shading = heavy("feederscrew.output.shading")
 
 
 def document(study: DropStudy) -> dict[str, Any]:
-    """Return the drop test as one JSON document; ``traces`` has when and on what each drop was counted."""
+    """Return a drop test as one JSON document.
+
+    Parameters
+    ----------
+    study : DropStudy
+
+    Returns
+    -------
+    dict
+        ``traces`` has when and on what each drop that was followed was counted.
+    """
     followed = [values(DROP_TRACE_COLUMNS, (study, trace)) for trace in study.result.traces]
     return values(DROP_TEST_COLUMNS, study) | {"traces": followed, "aspects": study.table()}
 
 
 def remarks(study: DropStudy) -> list[str]:
-    """Return what a user must know of a drop test, a line each."""
+    """Return what a user must know of a drop test, a line each.
+
+    Parameters
+    ----------
+    study : DropStudy
+
+    Returns
+    -------
+    list of str
+    """
     lines, drops, result = [], study.drops, study.result
     tally, aim = result.tally, result.aim
     if result.drops.partial:
@@ -64,7 +83,16 @@ def remarks(study: DropStudy) -> list[str]:
 
 
 def offers(study: DropStudy) -> list[offer.Offer]:
-    """Offer the counts of a drop test and, where drops were followed, their motion."""
+    """Offer the counts of a drop test and, where drops were followed, their motion.
+
+    Parameters
+    ----------
+    study : DropStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     offered = [
         offer.table("drop.csv", study.table),
         offer.document("drop.json", document, study),
@@ -82,7 +110,18 @@ def offers(study: DropStudy) -> list[offer.Offer]:
 
 
 def counts_figure(study: DropStudy, ax: "style.Axes | None" = None) -> "style.Figure":
-    """Draw the chart of a drop test with its intervals; the shares by every rule are marks."""
+    """Draw the chart of a drop test with its intervals; the shares by every rule are marks.
+
+    Parameters
+    ----------
+    study : DropStudy
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     result, names = study.result, study.aspects.names
     tally = result.tally
     title = f"{study.part.name}: {study.drops} drops, {result.launch['name']}"
@@ -108,7 +147,17 @@ def counts_figure(study: DropStudy, ax: "style.Axes | None" = None) -> "style.Fi
 
 
 def curve(axes: "style.Axes", trace: DropTrace, aspects: Aspects, rows: Ints) -> None:
-    """Draw energy and height of the centre of mass over time; the stills' numbers stand at ``rows`` (S,)."""
+    """Draw energy and height of the centre of mass over time.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    trace : DropTrace
+    aspects : Aspects
+        Whose heights are drawn to compare with.
+    rows : (S,) array of int
+        Samples of the trace at which the numbers of the stills stand.
+    """
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
     style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
     axes.plot(times, energies, color=style.ACCENT, linewidth=1.6, label="energy", zorder=3)
@@ -173,7 +222,20 @@ FOOT: dict[str, Any] = {"color": style.INK, "linewidth": 0.7, "linestyle": (0, (
 
 
 def strip(part: Part, aspects: Aspects, trace: DropTrace, title: str) -> "style.Figure":
-    """Draw one drop of a part with a mesh in stills, all in one scale, and its energy below."""
+    """Draw one drop of a part in stills, all in one scale, and its energy below.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    aspects : Aspects
+    trace : DropTrace
+    title : str
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
     # lengths in sizes of the solid: the centre of mass over time, and how the part stands in each still
@@ -251,7 +313,22 @@ def _grid(place: Floats, heading: Floats, step: float, reach: float) -> Iterator
 
 
 def still_caption(trace: DropTrace, row: int, names: Sequence[str], gap: float) -> str:
-    """Return the time of a still, and what is happening; ``gap`` [m] is under the lowest corner."""
+    """Return the time of a still, and what is happening.
+
+    Parameters
+    ----------
+    trace : DropTrace
+    row : int
+        Sample of the trace.
+    names : sequence of str
+        Of the aspects.
+    gap : float [m]
+        Under the lowest corner.
+
+    Returns
+    -------
+    str
+    """
     time = f"{1e3 * trace.times[row]:.0f} ms"
     if row == len(trace.times) - 1 and trace.row >= 0:
         return f"{time}, {'rests on' if trace.still else 'bound for'} {names[trace.row]}"
@@ -265,7 +342,16 @@ def still_caption(trace: DropTrace, row: int, names: Sequence[str], gap: float) 
 
 
 def toss_document(study: TossStudy) -> dict[str, Any]:
-    """Return the tosses as one JSON document."""
+    """Return the tosses as one JSON document.
+
+    Parameters
+    ----------
+    study : TossStudy
+
+    Returns
+    -------
+    dict
+    """
     agreement, measured = study.agreement, None
     if agreement is not None:
         measured = values(AGREEMENT_COLUMNS, agreement)
@@ -283,7 +369,16 @@ def toss_document(study: TossStudy) -> dict[str, Any]:
 
 
 def toss_remarks(study: TossStudy) -> list[str]:
-    """Return what a user must know of the tosses, a line each."""
+    """Return what a user must know of the tosses, a line each.
+
+    Parameters
+    ----------
+    study : TossStudy
+
+    Returns
+    -------
+    list of str
+    """
     count, lost = len(study.result.faces), int((study.result.faces < 0).sum())
     lines = [f"partial: stopped after {count} tosses"] * study.result.partial
     if lost:
@@ -297,7 +392,17 @@ def toss_remarks(study: TossStudy) -> list[str]:
 
 
 def toss_summary(study: TossStudy) -> list[str]:
-    """Return how the answers agree with what was measured, a line each; empty where nothing was."""
+    """Return how the answers agree with what was measured, a line each.
+
+    Parameters
+    ----------
+    study : TossStudy
+
+    Returns
+    -------
+    list of str
+        Empty where nothing was measured.
+    """
     agreement = study.agreement
     if agreement is None:
         return []
@@ -318,7 +423,16 @@ def toss_summary(study: TossStudy) -> list[str]:
 
 
 def toss_offers(study: TossStudy) -> list[offer.Offer]:
-    """Offer where each toss leads."""
+    """Offer where each toss leads.
+
+    Parameters
+    ----------
+    study : TossStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     offered = [offer.table("tosses.csv", study.table), offer.document("tosses.json", toss_document, study)]
     if (ends := study.launches.ends) is not None:
         alt = "Places computed and measured"

@@ -70,7 +70,18 @@ XY = Sequence[float] | Vector  # (2,)
 
 
 def instant(motion: Any, posture: Posture, bowl: Bowl) -> dict[str, Any]:
-    """Return the upper reversal under the names of the JSON contract, of a FloorMotion or PrintedFloor."""
+    """Return the upper reversal under the names of the JSON contract.
+
+    Parameters
+    ----------
+    motion : FloorMotion or PrintedFloor
+    posture : Posture
+    bowl : Bowl
+
+    Returns
+    -------
+    dict
+    """
     size, friction = np.hypot(*motion.acceleration), {}
     along, across = motion.offset if np.ndim(motion.offset) else (motion.offset, np.nan)
     if hasattr(motion, "friction"):  # the print has no such vector
@@ -92,7 +103,17 @@ def instant(motion: Any, posture: Posture, bowl: Bowl) -> dict[str, Any]:
 
 
 def cycle_columns(motion: FloorMotion, course: Cycle) -> dict[str, Any]:
-    """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
+    """Return one period as columns.
+
+    Parameters
+    ----------
+    motion : FloorMotion of shape (N,)
+    course : Cycle
+
+    Returns
+    -------
+    dict of str to array
+    """
     columns = {
         **values(FLOOR_CYCLE_COLUMNS, motion),
         "velocity_m_s": course.velocity,
@@ -102,19 +123,50 @@ def cycle_columns(motion: FloorMotion, course: Cycle) -> dict[str, Any]:
 
 
 def samples(motion: FloorMotion | TrackMotion, course: Cycle, columns: Mapping[str, Array]) -> dict[str, Any]:
-    """Return columns over a cycle, phase and state before and ``tips`` behind them, every few samples."""
+    """Return columns over a cycle, phase and state before and ``tips`` behind them.
+
+    Parameters
+    ----------
+    motion : FloorMotion or TrackMotion of shape (N,)
+    course : Cycle
+    columns : mapping of str to (N,) array
+
+    Returns
+    -------
+    dict of str to array
+        Every ``SAMPLE_STEP``-th sample.
+    """
     first: dict[str, Any] = {"phase_deg": phases(course), "state": np.array(MOTION_STATES)[motion.state]}
     cells = first | dict(columns) | {"tips": [is_tipping(inside) for inside in motion.inside]}
     return {name: values[::SAMPLE_STEP] for name, values in cells.items()}
 
 
 def phases(course: Cycle) -> Floats:
-    """Return the phase [deg] of each sample of a cycle."""
+    """Return the phase of each sample of a cycle.
+
+    Parameters
+    ----------
+    course : Cycle
+        Of N samples.
+
+    Returns
+    -------
+    (N,) array [deg]
+    """
     return np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
 
 
 def document(study: FloorStudy) -> dict[str, Any]:
-    """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print."""
+    """Return all of a part on the floor as the JSON document; of one as published, print's reversal too.
+
+    Parameters
+    ----------
+    study : FloorStudy
+
+    Returns
+    -------
+    dict
+    """
     bowl, printed = study.bowl, {}
     now = instant(study.now, study.posture, bowl)
     if study.printed is not None:
@@ -132,19 +184,55 @@ def document(study: FloorStudy) -> dict[str, Any]:
 
 
 def printout(document: Mapping[str, Any], format: str, summary: Callable[..., Frame]) -> Frame:
-    """Return what is printed: the cycle as CSV; for people its ``summary``, or what print leaves out."""
+    """Return what is printed: the cycle as CSV; for people its summary, or what print leaves out.
+
+    Parameters
+    ----------
+    document : mapping
+        Of a part on the floor or on the track.
+    format : str
+        'csv' or 'table'.
+    summary : callable
+        Returns the frame of a document for people.
+
+    Returns
+    -------
+    Frame
+    """
     if format == "csv":
         return Frame.of(document["cycle"])
     return document.get("difference", summary(document))
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
-    """Return the upper reversal, a row a quantity, for people."""
+    """Return the upper reversal for people, a row a quantity.
+
+    Parameters
+    ----------
+    document : mapping
+        Of ``document``.
+
+    Returns
+    -------
+    Frame
+    """
     return people_table(label_values(document, FLOOR_LABELS))
 
 
 def label_values(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
-    """Return the instant of a document and its regime by the names that people read, with units."""
+    """Return the instant of a document and its regime by the names that people read, with units.
+
+    Parameters
+    ----------
+    document : mapping
+        Of a part on the floor or on the track.
+    labels : mapping of str to str
+        What people read, by the names of the document; others are left out.
+
+    Returns
+    -------
+    dict
+    """
     now = document["instant"]
     units = {name: tables.heading(name)[1] for name in labels}
     rows = {f"{text} {units[name]}".rstrip(): now[name] for name, text in labels.items() if name in now}
@@ -153,7 +241,16 @@ def label_values(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict
 
 
 def people_table(rows: Mapping[str, Any]) -> Frame:
-    """Return numbers, texts and verdicts by name as a table for people."""
+    """Return numbers, texts and verdicts by name as a table for people.
+
+    Parameters
+    ----------
+    rows : mapping of str to number, str, bool or None
+
+    Returns
+    -------
+    Frame
+    """
 
     def words(value: Any) -> str:
         if value is None or value != value:
@@ -166,7 +263,21 @@ def people_table(rows: Mapping[str, Any]) -> Frame:
 
 
 def difference(published: Mapping[str, Any], complete: Mapping[str, Any], terms: Mapping[str, str]) -> Frame:
-    """Return printed against complete values by quantity, with the omitted term of each."""
+    """Return printed against complete values by quantity, with the omitted term of each.
+
+    Parameters
+    ----------
+    published : mapping
+        Values as printed, by name.
+    complete : mapping
+        The same of the complete equations.
+    terms : mapping of str to str
+        What print omits, by name: these quantities are compared.
+
+    Returns
+    -------
+    Frame
+    """
     first, second = ([values[name] for name in terms] for values in (published, complete))
     gap = np.array(first, dtype=float) - np.array(second, dtype=float)
     is_equal = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
@@ -176,7 +287,16 @@ def difference(published: Mapping[str, Any], complete: Mapping[str, Any], terms:
 
 
 def remarks(study: FloorStudy) -> list[str]:
-    """Return what a reader of a FloorStudy should know, a sentence each."""
+    """Return what a reader of a part on the floor should know, a sentence each.
+
+    Parameters
+    ----------
+    study : FloorStudy
+
+    Returns
+    -------
+    list of str
+    """
     posture, lines = study.posture, aspect_remark(study)
     if len(posture.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
@@ -200,7 +320,16 @@ def remarks(study: FloorStudy) -> list[str]:
 
 
 def map_remarks(study: FloorStudy) -> list[str]:
-    """Return what a reader of the maps should know, a sentence each."""
+    """Return what a reader of the maps should know, a sentence each.
+
+    Parameters
+    ----------
+    study : FloorStudy
+
+    Returns
+    -------
+    list of str
+    """
     return [line for kind, (over, *_) in MAPS.items() for line in _map_notes(kind, over(study, TABLE_CELLS))]
 
 
@@ -210,7 +339,16 @@ def _map_notes(kind: str, grid: Grid) -> list[str]:
 
 
 def none_slides(grid: Grid) -> str:
-    """Say what a map shows on which nothing slides: of which instant it is, and what happens there."""
+    """Say what a map shows on which nothing slides: of which instant it is, and what happens there.
+
+    Parameters
+    ----------
+    grid : Grid
+
+    Returns
+    -------
+    str
+    """
     words = {"stick": "is held", "tip": "has its line of action outside the contact", "hop": "is in the air"}
     shares = ((words[name], 100 * share) for name, share in grid.shares().items() if name in words)
     outcomes = ", ".join(f"{word} in {share:.3g} %" for word, share in shares if share > 0.0)
@@ -227,22 +365,64 @@ def _alignment(study: FloorStudy) -> dict[str, Any]:
 
 
 def mean_velocity(study: FloorStudy | TrackStudy) -> float | None:
-    """Return that of the cycle [m/s]; None where the part hops, or gets faster with every period."""
+    """Return the mean velocity of the cycle.
+
+    Parameters
+    ----------
+    study : FloorStudy or TrackStudy
+
+    Returns
+    -------
+    float [m/s] or None
+        None where the part hops, or gets faster with every period.
+    """
     return None if HOP in study.cycle.state or not study.course.settled else study.course.mean
 
 
 def aspect_remark(study: FloorStudy | TrackStudy) -> list[str]:
-    """Return which aspect was taken, in one line, where none was asked for."""
+    """Return which aspect was taken, in one line, where none was asked for.
+
+    Parameters
+    ----------
+    study : FloorStudy or TrackStudy
+
+    Returns
+    -------
+    list of str
+        Empty where one was asked for.
+    """
     return [f"Aspect {study.posture.name}, {study.why}"] if study.why else []
 
 
 def drop_rounding(value: Floats | float, scale: Floats | float) -> float:
-    """Return the rounding of an exact zero as zero; ``scale`` is what it came out of."""
+    """Return the rounding of an exact zero as zero.
+
+    Parameters
+    ----------
+    value : float
+    scale : float
+        What it came out of, in the same unit.
+
+    Returns
+    -------
+    float
+    """
     return 0.0 if np.abs(value) <= 1e-9 * max(float(np.abs(scale)), 1e-12) else float(value)
 
 
 def is_tipping(inside: Floats | float) -> bool | None:
-    """Return whether it tips; None where the contact polygon or the contact is missing."""
+    """Tell whether a part tips.
+
+    Parameters
+    ----------
+    inside : float [m]
+        How far its line of action stays inside the contact polygon; negative outside.
+
+    Returns
+    -------
+    bool or None
+        None where the contact polygon or the contact is missing.
+    """
     return None if np.isnan(inside) else bool(inside < -floor_balance.ON_THE_LINE)
 
 
@@ -437,7 +617,17 @@ def arrow(
 
 
 def newtons(force: float) -> str:
-    """Return a force for people."""
+    """Return a force for people.
+
+    Parameters
+    ----------
+    force : float [N]
+
+    Returns
+    -------
+    str
+        In N, below 0.1 N in mN.
+    """
     return f"{force:.3g} N" if force >= 0.1 else f"{1e3 * force:.3g} mN"
 
 
@@ -466,10 +656,28 @@ def regime_map(
     grid: Grid, column: str, *, title: str, labels: Sequence[str], value: str,
     bowl_point: Sequence[float] | None = None, note: Sequence[str] = (), ax: "style.Axes | None" = None,
 ) -> "style.Figure":  # fmt: skip
-    """Draw a column of a Grid in colour with contour lines, and every region where it means something else.
+    """Draw a column of a grid in colour with contour lines, and every region where it means something else.
 
-    ``labels`` are those of the two axes, ``value`` that of the colour bar. ``bowl_point`` is the bowl's own
-    point in the axes' units. Each ``note`` is a line under the title.
+    Parameters
+    ----------
+    grid : Grid
+    column : str
+        Name of its values.
+    title : str
+    labels : sequence of two str
+        Of the axes.
+    value : str
+        Of the colour bar.
+    bowl_point : (float, float), optional
+        The bowl's own, in the units of the axes.
+    note : sequence of str, optional
+        Lines under the title.
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
     """
     figure, axes = style.chart(6.8, 4.8, ax=ax, title=title, x=labels[0], y=labels[1], grid="none")
     x, y, values = grid.first.in_unit, grid.second.in_unit, np.asarray(grid.values[column]).T

@@ -203,7 +203,17 @@ def check_place(folder: Path, mend: str = ANOTHER) -> None:
 
 
 def safe_name(name: str) -> str:
-    """Return a name that any file system takes as one folder."""
+    """Return a name that any file system takes as one folder.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    str
+        With '_' for letters that are refused, and behind a name that is reserved.
+    """
     refused = {*'<>:"/\\|?*', *map(chr, range(32)), *NO_LETTERS}
     letters = "".join("_" if letter in refused else letter for letter in name).rstrip(". ")
     return f"{letters}_" if letters.split(".")[0].upper() in RESERVED or not letters else letters

@@ -25,18 +25,45 @@ SPARE_COLUMNS = (("straight_wall_share",), ("half_turn_of_deg", "mirror_of_deg")
 
 
 def document(study: HeadingsStudy) -> dict[str, Any]:
-    """Return a HeadingsStudy as the JSON document."""
+    """Return stable headings as the JSON document.
+
+    Parameters
+    ----------
+    study : HeadingsStudy
+
+    Returns
+    -------
+    dict
+    """
     headings, bowl = study.table(), texts(study.bowl.settings)
     return {"part": study.part.name, "answer": study.answer, "headings": headings, "bowl": bowl}
 
 
 def answer(study: HeadingsStudy) -> str:
-    """Say whose probabilities of the aspects a HeadingsStudy takes."""
+    """Say whose probabilities of the aspects are taken.
+
+    Parameters
+    ----------
+    study : HeadingsStudy
+
+    Returns
+    -------
+    str
+    """
     return f"Aspect share: {study.answer}"
 
 
 def remarks(study: HeadingsStudy) -> list[str]:
-    """Return what a reader of a HeadingsStudy should know, a sentence each."""
+    """Return what a reader of stable headings should know, a sentence each.
+
+    Parameters
+    ----------
+    study : HeadingsStudy
+
+    Returns
+    -------
+    list of str
+    """
     lines, width = list(small_part_remarks(study.part, {}, study.track.width)), study.track.width / MM
     for stable in study.headings:
         if stable.rounded:
@@ -47,7 +74,16 @@ def remarks(study: HeadingsStudy) -> list[str]:
 
 
 def offers(study: HeadingsStudy) -> list[offer.Offer]:
-    """Offer the files of a HeadingsStudy."""
+    """Offer the files of stable headings, with a picture for each aspect.
+
+    Parameters
+    ----------
+    study : HeadingsStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     offered = [offer.document("headings.json", document, study), offer.table("headings.csv", study.table)]
     for posture, stable in zip(study.postures, study.headings):
         alt = f"Stable headings of aspect {posture.name} from above"
@@ -64,7 +100,21 @@ NARROWEST = 0.4  # half a picture's width, over its height above the foot
 
 
 def headings(posture: Posture, stable: Headings, track: Track, title: str) -> "style.Figure":
-    """Draw the part in each stable heading, the wall below, the track's free edge dashed."""
+    """Draw the part in each stable heading, the wall below, the track's free edge dashed.
+
+    Parameters
+    ----------
+    posture : Posture
+    stable : Headings
+        Of that posture.
+    track : Track
+    title : str
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The first ``MAX_PANELS`` of them.
+    """
     count = min(len(stable.headings), MAX_PANELS)
     columns, lines = min(PANELS_ACROSS, count), -(-count // PANELS_ACROSS)
     figure = style.figure(max(columns * SIDE, 2 * SIDE), lines * SIDE + 0.6)

@@ -15,7 +15,17 @@ from feederscrew.studies.aspects import INERTIA_COLUMNS, InertiaStudy
 
 
 def document(study: InertiaStudy) -> dict[str, Any]:
-    """Return everything ``feeder inertia`` says, by names with units; None where a card is silent."""
+    """Return everything ``feeder inertia`` says, by names with units.
+
+    Parameters
+    ----------
+    study : InertiaStudy
+
+    Returns
+    -------
+    dict
+        None where a card is silent.
+    """
     facts = part_facts.part(study.part)
     warnings = facts.pop("warnings")
     return facts | values(INERTIA_COLUMNS, study) | {"warnings": warnings}
@@ -69,21 +79,53 @@ def _axis(study: InertiaStudy, place: int) -> Vector:
 
 
 def rows(study: InertiaStudy) -> Frame:
-    """Return the numbers of a part, one a row: ``quantity`` and ``value``; NaN where a card is silent."""
+    """Return the numbers of a part, one a row.
+
+    Parameters
+    ----------
+    study : InertiaStudy
+
+    Returns
+    -------
+    Frame
+        Columns ``quantity`` and ``value``; NaN where a card is silent.
+    """
     numbers = values(QUANTITIES, study)
     listed = {"quantity": list(numbers), "value": [np.nan if v is None else v for v in numbers.values()]}
     return Frame.of(listed, {"value": ColumnHead("value", is_mixed=True)})
 
 
 def facts(study: InertiaStudy, names: Sequence[str]) -> Frame:
-    """Return some numbers of a part for people: quantities with their units, and values."""
+    """Return some numbers of a part for people: quantities with their units, and values.
+
+    Parameters
+    ----------
+    study : InertiaStudy
+    names : sequence of str
+        Of the quantities, 'mass_g'.
+
+    Returns
+    -------
+    Frame
+    """
     chosen = [column for column in QUANTITIES if column.name in names]
     numbers = values(chosen, study).values()
     return quantities((column.head.title, value) for column, value in zip(chosen, numbers))
 
 
 def offers(study: InertiaStudy, format: str = "csv") -> list[offer.Offer]:
-    """Offer the mass properties of a part: a document for the format 'json', else a table."""
+    """Offer the mass properties of a part.
+
+    Parameters
+    ----------
+    study : InertiaStudy
+    format : str
+        'json' for a document, else a table.
+
+    Returns
+    -------
+    list of Offer
+    """
     if format == "json":
         return [offer.document("inertia.json", document, study)]
     return [offer.table("inertia.csv", rows, study)]

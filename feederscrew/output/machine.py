@@ -28,10 +28,21 @@ def offers(
     study: MachineSheet, trial: Verified | None = None, mark: str | None = None,
     fields: marking.SheetFields | None = None,
 ) -> tuple[offer.Offer, ...]:  # fmt: skip
-    """Return the files of a MachineSheet, its drawings with date and revision of ``fields`` (SheetFields).
+    """Return the files of a machine.
 
-    ``trial`` is what a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is
-    marked. ``mark`` stands across every drawing in place of the trial's.
+    Parameters
+    ----------
+    study : MachineSheet
+    trial : Verified, optional
+        What a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is marked.
+    mark : str, optional
+        Stands across every drawing in place of the trial's.
+    fields : SheetFields, optional
+        Date and revision of the drawings.
+
+    Returns
+    -------
+    tuple of Offer
     """
 
     def document_with_trial() -> dict[str, Any]:
@@ -188,12 +199,32 @@ def emptying(study: MachineSheet) -> Frame:
 
 
 def summary(study: MachineSheet, trial: Verified | None = None) -> Frame:
-    """Return the record as a frame for people: the quotation sheet, with what was tried, or the machine."""
+    """Return the machine as a frame for people: the quotation sheet, with what was tried, or the machine.
+
+    Parameters
+    ----------
+    study : MachineSheet
+    trial : Verified, optional
+        That a bowl file records of exactly this bowl.
+
+    Returns
+    -------
+    Frame
+    """
     return Frame.of_rows(sheets.quotation(study, trial), ("quantity", "value"))
 
 
 def measured_summary(condition: MeasuredMachine) -> Frame:
-    """Return what was measured beside what should be, and the likely cause, as a table."""
+    """Return what was measured beside what should be, and the likely cause, as a table.
+
+    Parameters
+    ----------
+    condition : MeasuredMachine
+
+    Returns
+    -------
+    Frame
+    """
     should, stroke = condition.should, condition.stroke
     pairs = (
         ("stroke, peak to peak [mm]", should["stroke"] / MM, stroke and stroke / MM),

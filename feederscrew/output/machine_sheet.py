@@ -63,7 +63,17 @@ def quotation(study: MachineSheet, trial: Verified | None = None) -> list[dict[s
 
 
 def two_axis(drive: Drive) -> str:
-    """Return what a drive out of phase is and needs, as text; '' of a leaf-spring drive."""
+    """Return what a drive out of phase is and needs, as text.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    str
+        '' of a leaf-spring drive.
+    """
     if not drive_sizing.is_two_axis(drive):
         return ""
     return f"{drive_sizing.TWO_AXIS}, phase {drive.phase / DEG:.4g} deg: {drive_sizing.TWO_MAGNETS}"
@@ -137,13 +147,31 @@ def _trial_rows(trial: Verified | None) -> Pairs:
 
 
 def rate_of_trial(trial: Verified) -> str:
-    """Return what a trial has delivered as text for titles and drawings."""
+    """Return what a trial has delivered as text for titles and drawings.
+
+    Parameters
+    ----------
+    trial : Verified
+
+    Returns
+    -------
+    str
+    """
     value, low = (f"{end / PER_MINUTE:.4g}" for end in (trial.delivered, trial.low))
     return f"{value}/min, at least {low}: {trial.status}"
 
 
 def material(part: Part) -> str:
-    """Return what a part is made of, as text: 'steel assumed' where neither file nor user says it."""
+    """Return what a part is made of, as text: 'steel assumed' where neither file nor user says it.
+
+    Parameters
+    ----------
+    part : Part
+
+    Returns
+    -------
+    str
+    """
     return "steel assumed" if part.material == DEFAULT_MATERIAL else part.material
 
 
@@ -160,7 +188,17 @@ def _fill_rows(study: MachineSheet) -> Pairs:
 
 
 def supply(frequency: float) -> str:
-    """Return the mains and waves that give a frequency [Hz], as text."""
+    """Return the mains and waves that give a frequency, as text.
+
+    Parameters
+    ----------
+    frequency : float [Hz]
+
+    Returns
+    -------
+    str
+        A frequency converter where none does.
+    """
     for mains in MAINS:
         for wave, times in (("half wave", 1.0), ("full wave", 2.0)):
             if abs(frequency - times * mains) < 1e-6:
@@ -258,7 +296,17 @@ class SpringBanks:
 
 
 def spring_banks(bowl: Bowl) -> SpringBanks:
-    """Return the banks of the leaf springs of a bowl."""
+    """Return the banks of the leaf springs of a bowl.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    SpringBanks
+        Spread evenly about the bowl; the first ones have a leaf more where they are not equal.
+    """
     leaves, banks = int(bowl.machine.leaves), int(bowl.sizing.banks)
     counts = tuple(leaves // banks + (k < leaves % banks) for k in range(banks))
     angles = tuple(float(0.5 * np.pi + 2.0 * np.pi * k / banks) for k in range(banks))
@@ -266,7 +314,16 @@ def spring_banks(bowl: Bowl) -> SpringBanks:
 
 
 def leaf_words(machine: Machine) -> str:
-    """Return width, thickness and length [mm] of a leaf, as text."""
+    """Return width, thickness and length [mm] of a leaf, as text.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    str
+    """
     return " x ".join(
         f"{getattr(machine, f'leaf_{side}') / MM:.3g}" for side in ("width", "thickness", "length")
     )

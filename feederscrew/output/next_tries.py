@@ -1,4 +1,4 @@
-"""What to try after a design, as commands to paste, each with its reason."""
+"""Calls to paste after a design, each with its reason."""
 
 from typing import Any
 

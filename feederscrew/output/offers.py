@@ -45,11 +45,31 @@ class FileStore(Protocol):
     left_out: list[str]  # files that an interrupt has left out
 
     def write(self, name: str, content: str | bytes) -> None:
-        """Take one file, text or bytes."""
+        """Take one file.
+
+        Parameters
+        ----------
+        name : str
+        content : str or bytes
+        """
 
 
 def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
-    """Offer a CSV file; ``make`` returns the frame, or its columns as a dict, of the other arguments."""
+    """Offer a CSV file.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    make : callable
+        Returns the frame, or its columns as a dict, of the other arguments.
+    *arguments, **keywords
+        For ``make``.
+
+    Returns
+    -------
+    Offer
+    """
 
     def view() -> Any:
         content = make(*arguments, **keywords)
@@ -59,28 +79,81 @@ def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any)
 
 
 def document(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
-    """Offer a JSON file; ``make`` returns the document."""
+    """Offer a JSON file.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    make : callable
+        Returns the document of the other arguments.
+    *arguments, **keywords
+        For ``make``.
+
+    Returns
+    -------
+    Offer
+    """
     view = partial(make, *arguments, **keywords)
     return Offer(name, lambda: tables.json_text(view()), view=view)
 
 
 def text(name: str, make: Callable[..., str | bytes], *arguments: Any, **keywords: Any) -> Offer:
-    """Offer a file of text or of bytes as ``make`` returns it."""
+    """Offer a file of text or of bytes.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    make : callable
+        Returns what is in it, of the other arguments.
+    *arguments, **keywords
+        For ``make``.
+
+    Returns
+    -------
+    Offer
+    """
     return Offer(name, partial(make, *arguments, **keywords))
 
 
 def picture(name: str, alt: str, draw: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
-    """Offer a PNG of what ``alt`` says; ``draw`` returns the figure of the other arguments."""
+    """Offer a PNG.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    alt : str
+        What the picture shows, in words.
+    draw : callable
+        Returns the figure of the other arguments.
+    *arguments, **keywords
+        For ``draw``.
+
+    Returns
+    -------
+    Offer
+    """
     view = partial(draw, *arguments, **keywords)
     return Offer(name, lambda: style.png(view()), alt, view)
 
 
 def write(folder: FileStore | None, files: Iterable[Offer], *, pictures: bool = True, jobs: int = 1) -> None:
-    """Make every file offered and hand it to a ResultFolder, the numbers first; nothing without a folder.
+    """Make every file offered and hand it to a folder, the numbers first.
 
-    An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out``
-    names them, and the tables are kept. Without ``pictures`` only tables and documents are made. With two
-    ``jobs`` or more pages and pictures are made beside the rest, the same bytes.
+    An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out`` names
+    them, and the tables are kept.
+
+    Parameters
+    ----------
+    folder : FileStore or None
+        A ResultFolder, or one of tests; nothing is made without one.
+    files : iterable of Offer
+    pictures : bool, optional
+        Without them only tables and documents are made.
+    jobs : int, optional
+        With two or more, pages and pictures are made beside the rest, the same bytes.
     """
     if folder is None:
         return
@@ -146,5 +219,14 @@ def _made(offer: Offer) -> str | bytes | None:
 
 
 def by_name(files: Iterable[Offer]) -> dict[str, Offer]:
-    """Return the offers of a subject by the names of their files."""
+    """Return the offers of a subject by the names of their files.
+
+    Parameters
+    ----------
+    files : iterable of Offer
+
+    Returns
+    -------
+    dict of str to Offer
+    """
     return {offer.name: offer for offer in files}

@@ -1,4 +1,4 @@
-"""What every document says of its part, in units of the shop: mm, g, degrees."""
+"""Facts of a part that every document says, in units of the shop: mm, g, degrees."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -11,10 +11,30 @@ UJ = factor("uJ", "energy")
 
 
 def part(solid: Part, warnings: Iterable[str] = ()) -> dict[str, Any]:
-    """Return what every document says of its part; ``warnings`` are those since it was read."""
+    """Return what every document says of its part.
+
+    Parameters
+    ----------
+    solid : Part
+    warnings : iterable of str, optional
+        Those since it was read.
+
+    Returns
+    -------
+    dict
+    """
     return values(PART_COLUMNS, solid) | {"warnings": [*solid.warnings, *warnings]}
 
 
 def conditions(solid: Part) -> dict[str, Any]:
-    """Return what was assumed of a part, for ``run.json``."""
+    """Return what was assumed of a part, for ``run.json``.
+
+    Parameters
+    ----------
+    solid : Part
+
+    Returns
+    -------
+    dict
+    """
     return values(CONDITION_COLUMNS, solid)

@@ -34,14 +34,33 @@ LABELLED = 0.02  # share of the parts from which an aspect carries its name, or 
 
 
 def spare(frame: Frame) -> list[tuple[str, ...]]:
-    """Return groups of columns to leave out of a table for people that is too wide; empty ones go first."""
+    """Return groups of columns to leave out of a table for people that is too wide; empty ones go first.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of a PlateStudy.
+
+    Returns
+    -------
+    list of tuple of str
+    """
     limit = ("p_limit", "p_limit_low", "p_limit_high")
     groups = [limit, ("height_mm",), ("throw_number",), ("p_start",)]
     return groups if np.isnan(frame["p_limit"]).all() else groups[1:] + groups[:1]
 
 
 def summary(study: PlateStudy) -> Iterator[str]:
-    """Yield how fast parts travel on each plate, a line each."""
+    """Yield how fast parts travel on each plate, a line each.
+
+    Parameters
+    ----------
+    study : PlateStudy
+
+    Yields
+    ------
+    str
+    """
     for plate, name in zip(study.plates, study.names):
         yield f"{_where(plate, name)}: {_travels(plate, 4)}, {plate.transitions} transitions seen"
 
@@ -52,7 +71,16 @@ def _travels(result: PlateResult, digits: int) -> str:
 
 
 def document(study: PlateStudy) -> dict[str, Any]:
-    """Return the test as one JSON document."""
+    """Return a dynamic bowl test as one JSON document.
+
+    Parameters
+    ----------
+    study : PlateStudy
+
+    Returns
+    -------
+    dict
+    """
     listed = [
         values(PLATE_TEST_COLUMNS, plate)
         | {"aspects": of_arrays(PLATE_COLUMNS, plate), "rates": of_arrays(PLATE_RATE_COLUMNS, plate)}
@@ -68,7 +96,16 @@ def document(study: PlateStudy) -> dict[str, Any]:
 
 
 def remarks(study: PlateStudy) -> list[str]:
-    """Return what a user must know of a test, a line each."""
+    """Return what a user must know of a test, a line each.
+
+    Parameters
+    ----------
+    study : PlateStudy
+
+    Returns
+    -------
+    list of str
+    """
     listed = []
     for _, plate, name in study.each:
         where = _where(plate, name)
@@ -88,7 +125,16 @@ def remarks(study: PlateStudy) -> list[str]:
 
 
 def notes(bowls: Sequence[Bowl]) -> Iterator[str]:
-    """Return what is simplified in a bowl's plate, a line each."""
+    """Yield what is simplified in a bowl's plate, a line each.
+
+    Parameters
+    ----------
+    bowls : sequence of Bowl
+
+    Yields
+    ------
+    str
+    """
     if any(bowl.friction.kinetic < bowl.friction.static for bowl in bowls):
         yield "the plate has one coefficient of friction: the kinetic one, for sticking too"
     if any(bowl.friction.backward != (bowl.friction.static, bowl.friction.kinetic) for bowl in bowls):
@@ -100,7 +146,16 @@ def _where(result: PlateResult, name: str) -> str:
 
 
 def offers(study: PlateStudy) -> list[offer.Offer]:
-    """Offer the tables of a dynamic bowl test, its document and its chart."""
+    """Offer the tables of a dynamic bowl test, its document and its chart.
+
+    Parameters
+    ----------
+    study : PlateStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     draw = _plate_figure if len(study.plates) == 1 else _trend  # over time, or over the throw number
     return [
         offer.table("plate.csv", study.table),
@@ -181,7 +236,18 @@ def _trend(study: PlateStudy) -> "Figure":
 
 
 def label_strokes(axes: "Axes", x: Floats, results: Sequence[PlateResult], names: Sequence[str]) -> None:
-    """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
+    """Draw the stroke of each plate over its point, and the bowl's name where there are several.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    x : (N,) array
+        Of each plate, in the unit of the axis.
+    results : sequence of PlateResult
+        N of them.
+    names : sequence of str
+        Of the bowls, N.
+    """
     for at, result, name in zip(x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
         text = f"{name} {stroke}" if len(set(names)) > 1 else stroke

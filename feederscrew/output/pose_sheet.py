@@ -32,7 +32,17 @@ CAPTION_LETTERS, CAPTION_LINES = 33, 3  # below a picture
 
 
 def part_on_track(orientation: Orientation) -> tuple[Points, Triangles]:
-    """Return a part in its pose: corners (V, 3) [m] ahead, from the wall and over the track; faces (F, 3)."""
+    """Return a part in its pose over the track, of few facets.
+
+    Parameters
+    ----------
+    orientation : Orientation
+
+    Returns
+    -------
+    (V, 3) array [m], (F, 3) array of int
+        Corners ahead, from the wall and over the track; faces.
+    """
     posture = orientation.posture
     corners = vectors.product(orientation.solid.corners, orientation.axes.T)
     corners = corners + [0.0, orientation.distance, posture.height]

@@ -109,7 +109,17 @@ def on_track(lying: Posture, heading: float) -> Floats:
 
 
 def bare_track(points: Floats) -> Mesh:
-    """Return the track and the wall about a part (V, 3) [m] as a mesh, with an arrow ahead of the part."""
+    """Return the track and the wall about a part as a mesh, with an arrow ahead of the part.
+
+    Parameters
+    ----------
+    points : (V, 3) array [m]
+        Corners of the part as it lies, its heading along x.
+
+    Returns
+    -------
+    Mesh
+    """
     (left, wall, low), (right, edge, top) = points.min(axis=0), points.max(axis=0)
     long = max(right - left, edge - wall)
     begin, end = left - ASIDE * long, right + (AHEAD + ASIDE) * long

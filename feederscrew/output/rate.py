@@ -26,7 +26,16 @@ SCARCE = 0.25  # share of the parts at the entry that stay on the track, below w
 
 
 def document(study: RateStudy) -> dict[str, Any]:
-    """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
+    """Return a rate as the JSON document: the part, the rate and every factor of its chain.
+
+    Parameters
+    ----------
+    study : RateStudy
+
+    Returns
+    -------
+    dict
+    """
     warnings = (*study.aspects.warnings, *study.of_size, *_jam_remarks(study), *_spacing_remarks(study))
     return {
         **part_facts.part(study.part, warnings),
@@ -36,7 +45,17 @@ def document(study: RateStudy) -> dict[str, Any]:
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
-    """Return the document as a frame for people: the chain from velocity to rate."""
+    """Return the document as a frame for people: the chain from velocity to rate.
+
+    Parameters
+    ----------
+    document : mapping
+        Of ``document``, with a block ``verified`` where a trial leads.
+
+    Returns
+    -------
+    Frame
+    """
     d, tried = document, document.get("verified")
 
     def ends(d: Mapping[str, Any], name: str, scale: float = 1.0) -> str:
@@ -73,7 +92,16 @@ def summary(document: Mapping[str, Any]) -> Frame:
 
 
 def remarks(study: RateStudy) -> list[str]:
-    """Return what a reader of a RateStudy must not overlook, a sentence each."""
+    """Return what a reader of a rate must not overlook, a sentence each.
+
+    Parameters
+    ----------
+    study : RateStudy
+
+    Returns
+    -------
+    list of str
+    """
     chain, orientations = study.rate, study.rate.orientations
     if chain.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
@@ -155,7 +183,16 @@ def _spacing_remarks(study: RateStudy) -> list[str]:
 
 
 def offers(study: RateStudy) -> list[offer.Offer]:
-    """Offer the files of a RateStudy, as a list of Offer."""
+    """Offer the files of a rate.
+
+    Parameters
+    ----------
+    study : RateStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     return [
         offer.document("rate.json", document, study),
         offer.table("orientations.csv", study.orientations_table),
@@ -168,7 +205,16 @@ TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
 
 
 def tune_document(study: TuneStudy) -> dict[str, Any]:
-    """Return a TuneStudy as the JSON document."""
+    """Return the settings that give a rate as the JSON document.
+
+    Parameters
+    ----------
+    study : TuneStudy
+
+    Returns
+    -------
+    dict
+    """
     return part_facts.part(study.part, study.aspects.warnings) | {
         "target_per_minute": study.target / PER_MINUTE,
         "target_met": TARGET_FRICTION[study.worst],
@@ -177,7 +223,18 @@ def tune_document(study: TuneStudy) -> dict[str, Any]:
 
 
 def tune_printed(study: TuneStudy, format: str) -> Frame:
-    """Return what a format prints: every column as CSV, for people no more than a terminal holds."""
+    """Return what a format prints: every column as CSV, for people no more than a terminal holds.
+
+    Parameters
+    ----------
+    study : TuneStudy
+    format : str
+        'csv' or 'table'.
+
+    Returns
+    -------
+    Frame
+    """
     frame = study.table()
     if format == "csv":
         return frame
@@ -198,7 +255,16 @@ def tune_printed(study: TuneStudy, format: str) -> Frame:
 
 
 def tune_remarks(study: TuneStudy) -> list[str]:
-    """Return what a reader must not overlook: parts that are turned over, and targets that are passed."""
+    """Return what a reader must not overlook: parts that are turned over, and targets that are passed.
+
+    Parameters
+    ----------
+    study : TuneStudy
+
+    Returns
+    -------
+    list of str
+    """
     lines = []
     for solution, over in ((tuned.solution, tuned.over) for tuned in study.settings if tuned.over):
         at = f"at {solution.key.name} {solution.number:.6g} {solution.key.unit}"
@@ -212,7 +278,16 @@ def tune_remarks(study: TuneStudy) -> list[str]:
 
 
 def tune_offers(study: TuneStudy) -> list[offer.Offer]:
-    """Offer the files of a TuneStudy, as a list of Offer."""
+    """Offer the files of the settings that give a rate.
+
+    Parameters
+    ----------
+    study : TuneStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     return [
         offer.document("tune.json", tune_document, study),
         offer.table("tune.csv", study.table),

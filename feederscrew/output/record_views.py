@@ -64,7 +64,17 @@ VIEW_PX = 360, 280  # [px] of a part
 
 
 def answer(record: object) -> str | None:
-    """Return what a record answers, without its class: 'bracket: A 42 %, B 17 %'; None of another class."""
+    """Return what a record answers, without its class: 'bracket: A 42 %, B 17 %'.
+
+    Parameters
+    ----------
+    record : object
+
+    Returns
+    -------
+    str or None
+        None of a class without such a line.
+    """
     line = _view_of(record).line
     return None if line is None else line(record)
 
@@ -331,7 +341,18 @@ def _view_of(record: object) -> RecordView:
 
 
 def frame(record: object, name: str | None = None) -> "DataFrame":
-    """Return a table of a record as a DataFrame; of one that is no study its numbers in SI units."""
+    """Return a table of a record; of one that is no study its numbers in SI units.
+
+    Parameters
+    ----------
+    record : object
+    name : str, optional
+        Of the table, where there are several.
+
+    Returns
+    -------
+    pandas.DataFrame
+    """
     offered = _views_of(record, ".csv")
     if name is not None or offered:
         return tables.data_frame(_choose_view(record, offered, name, "table")())
@@ -350,6 +371,14 @@ def row(record: object) -> "DataFrame":
     """Return a record in one row: the numbers and words of the document that its command writes.
 
     Of a record without such a document it is its table.
+
+    Parameters
+    ----------
+    record : object
+
+    Returns
+    -------
+    pandas.DataFrame
     """
     numbers = _document_numbers(record)
     return tables.data_frame(Frame.of({k: [v] for k, v in numbers.items()})) if numbers else frame(record)

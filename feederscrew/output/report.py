@@ -125,7 +125,16 @@ BESIDE = "report/"  # folder of the pictures, beside the text
 
 
 def the_part(case: ReportStudy) -> Chapter:
-    """Mass properties and warnings."""
+    """Return mass properties and warnings.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     part = case.part
     facets = "a part card: published data, no shape" if part.faces is None else f"{len(part.faces)} facets"
     lead = Text(f"{part.source}: {facets}, lengths in {part.units}. Material: {part.material}.")
@@ -133,7 +142,16 @@ def the_part(case: ReportStudy) -> Chapter:
 
 
 def aspects(case: ReportStudy) -> Chapter:
-    """Views, tables and chart of the aspects: one table of shapes and heights, one of probabilities."""
+    """Return views, tables and chart of the aspects: one table of shapes and heights, one of probabilities.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     part, study = case.part, case.resting
     table = study.table()
     views: list[Block] = list(aspect_views(part, study))
@@ -160,7 +178,17 @@ def aspects(case: ReportStudy) -> Chapter:
 
 
 def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
-    """Yield the views of a part on each aspect, to be turned, and what is simplified of its surface."""
+    """Yield the views of a part on each aspect, to be turned, and what is simplified of its surface.
+
+    Parameters
+    ----------
+    part : Part
+    study : AspectsStudy
+
+    Yields
+    ------
+    Views or Text
+    """
     if part.vertices is None:
         text = "A part card is published data without a shape: there is nothing to draw or to turn."
         yield Text(text, quiet=True)
@@ -200,7 +228,17 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
 
 
 def quaternion(axes: Floats) -> list[float]:
-    """Return a rotation matrix as (x, y, z, w) for the viewer."""
+    """Return a rotation matrix as a quaternion for the viewer.
+
+    Parameters
+    ----------
+    axes : (3, 3) array
+
+    Returns
+    -------
+    list of float
+        (x, y, z, w)
+    """
     return [short(q) for q in Rotation.from_matrix(np.array(axes)).as_quat(canonical=True)]
 
 
@@ -214,7 +252,16 @@ TIPPING_COLUMNS: tuple[Column[Aspects], ...] = (
 
 
 def tips(case: ReportStudy) -> Chapter:
-    """The tipping graph, from exact tumbling."""
+    """Return the tipping graph, from exact tumbling.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     study, sides, ways = case.resting, case.resting.aspects, case.resting.transitions
     rows = np.flatnonzero(sides.stable)[: aspects_output.MOST_GRAPH_ASPECTS]
     shares = np.where(sides.stable, sides.probabilities["quasistatic"], np.nan)
@@ -234,7 +281,16 @@ def tips(case: ReportStudy) -> Chapter:
 
 
 def headings(case: ReportStudy) -> Chapter:
-    """Return how the part lies along the wall."""
+    """Return how the part lies along the wall.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     study = case.headings
     result = study.table()
     lead = Text(
@@ -247,7 +303,16 @@ def headings(case: ReportStudy) -> Chapter:
 
 
 def convey(case: ReportStudy) -> Chapter:
-    """Operating point and velocity, the drive as knobs, and the map of velocities."""
+    """Return operating point and velocity, the drive as knobs, and the map of velocities.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     study, mapped = case.convey, case.velocity_map
     d = convey_output.document(study)
     blocks: list[Block] = [Table(convey_output.summary(d))]
@@ -277,7 +342,16 @@ def convey(case: ReportStudy) -> Chapter:
 
 
 def rate(case: ReportStudy) -> Chapter:
-    """Well-oriented parts a minute."""
+    """Return well-oriented parts a minute.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     study, tried = case.rate, bowls.verified(case.path)
     own = case.part, case.bowl, study.rate.orientations.lying[study.rate.row].name
     d = proof.with_trial(rate_output.document(study), tried, *own)
@@ -300,7 +374,16 @@ def rate(case: ReportStudy) -> Chapter:
 
 
 def track(case: ReportStudy) -> Chapter:
-    """Reactions on the track, against the wall."""
+    """Return reactions on the track, against the wall.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     study = case.track
     grid, lying, row = study.over(case.settings), study.headings, study.row
     table = Table(track_output.summary(track_output.document(study)))
@@ -315,7 +398,16 @@ def track(case: ReportStudy) -> Chapter:
 
 
 def on_track(case: ReportStudy) -> str:
-    """Return what a part does on the track."""
+    """Return what a part does on the track, in sentences.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    str
+    """
     answer, stands = case.convey.answer, case.track.stands
     if answer.unsteady == UnsteadyMotion.KEEPS_SPEED:
         return "Without friction on a level track a part keeps whatever speed it has: it does not travel."
@@ -331,7 +423,16 @@ def on_track(case: ReportStudy) -> str:
 
 
 def floor(case: ReportStudy) -> Chapter:
-    """Forces and regimes on the bowl's floor."""
+    """Return forces and regimes on the bowl's floor.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     study = case.floor
     lead = Text(
         f"Aspect {study.posture.name}, heading {np.degrees(study.heading):.4g} deg, at the upper reversal of "
@@ -344,14 +445,34 @@ def floor(case: ReportStudy) -> Chapter:
 
 
 def slide(case: ReportStudy) -> Chapter:
-    """When a part slips, over its heading and the drive."""
+    """Return when a part slips, over its heading and the drive.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     study = case.slide
     pictures = _pictures_of(slide_output.offers(study), "slide_regimes", "slide_contours")
     return Chapter((*_notes(slide_output.remarks(study)), Table(slide_output.summary(study.maps)), *pictures))
 
 
 def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
-    """Return a lead and the knobs of a report's bowl; one sentence where its drive has a second harmonic."""
+    """Return a lead and the knobs of a report's bowl; one sentence where its drive has a second harmonic.
+
+    Parameters
+    ----------
+    case : ReportStudy
+    rate : Rate or None
+        Whose factors the knobs keep; without one they show no rate.
+
+    Returns
+    -------
+    list of Text or Knobs
+    """
     if case.bowl.drive.second_harmonic:
         text = "The drive has a second harmonic, which the knobs do not know: feeder convey computes it."
         return [Text(text, quiet=True)]
@@ -408,7 +529,17 @@ def bowl_values(bowl: Bowl) -> dict[str, float]:
 
 
 def tooling(case: ReportStudy) -> Chapter | None:
-    """Where each orientation passes or falls; None in a bowl without devices."""
+    """Return where each orientation passes or falls.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter or None
+        None in a bowl without devices.
+    """
     study = case.passages
     if study is None:
         return None
@@ -433,10 +564,20 @@ def tooling(case: ReportStudy) -> Chapter | None:
 
 
 def over_cuts(part: Part, passages: Sequence[Passage], orientations: Sequence[Orientation]) -> dict[str, Any]:
-    """Return what the viewer draws of a part with a mesh over the cuts of a track: a pose for a Passage.
+    """Return what the viewer draws of a part over the cuts of a track, a pose for each passage.
 
-    ``tracks`` are the sections in mm, ahead, inwards and up from the foot of the centre of mass;
-    ``reach`` is how far the view goes, in radii of the part.
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    passages : sequence of Passage
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    dict
+        ``tracks`` are the sections in mm, ahead, inwards and up from the foot of the centre of mass;
+        ``reach`` is how far the view goes, in radii of the part.
     """
     tracks = [shading.track(*tooling_views.track_below(passage, orientations)) for passage in passages]
     poses = []
@@ -460,7 +601,17 @@ def over_cuts(part: Part, passages: Sequence[Passage], orientations: Sequence[Or
 
 
 def trial(case: ReportStudy) -> Chapter | None:
-    """Parts that were sent along the track one by one; None where no trial was asked for."""
+    """Return parts that were sent along the track one by one.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter or None
+        None where no trial was asked for.
+    """
     study = case.trial
     if study is None:
         return None
@@ -479,7 +630,17 @@ def trial(case: ReportStudy) -> Chapter | None:
 
 
 def columns(counts: Ints) -> list[str]:
-    """Return the columns of a trial's table that a page has room for: a fate has one where a part met it."""
+    """Return the columns of a trial's table that a page has room for: a fate has one where a part met it.
+
+    Parameters
+    ----------
+    counts : (M, F) array of int
+        Parts of each orientation by their fate.
+
+    Returns
+    -------
+    list of str
+    """
     met = counts.sum(axis=0)
     fates = [fate.word for fate in Fate if met[fate] or fate is Fate.PASSED]
     went = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")
@@ -487,7 +648,17 @@ def columns(counts: Ints) -> list[str]:
 
 
 def bowl(case: ReportStudy) -> Chapter | None:
-    """Bowl, springs and drift: of a target, or of the machine in the bowl file; None without either."""
+    """Return bowl, springs and drift: of a target, or of the machine in the bowl file.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter or None
+        None without either.
+    """
     sheet = case.machine
     if sheet is None:
         return None
@@ -529,7 +700,16 @@ def bowl(case: ReportStudy) -> Chapter | None:
 
 
 def how_to_repeat(case: ReportStudy) -> Chapter:
-    """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
+    """Return the inputs: command, files, bowl values, versions, and the table of aspects to the last digit.
+
+    Parameters
+    ----------
+    case : ReportStudy
+
+    Returns
+    -------
+    Chapter
+    """
     hashes = Frame.of({"input": list(case.inputs), "sha256": list(case.inputs.values())})
     versions = {"feeder": __version__, "python": platform.python_version()}
     versions |= {name: metadata.version(name) for name in LIBRARIES}
@@ -645,7 +825,16 @@ def _short(value: float) -> str:
 
 
 def percent(share: float) -> str:
-    """Return a share as a percentage without its sign."""
+    """Return a share as a percentage without its sign.
+
+    Parameters
+    ----------
+    share : float [1]
+
+    Returns
+    -------
+    str
+    """
     return _short(100.0 * share)
 
 

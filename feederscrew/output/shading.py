@@ -151,16 +151,39 @@ class Camera:
         return u * right + v * above + SINGLE_PRECISION(AWAY) * to_viewer
 
     def meet(self, solid: Rays, across: Array, up: Array) -> tuple[Array, Array, Array]:
-        """Return depths behind the ray starts, normals and facets over a grid.
+        """Return what rays meet over a grid of the image.
 
-        (rows, columns), (rows, columns, 3) and (rows, columns) int, ``MISSED`` where nothing is met.
+        Parameters
+        ----------
+        solid : Rays
+        across : (C,) array
+            Image positions, in sizes of the solid.
+        up : (R,) array
+            The same.
+
+        Returns
+        -------
+        depths, normals, facets : (R, C), (R, C, 3) and (R, C) int arrays
+            Depths lie behind the starts of the rays; facets are ``MISSED`` where nothing is met.
         """
         grid = len(up), len(across)
         distances, normals, facets = self.meet_at(solid, *np.meshgrid(across, up))
         return distances.reshape(grid), normals.reshape(*grid, 3), facets.reshape(grid)
 
     def meet_at(self, solid: Rays, across: Array, up: Array) -> tuple[Array, Array, Array]:
-        """Return depths, normals and facets, flat, at image positions (...), in sizes of the solid."""
+        """Return what rays meet at image positions.
+
+        Parameters
+        ----------
+        solid : Rays
+        across, up : (...) array
+            In sizes of the solid.
+
+        Returns
+        -------
+        depths, normals, facets : (N,), (N, 3) and (N,) int arrays
+            Flat, as ``Rays.hits`` returns them.
+        """
         return solid.hits(self.origins(across, up).reshape(-1, 3), -self.towards_viewer)
 
     def sees(self, solid: Rays, points: Array, slack: float = 0.01, away: float = AWAY) -> Bools:
@@ -305,7 +328,17 @@ def stance_along(points: Points, down: Vector, height: float, along: Vector) -> 
 
 
 def outer_points(points: Array) -> Array:
-    """Return a few thousand of (V, 3) points that reach about as far: the farthest in each direction."""
+    """Return a few thousand points that reach about as far as all: the farthest in each direction.
+
+    Parameters
+    ----------
+    points : (V, 3) array
+
+    Returns
+    -------
+    (K, 3) array
+        All of them where they are few.
+    """
     if len(points) <= MAX_QUICK_POINTS:
         return points
     radii = np.linalg.norm(points, axis=1)
@@ -338,7 +371,18 @@ class Shot:
         return self.left, right, self.bottom, top
 
     def positions(self, each: int = 1) -> tuple[Array, Array]:
-        """Return the image positions, ``each`` a pixel: across from the left, up from the top row down."""
+        """Return the image positions of pixels.
+
+        Parameters
+        ----------
+        each : int, optional
+            A pixel, both ways.
+
+        Returns
+        -------
+        (C,) array, (R,) array
+            Across from the left, and up from the top row down.
+        """
         step = self.pixel / each
         across = self.left + (np.arange(self.columns * each) + 0.5) * step
         up = self.bottom + (np.arange(self.rows * each)[::-1] + 0.5) * step
@@ -413,13 +457,27 @@ def one_solid(solid: Rays, camera: Camera, paint: Callable[[Array, Array], Array
 def bands(
     draw: Draw, camera: Camera, frame: Shot, each: int, ground: Array | None = None
 ) -> Iterator[tuple[slice, Array]]:
-    """Yield some rows of a picture at a time, as a slice and (rows, columns, 3) from 0 to 1.
+    """Yield some rows of a picture at a time.
 
-    A pixel has the colour at its centre. Where normal, depth or colour change from a pixel to the next it
-    has the mean of ``each`` rays both ways, edges among them. ``ground`` (rows, columns, 3) is behind what
-    is drawn, paper without one. ``draw`` is handed image positions across and up (N,), the colours (N, 3)
-    behind it to paint over, and what ``edges`` need, the step and the pairs of samples, None for no edges;
-    it returns depths (N,) and normals (N, 3) of each surface that it draws.
+    A pixel has the colour at its centre. Where normal, depth or colour change from a pixel to the next it has
+    the mean of ``each`` rays both ways, edges among them.
+
+    Parameters
+    ----------
+    draw : callable
+        Is handed image positions across and up (N,), the colours (N, 3) behind it to paint over, and what
+        ``edges`` need, the step and the pairs of samples, None for no edges; it returns depths (N,) and
+        normals (N, 3) of each surface that it draws.
+    camera : Camera
+    frame : Shot
+    each : int
+    ground : (R, C, 3) array, optional
+        Behind what is drawn; paper without one.
+
+    Yields
+    ------
+    slice, (R, C, 3) array
+        The rows, and their colours from 0 to 1.
     """
     across, up = frame.positions()
     offsets = frame.pixel * ((np.arange(each) + 0.5) / each - 0.5)
@@ -526,8 +584,19 @@ def lit(normals: Array, camera: Camera, colour: Array) -> Array:
 def edges(depths: Array, normals: Array, camera: Camera, step: float, pairs: Pairs = GRID_PAIRS) -> Bools:
     """Return which samples lie on an outline (two wide) or on a sharp edge (one wide).
 
-    ``depths`` (...) and ``normals`` (..., 3) of samples ``step`` apart; ``pairs`` are, for each of two axes,
-    the indices of samples and of those that come next to them.
+    Parameters
+    ----------
+    depths : (...) array
+    normals : (..., 3) array
+    camera : Camera
+    step : float
+        From a sample to the next.
+    pairs : sequence
+        For each of two axes the indices of samples and of those that come next to them.
+
+    Returns
+    -------
+    (...) array of bool
     """
     is_hit, slope = np.isfinite(depths), _slopes(normals, camera, step)
     depths = np.where(is_hit, depths, 2.0 * AWAY)
@@ -603,7 +672,16 @@ def encode_base64(array: Array, kind: str) -> str:
 
 
 def short(value: float) -> float:
-    """Return a number with the seven digits that single precision has."""
+    """Return a number with the seven digits that single precision has.
+
+    Parameters
+    ----------
+    value : float
+
+    Returns
+    -------
+    float
+    """
     return float(f"{value:.7g}")
 
 
@@ -825,7 +903,16 @@ def shown_share(track: Mesh, part: Mesh, centre: Vector, camera: Camera, half: f
 
 
 def join_meshes(meshes: Sequence[Mesh]) -> Mesh:
-    """Return several meshes as one."""
+    """Return several meshes as one.
+
+    Parameters
+    ----------
+    meshes : sequence of Mesh
+
+    Returns
+    -------
+    Mesh
+    """
     first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
     corners = np.concatenate([vertices for vertices, _ in meshes])
     return corners, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])

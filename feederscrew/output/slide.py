@@ -57,7 +57,18 @@ LABEL: style.Look = {"fontsize": 8.5, "color": style.INK, "zorder": 4, "ha": "ce
 
 
 def printed(study: SlideStudy, format: str) -> Frame:
-    """Return what a format prints of a SlideStudy: every cell as CSV, a summary for people."""
+    """Return what a format prints of a map of slip: every cell as CSV, a summary for people.
+
+    Parameters
+    ----------
+    study : SlideStudy
+    format : str
+        'csv' or 'table'.
+
+    Returns
+    -------
+    Frame
+    """
     return _cells(study.maps) if format == "csv" else summary(study.maps)
 
 
@@ -71,7 +82,17 @@ def _cells(slides: Sequence[SlideMap]) -> Frame:
 
 
 def summary(slides: Sequence[SlideMap]) -> Frame:
-    """Return what holds at the bowl's own point, a column a map, as a frame for people."""
+    """Return what holds at the bowl's own point, for people.
+
+    Parameters
+    ----------
+    slides : sequence of SlideMap
+
+    Returns
+    -------
+    Frame
+        A column for each map.
+    """
     shares = (f"share of the map: {regime_words(name)}" for name in slides[0].grid.names)
     names = ["acceleration ratio G = A w2/g", "alpha - theta [deg]", "static friction"]
     names += [*LIMIT_LABELS.values(), *ONSETS.values(), "regime", *shares]
@@ -89,7 +110,16 @@ def summary(slides: Sequence[SlideMap]) -> Frame:
 
 
 def document(study: SlideStudy) -> dict[str, Any]:
-    """Return a SlideStudy as the JSON document."""
+    """Return maps of slip as the JSON document.
+
+    Parameters
+    ----------
+    study : SlideStudy
+
+    Returns
+    -------
+    dict
+    """
     maps = [
         {
             "beta_deg": np.degrees(slide_map.beta),
@@ -110,7 +140,16 @@ def document(study: SlideStudy) -> dict[str, Any]:
 
 
 def remarks(study: SlideStudy) -> list[str]:
-    """Return what a reader of a SlideStudy should know, a sentence each."""
+    """Return what a reader of maps of slip should know, a sentence each.
+
+    Parameters
+    ----------
+    study : SlideStudy
+
+    Returns
+    -------
+    list of str
+    """
     lines = []
     for slide_map in study.maps:
         shares, beta = slide_map.grid.shares(), f"beta = {np.degrees(slide_map.beta):.6g} deg"
@@ -128,12 +167,31 @@ def remarks(study: SlideStudy) -> list[str]:
 
 
 def settings(bowl_settings: Sequence[Setting]) -> Frame:
-    """Return the bowl settings and where each came from, as a frame."""
+    """Return the bowl settings and where each came from, as a frame.
+
+    Parameters
+    ----------
+    bowl_settings : sequence of Setting
+
+    Returns
+    -------
+    Frame
+        A row for each.
+    """
     return of_records(SETTING_COLUMNS, bowl_settings)
 
 
 def offers(study: SlideStudy) -> list[offer.Offer]:
-    """Offer the files of a SlideStudy."""
+    """Offer the files of maps of slip.
+
+    Parameters
+    ----------
+    study : SlideStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     fine = cache(partial(study.fine, MAP_SHAPE))  # once for all pictures
     draws = {
         "surface": (surface, "Limiting friction over the heading and the acceleration ratio"),
@@ -155,7 +213,16 @@ def offers(study: SlideStudy) -> list[offer.Offer]:
 
 
 def surface(slide: SlideMap) -> "Figure":
-    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2."""
+    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2.
+
+    Parameters
+    ----------
+    slide : SlideMap
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     figure = style.figure(6.4, 5.2)
     axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
     angles, ratios, friction = slide.sheet(HIGHEST)
@@ -180,7 +247,18 @@ def surface(slide: SlideMap) -> "Figure":
 
 
 def contours(slide: SlideMap, ax: "Axes | None" = None) -> "Figure":
-    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point."""
+    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point.
+
+    Parameters
+    ----------
+    slide : SlideMap
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     figure, axes = _map_axes(slide, "Limiting friction", ax)
     friction = slide.grid.values["mu_limit"]
     x, y = slide.grid.first.in_unit, slide.grid.second.values
@@ -206,7 +284,18 @@ def contours(slide: SlideMap, ax: "Axes | None" = None) -> "Figure":
 
 
 def regimes(slide: SlideMap, ax: "Axes | None" = None) -> "Figure":
-    """Draw what the bowl's own friction allows in each cell, with the bowl's own point."""
+    """Draw what the bowl's own friction allows in each cell, with the bowl's own point.
+
+    Parameters
+    ----------
+    slide : SlideMap
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}", ax)
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
     shades = mpl_colors.to_rgba_array([SLIDE_COLOURS[name] for name in slide.grid.names])
@@ -230,7 +319,19 @@ def regimes(slide: SlideMap, ax: "Axes | None" = None) -> "Figure":
 
 
 def curves(slides: Sequence[SlideMap], ax: "Axes | None" = None) -> "Figure":
-    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28]."""
+    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28].
+
+    Parameters
+    ----------
+    slides : sequence of SlideMap
+        A curve for each.
+    ax : matplotlib.axes.Axes, optional
+        The user's own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     first, title = slides[0], "Limiting friction of an aligned part, α = θ"
     figure, axes = style.chart(6.4, 4.2, ax=ax, title=title, x=RATIO, y=FRICTION)
     for slide, shade in zip(slides, _shades(len(slides))):  # forward limit [4.28] and, dashed, backward limit

@@ -36,17 +36,53 @@ MODEL = (
 
 
 def bowl_stl(solid: BowlSolid | Segment, mark: str = "") -> bytes:
-    """Return a BowlSolid, or a segment of one, as binary STL in mm, a mark in the file's head."""
+    """Return a bowl as a solid, or a segment of one, as binary STL in mm.
+
+    Parameters
+    ----------
+    solid : BowlSolid or Segment
+    mark : str, optional
+        In the file's head.
+
+    Returns
+    -------
+    bytes
+    """
     return binary_stl(solid.vertices[solid.faces], "feeder bowl: the bowl as a solid, in mm", mark)
 
 
 def section_stl(strip: TooledTrack, mark: str = "") -> bytes:
-    """Return a bent TooledTrack as binary STL in mm: wall tangent to X at the origin, track in Z = 0."""
+    """Return a track section, bent, as binary STL in mm: wall tangent to X at the origin, track in Z = 0.
+
+    Parameters
+    ----------
+    strip : TooledTrack
+    mark : str, optional
+        In the file's head.
+
+    Returns
+    -------
+    bytes
+    """
     return binary_stl(triangles(strip), "feeder tooling: track section in mm", mark)
 
 
 def binary_stl(facets: Floats, header: str, mark: str = "") -> bytes:
-    """Return facets (F, 3, 3) [m] as a binary STL in mm, a header of ASCII and a mark in the file's head."""
+    """Return facets as a binary STL in mm.
+
+    Parameters
+    ----------
+    facets : (F, 3, 3) float [m]
+        Corners by facet, counter-clockwise seen from outside.
+    header : str
+        Of ASCII.
+    mark : str, optional
+        In the file's head, behind the header.
+
+    Returns
+    -------
+    bytes
+    """
     corners = (facets / MM).astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
     size = np.sqrt((normal**2).sum(axis=1, keepdims=True))
@@ -58,13 +94,37 @@ def binary_stl(facets: Floats, header: str, mark: str = "") -> bytes:
 
 
 def bowl_3mf(solid: BowlSolid, title: str, mark: str = "") -> bytes:
-    """Return a BowlSolid and each gate of its own as a 3MF file in mm, the mark in each name."""
+    """Return a bowl as a solid and each gate of its own as a 3MF file in mm.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+    title : str
+    mark : str, optional
+        In each name.
+
+    Returns
+    -------
+    bytes
+    """
     objects = [("bowl", solid.vertices, solid.faces), *solid.gates]
     return _pack_3mf(objects, title, mark)
 
 
 def segments_3mf(pieces: Sequence[Segment], title: str, mark: str = "") -> bytes:
-    """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
+    """Return segments of a bowl as a 3MF file in mm, one object each, beside each other.
+
+    Parameters
+    ----------
+    pieces : sequence of Segment
+    title : str
+    mark : str, optional
+        In each name.
+
+    Returns
+    -------
+    bytes
+    """
     across = np.cumsum([0.0, *(piece.size[0] + 10e-3 for piece in pieces)])
     moved = [(p.name, p.vertices + [x, 0.0, 0.0], p.faces) for x, p in zip(across, pieces)]
     return _pack_3mf(moved, title, mark)

@@ -21,10 +21,22 @@ def offers(
     study: "MachineSheet", trial: "Verified | None" = None, mark: str | None = None,
     fields: marking.SheetFields | None = None,
 ) -> tuple[offer.Offer, ...]:  # fmt: skip
-    """Return the files of the solid of a MachineSheet, date and revision of its drawing in ``fields``.
+    """Return the files of the solid of a bowl.
 
-    What a trial of the bowl has shown is in the title block, and across what falls short; ``mark`` stands
-    on every drawing and solid in its place.
+    Parameters
+    ----------
+    study : MachineSheet
+    trial : Verified, optional
+        What a trial of the bowl has shown: it is in the title block, and across what falls short.
+    mark : str, optional
+        Stands on every drawing and solid in its place.
+    fields : SheetFields, optional
+        Date and revision of the drawing.
+
+    Returns
+    -------
+    tuple of Offer
+        Empty without a solid.
     """
     from feederscrew.output import beside_bowl, bowl_sheet, solid_files, solidbowl_views
 

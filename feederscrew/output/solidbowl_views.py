@@ -140,7 +140,10 @@ def camera(azimuth: float, elevation: float) -> Camera:
 
 
 def lines(vertices: Points, faces: Triangles, view: Camera) -> Floats:
-    """Return the visible edges of a closed surface, across and up the view.
+    """Return the visible edges of a surface, across and up the view.
+
+    Drawn are sharp edges, those of the outline, and those at which not exactly two facets meet, as where a
+    file leaves a crack.
 
     Parameters
     ----------

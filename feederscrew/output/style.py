@@ -129,7 +129,18 @@ class Panels:
         return wide, self.head + sum(self.heights) + len(self.heights) * self.caption + self.foot
 
     def place(self, panel: int) -> tuple[int, int, int, int]:
-        """Return left, bottom, width and height of a picture, from the lower left corner of the sheet."""
+        """Return where a picture stands on the sheet.
+
+        Parameters
+        ----------
+        panel : int
+            Its number, row by row from the top.
+
+        Returns
+        -------
+        (int, int, int, int)
+            Left, bottom, width and height in pixels, from the lower left corner.
+        """
         row, column = divmod(panel, self.across)
         above = self.head + sum(self.heights[: row + 1]) + row * self.caption
         left = self.edge + column * (self.width + self.gap)
@@ -158,7 +169,16 @@ def inset(page: "Figure", sheet_axes: "Axes", box: Sequence[float], **look: Any)
 
 
 def pixels(image: Array) -> Any:
-    """Return a figure of the pixels of an image (rows, columns, 3) uint8 and of nothing else."""
+    """Return a figure of the pixels of an image and of nothing else.
+
+    Parameters
+    ----------
+    image : (R, C, 3) array of uint8
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     rows, columns, _ = image.shape
     drawn = page(columns, rows)
     canvas.PixelCanvas(drawn).image = image
@@ -292,7 +312,17 @@ def legend(figure: "Figure", where: str = "lower center", ax: "Axes | None" = No
 
 
 def round_length(most: float) -> float:
-    """Return the greatest of 1, 2, 5, 10, 20 ... that is at most a length, in its unit."""
+    """Return the greatest of 1, 2, 5, 10, 20 ... that is at most a length, in its unit.
+
+    Parameters
+    ----------
+    most : float
+        Above 0, in any unit.
+
+    Returns
+    -------
+    float
+    """
     decade = 10.0 ** np.floor(np.log10(most))
     return float(max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most * (1.0 + 1e-9)))
 
@@ -317,7 +347,16 @@ def method(name: str, place: int = 0) -> tuple[str, str]:
 
 
 def png(figure: Any) -> bytes:
-    """Return the figure as PNG bytes without a time or a version: the same figure gives the same bytes."""
+    """Return the figure as PNG bytes without a time or a version: the same figure gives the same bytes.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+
+    Returns
+    -------
+    bytes
+    """
     return figure.png()
 
 

@@ -106,30 +106,73 @@ of_cells = Frame.of_cells
 
 
 def data_frame(frame: Frame) -> "DataFrame":
-    """Return the table as a pandas DataFrame, as users of the library expect one."""
+    """Return the table as a pandas DataFrame, as users of the library expect one.
+
+    Parameters
+    ----------
+    frame : Frame
+
+    Returns
+    -------
+    pandas.DataFrame
+    """
     import pandas as pd
 
     return pd.DataFrame(frame)
 
 
 def joined(frames: "Iterable[DataFrame]") -> "DataFrame":
-    """Return data frames below each other as one, its rows numbered anew."""
+    """Return data frames below each other as one, its rows numbered anew.
+
+    Parameters
+    ----------
+    frames : iterable of pandas.DataFrame
+
+    Returns
+    -------
+    pandas.DataFrame
+    """
     import pandas as pd
 
     return pd.concat(list(frames), ignore_index=True)
 
 
 def is_numeric(column: object) -> bool:
-    """Return whether a column of a Frame holds numbers."""
+    """Tell whether a column of a Frame holds numbers.
+
+    Parameters
+    ----------
+    column : object
+
+    Returns
+    -------
+    bool
+    """
     return isinstance(column, np.ndarray) and column.dtype.kind in "iuf"
 
 
 def text(frame: Frame, format: str, width: int | None = None) -> str:
-    """Return a frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
+    """Return a frame as text.
 
-    ``width`` are the letters of a line of the window: texts of a wider table go on below; where that is not
-    enough, it is folded, its first column at the head of each piece. The same frame always gives the same
-    bytes.
+    Texts of a table that is wider than the window go on below; where that is not enough, it is folded, its
+    first column at the head of each piece. The same frame always gives the same bytes.
+
+    Parameters
+    ----------
+    frame : Frame
+    format : str
+        'csv' (six significant digits), or 'table' for people.
+    width : int, optional
+        Letters of a line of the window; no limit without it.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ValueError
+        If the format is another one.
     """
     if format == "csv":
         lines = io.StringIO()
@@ -163,8 +206,18 @@ def text(frame: Frame, format: str, width: int | None = None) -> str:
 def to_page(frame: Frame, spare: Iterable[Sequence[str]], width: int = PAGE) -> tuple[Frame, list[str]]:
     """Leave columns out of a table for people until its lines have no more letters than a page.
 
-    ``spare`` names those that may go, in groups that go together, the first group first. Returns the
-    frame, and the headings of what went.
+    Parameters
+    ----------
+    frame : Frame
+    spare : iterable of sequences of str
+        Names of those that may go, in groups that go together, the first group first.
+    width : int
+        Letters of a line.
+
+    Returns
+    -------
+    Frame, list of str
+        The frame, and the headings of what went.
     """
     wide = {name: len(_align_cells(head_of(frame, name), cells)[0]) for name, cells in frame.items()}
     gone: list[str] = []
@@ -245,7 +298,22 @@ def _align_cells(head: ColumnHead, values: Array | Sequence[Any]) -> list[str]:
 def cells(
     head: ColumnHead, values: Array | Sequence[Any], share_digits: int = TABLE_DIGITS, nothing: str = "-"
 ) -> list[str]:
-    """Return the cells of a column as people read them: shares in percent, rounding as 0."""
+    """Return the cells of a column as people read them: shares in percent, rounding as 0.
+
+    Parameters
+    ----------
+    head : ColumnHead
+        Of the column.
+    values : array or sequence
+    share_digits : int
+        Significant digits of shares.
+    nothing : str
+        What stands for NaN and for None.
+
+    Returns
+    -------
+    list of str
+    """
     if not isinstance(values, np.ndarray) or not is_numeric(values):
         return [_word(value, nothing) for value in values]
     if np.issubdtype(values.dtype, np.integer):
@@ -264,7 +332,20 @@ def _word(value: Any, nothing: str) -> str:
 
 
 def number(value: float, digits: int = TABLE_DIGITS, nothing: str = "-") -> str:
-    """Return a number for people with so many significant digits; ``nothing`` of NaN."""
+    """Return a number for people.
+
+    Parameters
+    ----------
+    value : float
+    digits : int
+        That are significant.
+    nothing : str
+        What stands for NaN.
+
+    Returns
+    -------
+    str
+    """
     if value == 0.0 or math.isnan(value):
         return "0" if value == 0.0 else nothing
     if not 1e-4 <= abs(value) < 1e7:
@@ -335,12 +416,30 @@ def row_for_people(column: DeclaredColumn[Any], document: Mapping[str, Any]) -> 
 
 
 def file_bytes(content: str | bytes) -> bytes:
-    """Return text as the bytes of a file: UTF-8, an escape for what a file name holds that is no letter."""
+    """Return text as the bytes of a file: UTF-8, an escape for what a file name holds that is no letter.
+
+    Parameters
+    ----------
+    content : str or bytes
+
+    Returns
+    -------
+    bytes
+    """
     return content if isinstance(content, bytes) else content.encode(errors="backslashreplace")
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    """Return a dict of numbers, texts, arrays, frames and dicts as JSON: full precision, null for NaN."""
+    """Return a dict of numbers, texts, arrays, frames and dicts as JSON: full precision, null for NaN.
+
+    Parameters
+    ----------
+    document : mapping
+
+    Returns
+    -------
+    str
+    """
     return json.dumps(_plain(document), indent=1, allow_nan=False) + "\n"
 
 
@@ -357,15 +456,33 @@ def _plain(value: Any) -> Any:
 
 
 def regime_words(regime: str) -> str:
-    """Return a regime as people read it: 'slips back only' for 'backward'."""
+    """Return a regime as people read it: 'slips back only' for 'backward'.
+
+    Parameters
+    ----------
+    regime : str
+
+    Returns
+    -------
+    str
+    """
     return REGIME_WORDS.get(regime, regime)
 
 
 def heading_note(text: str) -> str:
-    """Return what the headings in a printed table or message are turned from; '' where it names none.
+    """Return what the headings in a printed table or message are turned from.
 
     'A@188: aspect A, turned 188 deg counter-clockwise (seen from above): at heading 0 ...', as
     ``resting.posture.Posture`` has it: heading 0 has the thesis's Z' along the track.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+        '' where the text names no heading.
     """
     if named := re.search(r"\b([A-Z]+)@(\d+)", text):
         turned = f"turned {named[2]} deg counter-clockwise seen from above"

@@ -50,26 +50,56 @@ LINE_LETTERS = 92  # of a line in the last column
 
 @dataclass(frozen=True)
 class View:
-    """Where unrolled lengths [m] lie on a sheet [mm]."""
+    """Place of unrolled lengths [m] on a sheet [mm]."""
 
     at: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0
     right: float = field(default=np.inf)  # [m] where the drawn stretch ends
 
     def placed(self, places: ArrayLike) -> Floats:
-        """Return places (..., 2) [mm] of the sheet."""
+        """Return where lengths of the track lie on the sheet.
+
+        Parameters
+        ----------
+        places : (..., 2) array_like [m]
+            Along the wall and off it; what is beyond the right end lies there.
+
+        Returns
+        -------
+        (..., 2) array [mm]
+        """
         lengths = np.array(places, float)
         lengths[..., 0] = np.minimum(lengths[..., 0], self.right)
         return np.asarray(self.at) + lengths / MM * self.scale
 
 
 def dxf(*drawn: Any, **sheet: Any) -> bytes:
-    """Return the drawing of ``draw`` as the bytes of a DXF file."""
+    """Return the drawing of a track section as a DXF file.
+
+    Parameters
+    ----------
+    *drawn, **sheet
+        As for ``draw``.
+
+    Returns
+    -------
+    bytes
+    """
     return draw(*drawn, **sheet)[0].dxf()
 
 
 def svg(*drawn: Any, **sheet: Any) -> str:
-    """Return the drawing of ``draw`` as an SVG file of its true size."""
+    """Return the drawing of a track section as an SVG file of its true size.
+
+    Parameters
+    ----------
+    *drawn, **sheet
+        As for ``draw``.
+
+    Returns
+    -------
+    str
+    """
     drawing, low, high = draw(*drawn, **sheet)
     return drawing.svg(low, high)
 
@@ -78,14 +108,30 @@ def draw(
     strip: TooledTrack, ghosts: Sequence = (), mark: str = "", *, thickness: float | None = None,
     fields: marking.SheetFields | None = None, titles: Sequence[tuple[str, str]] = (),
 ) -> tuple[Drawing, Floats, Floats]:  # fmt: skip
-    """Draw a TooledTrack 1:1: unrolled with dimensions, list of devices, as bent, openings of gates.
+    """Draw a track section 1:1: unrolled with dimensions, list of devices, as bent, openings of gates.
 
-    ``ghosts`` are outlines (K, 2) [m] of parts from the wall, each with its place [m] along it. ``mark``
-    stands across the drawing and among its notes, ``thickness`` [m] is that of the track's sheet,
-    ``titles`` are names and values before date and revision, ``fields``. Returned are the drawing and the
-    corners (2,) [mm] of all that is drawn. Layers are named as pens are: ``CUT``, ``CUT_2`` ... one hole
-    each; the same with ``BENT_`` before it as it lies in the bowl; ``OPENING``, ``OPENING_2`` ... one
-    gate each, seen along the track.
+    Layers are named as pens are: ``CUT``, ``CUT_2`` ... one hole each; the same with ``BENT_`` before it as
+    it lies in the bowl; ``OPENING``, ``OPENING_2`` ... one gate each, seen along the track.
+
+    Parameters
+    ----------
+    strip : TrackSection
+    ghosts : sequence of ((K, 2) float [m], float [m]), optional
+        Outlines of parts from the wall, each with its place along it.
+    mark : str, optional
+        Stands across the drawing and among its notes.
+    thickness : float [m], optional
+        Of the track's sheet.
+    fields : SheetFields, optional
+        Date and revision.
+    titles : sequence of (str, str), optional
+        Names and values before these.
+
+    Returns
+    -------
+    drawing : Drawing
+    low, high : (2,) float [mm]
+        Corners of all that is drawn.
     """
     drawing, view = Drawing(DEVICE_PENS), View()
     length, width = strip.length / MM, strip.width / MM
@@ -130,14 +176,34 @@ def draw(
 
 
 def title_fields(fields: marking.SheetFields | None) -> list[tuple[str, str]]:
-    """Return names and values of the fields that the user gives, empty where nothing is given."""
+    """Return the fields of a title block that the user gives, and the kind of its views.
+
+    Parameters
+    ----------
+    fields : SheetFields or None
+
+    Returns
+    -------
+    list of (str, str)
+        Names and values; a value that is not given is ''.
+    """
     fields = fields or marking.SheetFields()
     views = "labelled views (ISO 128-3)"
     return [("projection", views), ("date", fields.date), ("rev", fields.revision)]
 
 
 def dimension_devices(drawing: Drawing, devices: Sequence[PlacedDevice], view: View, width: float) -> None:
-    """Dimension the devices of an unrolled stretch of a track of a width [m], from the wall and from D."""
+    """Dimension the devices of an unrolled stretch of a track, from the wall and from D.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    devices : sequence of PlacedDevice
+    view : View
+        Where the stretch lies on the sheet.
+    width : float [m]
+        Of the track.
+    """
     along: list[float] = []
     for number, placed in enumerate(devices, start=1):
         # the lengths along the wall [m] that a device is made by, from the datum
@@ -222,7 +288,21 @@ def _dimension_cut(drawing: Drawing, hole: Floats, view: View, width: float) -> 
 
 
 def draw_wall_bores(drawing: Drawing, devices: Sequence[PlacedDevice], view: View, low: float) -> float:
-    """Draw holes of nozzles in the wall, seen from the bowl's axis, on a track [mm]; return the top [mm]."""
+    """Draw holes of nozzles in the wall, seen from the bowl's axis.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    devices : sequence of PlacedDevice
+    view : View
+    low : float [mm]
+        Height of the track on the sheet.
+
+    Returns
+    -------
+    float [mm]
+        Height of the top.
+    """
     jets = [(placed.begin, jet) for placed in devices for jet in placed.features.jets]
     bores = [(begin + jet.at[0], jet.at[2], jet.radius) for begin, jet in jets]
     if not bores:
@@ -253,10 +333,20 @@ def draw_wall_bores(drawing: Drawing, devices: Sequence[PlacedDevice], view: Vie
 def device_rows(
     devices: Sequence[PlacedDevice], width: float, angle: Callable[[float], float]
 ) -> list[list[str]]:
-    """Return the list of devices on a track of a width [m], head first, as rows of texts.
+    """Return the list of devices.
 
-    ``angle`` gives the angle [deg] of a length [m] from D. What the shop must do to a cut stands below its
-    value.
+    Parameters
+    ----------
+    devices : sequence of PlacedDevice
+    width : float [m]
+        Of the track.
+    angle : callable
+        From a length [m] from D to an angle [deg].
+
+    Returns
+    -------
+    list of list of str
+        The head first.
     """
     rows = [["no.", "device", "from [mm]", "to [mm]", "from [°]", "to [°]", "value; what is bought and set"]]
     for number, placed in enumerate(devices, start=1):
@@ -315,7 +405,19 @@ def edges(placed: PlacedDevice, width: float) -> list[tuple[str, Floats]]:
 
 
 def ledge_ring(placed: PlacedDevice, width: float) -> Floats:
-    """Return what is missing of the upper track beside a ledge (4, 2) [m], as it is made."""
+    """Return what is missing of the upper track beside a ledge, as it is made.
+
+    Parameters
+    ----------
+    placed : PlacedDevice
+    width : float [m]
+        Of the track.
+
+    Returns
+    -------
+    (4, 2) array [m]
+        Along the wall and off it; (0, 2) where it is no ledge.
+    """
     drop = placed.features.drop
     if drop is None:
         return np.empty((0, 2))

@@ -321,12 +321,30 @@ def _fill_area(
 
 
 def in_mm(area: shapely.Geometry) -> shapely.Geometry:
-    """Return a shapely geometry [m] in millimetres."""
+    """Return a shapely geometry [m] in millimetres.
+
+    Parameters
+    ----------
+    area : shapely.Geometry [m]
+
+    Returns
+    -------
+    shapely.Geometry [mm]
+    """
     return shapely.transform(area, lambda points: points / MM)
 
 
 def margin_words(verdict: Verdict) -> str:
-    """Return the margin of a verdict in words; a device that only sets parts apart has none."""
+    """Return the margin of a verdict in words; a device that only sets parts apart has none.
+
+    Parameters
+    ----------
+    verdict : Verdict
+
+    Returns
+    -------
+    str
+    """
     if np.isnan(verdict.margin):
         return "no margin"
     return f"margin {verdict.margin / MM:+.2f} mm" if verdict.sure else "not sure"
@@ -374,14 +392,33 @@ def _profile_along_track(orientation: Orientation, top: float, right: float) -> 
 
 
 def turned_words(passage: Passage) -> str:
-    """Say what a stretch that leans the track turns an orientation into, where statics tells."""
+    """Say what a stretch that leans the track turns an orientation into, where statics tells.
+
+    Parameters
+    ----------
+    passage : Passage
+
+    Returns
+    -------
+    str
+    """
     if passage.after.name == passage.orientation.name:
         return "may turn, not sure"
     return f"turns into {passage.after.name}, not sure"
 
 
 def scale_bar_length(size: float) -> float:
-    """Return the length [mm] of a scale bar, 1, 2 or 5 times a power of ten, at ``size`` mm a pixel."""
+    """Return the length of a scale bar, 1, 2 or 5 times a power of ten.
+
+    Parameters
+    ----------
+    size : float [mm]
+        Of a pixel.
+
+    Returns
+    -------
+    float [mm]
+    """
     return style.round_length(120 * size)
 
 

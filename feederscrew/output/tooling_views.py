@@ -34,7 +34,23 @@ CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
 def figure(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> Figure | None:
-    """Draw the wanted orientation over its least cut, and the nearest that falls; None without cuts."""
+    """Draw the wanted orientation over its least cut, and the nearest that falls.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    wanted_row : int
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        None without cuts.
+    """
     views = _views(devices, orientations, shares, wanted_row)
     if not views:
         return None
@@ -62,7 +78,7 @@ def _caption_lines(words: Sequence[str]) -> list[tuple[str, bool]]:
 def _views(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> list[Any]:
-    """What leaves, and what falls by least, of those that come often: passage, lines of text, colour."""
+    """Return what leaves, and what falls by least, of the frequent: passage, lines of text, colour."""
     placed, views, rejected = [device for device in devices if device.placed], [], []
     passages = _drawable(track_sections.until_returned(placed, orientations[wanted_row], orientations))
     if passages:
@@ -117,7 +133,22 @@ def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation],
 def poses(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> list[tuple[Passage, str]]:
-    """Return the passages worth a view, each with a few words: 'gap, margin +0.64 mm'."""
+    """Return the passages worth a view, each with a few words: 'gap, margin +0.64 mm'.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    wanted_row : int
+
+    Returns
+    -------
+    list of (Passage, str)
+    """
     listed = []
     for passage, _, _ in _views(devices, orientations, shares, wanted_row):
         words = f"{passage.device.kind}, {margin_words(passage.verdict)}"
@@ -142,7 +173,18 @@ def _caption(passage: Passage, word: str) -> tuple[str, str]:
 
 
 def track_below(passage: Passage, orientations: Sequence[Orientation]) -> Mesh:
-    """Return a passage's section of track, (V, 3) [m] ahead, inwards, up from the part's foot, and (F, 3)."""
+    """Return a passage's section of track: ahead, inwards, up from the part's foot.
+
+    Parameters
+    ----------
+    passage : Passage
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+    """
     section, orientation = section_of(passage, orientations), passage.orientation
     corners, faces = printed.solid(section)
     angle, radius = passage.angle(section.devices[0]), orientation.track.radius
@@ -153,7 +195,18 @@ def track_below(passage: Passage, orientations: Sequence[Orientation]) -> Mesh:
 
 
 def part_on_section(passage: Passage, placed: PlacedDevice) -> Points:
-    """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its device."""
+    """Return the corners of the part of a passage on a track section that holds its device.
+
+    Parameters
+    ----------
+    passage : Passage
+    placed : PlacedDevice
+        Where its device is on that section.
+
+    Returns
+    -------
+    (V, 3) float [m]
+    """
     orientation = passage.orientation
     points = np.array(orientation.posture.surface)
     flat = turned(points[:, :2], orientation.heading) + [0.0, orientation.distance]
@@ -168,7 +221,18 @@ def _on_section(points: Points, angle: float, radius: float) -> Points:
 
 
 def section_of(passage: Passage, orientations: Sequence[Orientation]) -> TooledTrack:
-    """Return a track section with nothing but the device of a passage, and the part before it."""
+    """Return a track section with nothing but the device of a passage, and the part before it.
+
+    Parameters
+    ----------
+    passage : Passage
+    orientations : sequence of Orientation
+        All of the part.
+
+    Returns
+    -------
+    TooledTrack
+    """
     return lay_out(passage.orientation.track, [passage.device], orientations, lead=1.0)
 
 
@@ -178,8 +242,20 @@ def clearest(
 ) -> list[Camera]:  # fmt: skip
     """Return the views of some moments from the one side on which the track hides least of the part.
 
-    ``tracks`` and ``parts`` are corners (V, 3) [m] and faces (F, 3) of each moment, ``angles`` [rad] those of
-    the part along the track; ``half`` [m] is seen to either side of the ``centres`` (3,) [m].
+    Parameters
+    ----------
+    tracks, parts : sequence of ((V, 3) float [m], (F, 3) int)
+        Of each moment.
+    centres : sequence of (3,) float [m]
+        Of the pictures.
+    angles : sequence of float [rad]
+        Of the part along the track.
+    half : float [m]
+        Seen to either side of the centres.
+
+    Returns
+    -------
+    list of Camera
     """
     best, most = list[Camera](), -1.0
     for turn in np.radians([0.0, -69.0, -35.0, 25.0, -95.0]):  # the first that shows nine tenths
@@ -194,7 +270,19 @@ def clearest(
 
 
 def camera_at(angle: float, turn: float = 0.0) -> Camera:
-    """Return the view from inside the bowl and above the part, ahead of it or ``turn`` [rad] from there."""
+    """Return the view from inside the bowl and above the part.
+
+    Parameters
+    ----------
+    angle : float [rad]
+        Of the part along the track.
+    turn : float [rad], optional
+        From straight ahead of it.
+
+    Returns
+    -------
+    Camera
+    """
     ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
     inwards, up = np.array([-ahead[1], ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
     c, s = np.cos(turn), np.sin(turn)

@@ -92,7 +92,17 @@ def _printed_instant(motion: Any) -> dict[str, Any]:
 
 
 def over_cycle(motion: TrackMotion, course: Cycle) -> dict[str, Any]:
-    """Return one period as columns; ``motion`` is a TrackMotion of shape (N,)."""
+    """Return one period as columns.
+
+    Parameters
+    ----------
+    motion : TrackMotion of shape (N,)
+    course : Cycle
+
+    Returns
+    -------
+    dict of str to array
+    """
     columns = {
         **values(TRACK_CYCLE_COLUMNS, motion),
         "velocity_m_s": course.velocity,
@@ -110,10 +120,18 @@ def _open_contacts(is_closed: Bools) -> list[str]:
 
 
 def document(study: TrackStudy) -> dict[str, Any]:
-    """Return all of one TrackStudy, for JSON; ``friction_needed`` holds the part at rest through the cycle.
+    """Return all of a part on the track as the JSON document; of one as published, print's reversal too.
 
-    Of one as published, the upper reversal by print. ``stays_on_wall`` is None where it hops: the flight
-    is not followed.
+    ``stays_on_wall`` is None where it hops: the flight is not followed.
+
+    Parameters
+    ----------
+    study : TrackStudy
+
+    Returns
+    -------
+    dict
+        ``friction_needed`` holds the part at rest through the cycle.
     """
     cycle, seat, printed = study.cycle, study.seat, {}
     if study.printed is not None:
@@ -153,7 +171,17 @@ def _differences(study: Any) -> Frame:
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
-    """Return what people want to know first, a row a quantity."""
+    """Return what people want to know first, a row a quantity.
+
+    Parameters
+    ----------
+    document : mapping
+        Of ``document``.
+
+    Returns
+    -------
+    Frame
+    """
     velocity, needed = document["mean_velocity_m_s"], document["friction_needed"]
     rows = floor.label_values(document, TRACK_LABELS) | {
         "on the track, over the strokes": document["on_the_track_said"],
@@ -175,7 +203,16 @@ def summary(document: Mapping[str, Any]) -> Frame:
 
 
 def remarks(study: TrackStudy) -> list[str]:
-    """Return what a reader of a TrackStudy should know, a sentence each."""
+    """Return what a reader of a part on the track should know, a sentence each.
+
+    Parameters
+    ----------
+    study : TrackStudy
+
+    Returns
+    -------
+    list of str
+    """
     lines, cycle = floor.aspect_remark(study), study.cycle
     if len(study.seat.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
@@ -213,13 +250,33 @@ def remarks(study: TrackStudy) -> list[str]:
 
 
 def cells(grid: Grid) -> Frame:
-    """Return every cell of a grid of ``TrackStudy.over``, as a frame."""
+    """Return every cell of a grid as a frame.
+
+    Parameters
+    ----------
+    grid : Grid
+        Of ``TrackStudy.over``.
+
+    Returns
+    -------
+    Frame
+    """
     columns = grid.columns().items()
     return Frame.of({IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns})
 
 
 def map_remarks(grid: Grid) -> list[str]:
-    """Return what a reader of a map should know, a sentence each."""
+    """Return what a reader of a map should know, a sentence each.
+
+    Parameters
+    ----------
+    grid : Grid
+        Of ``TrackStudy.over``.
+
+    Returns
+    -------
+    list of str
+    """
     shares = grid.shares()
     lines = [] if shares["slide"] or shares["leaves the wall"] else [floor.none_slides(grid)]
     unfit = int(np.round(shares["does not fit"] * grid.codes.size))
@@ -229,7 +286,18 @@ def map_remarks(grid: Grid) -> list[str]:
 
 
 def offers(study: TrackStudy, grid: Grid | None = None) -> list[offer.Offer]:
-    """Offer the files of a TrackStudy, with the map of a Grid of ``study.over`` where there is one."""
+    """Offer the files of a part on the track.
+
+    Parameters
+    ----------
+    study : TrackStudy
+    grid : Grid, optional
+        Of ``study.over``: its map is offered too.
+
+    Returns
+    -------
+    list of Offer
+    """
     what = "The part on the track from above and from behind, with the forces on it"
     heading = f"{np.degrees(study.seat.heading):.4g}°"
     title = f"{study.part.name}, aspect {study.posture.name}, heading {heading}"
@@ -290,7 +358,17 @@ def _cycle(motion: TrackMotion, course: Cycle, title: str) -> "Figure":
 
 
 def part(study: TrackStudy, title: str) -> "Figure":
-    """Draw the part on the track at the upper reversal, from above and from behind, with what acts on it."""
+    """Draw the part on the track at the upper reversal, from above and from behind, with what acts on it.
+
+    Parameters
+    ----------
+    study : TrackStudy
+    title : str
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     figure = style.figure(11.0, 5.4)
     above, behind = figure.subplots(1, 2)
     text = f"{title}, upper reversal: {MOTION_STATES[int(study.now.state)]}; arrow length ∝ √force"
@@ -342,7 +420,27 @@ def _draw_from_above(axes: "Axes", study: TrackStudy, size: float, balance: Trac
 def wall_and_edge(
     axes: "Axes", track: Track, centre: float, reach: Floats, widths: tuple[float, float], depth: float
 ) -> list[tuple[Floats, Floats]]:
-    """Draw the shaded wall and the free edge of a track about a centre [m]; return their lines [mm]."""
+    """Draw the shaded wall and the free edge of a track.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        In mm.
+    track : Track
+    centre : float [m]
+        Of the axis of the bowl, inwards of the place that is drawn about.
+    reach : (N,) array [rad]
+        Angles about that centre over which they are drawn.
+    widths : (float, float)
+        Of the two lines, in points.
+    depth : float [m]
+        Of the shading behind the wall.
+
+    Returns
+    -------
+    list of ((N,) array [mm], (N,) array [mm])
+        Of the wall, then of the edge.
+    """
     lines: list[tuple[Any, Any]] = []
     for radius, width in zip((track.radius, track.radius - track.width), widths):
         x, y = radius * np.sin(reach) / MM, (centre - radius * np.cos(reach)) / MM

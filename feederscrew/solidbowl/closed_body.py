@@ -110,7 +110,21 @@ class BowlSolid:
 
 
 def body(plan: BowlPlan) -> BowlSolid:
-    """Return the bowl of a plan; raises FeederError if cuts leave a piece loose."""
+    """Return the bowl of a plan as one closed solid, and its gates.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+
+    Returns
+    -------
+    BowlSolid
+
+    Raises
+    ------
+    FeederError
+        If cuts leave a piece loose.
+    """
     whole, gates = pieces(plan)
     (_, vertices, faces), *extra = (
         (name, *whole_surface.mesh(facets.placed_as(piece, mirrored=plan.left, turned=plan.turned)))

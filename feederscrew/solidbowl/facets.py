@@ -29,11 +29,18 @@ SEAM_M = 1e-5  # [m] of the plate left along the wall where it is cut: no two fa
 
 
 def swept(legs: Sequence[tuple[Points, Points]]) -> Body:
-    """Return a body [mm] whose section is handed on from frame to frame, leg after leg.
+    """Return a body whose section is handed on from frame to frame, leg after leg.
 
-    A leg has ``sections`` (M, K, 2) [m], the corners of each counter-clockwise: outwards, upwards; and
-    ``frames`` (M, 2, 2), of each the place from above where its first coordinate is zero, and the unit vector
-    along which it grows. A leg begins with the section that the one before ends with.
+    Parameters
+    ----------
+    legs : sequence of ((M, K, 2) float [m], (M, 2, 2) float [m])
+        Sections, the corners of each counter-clockwise: outwards, upwards. Frames, of each the place from
+        above where its first coordinate is zero, and the unit vector along which it grows. A leg begins with
+        the section that the one before ends with.
+
+    Returns
+    -------
+    manifold3d.Manifold [mm]
     """
     rows = [in_space(*leg) for leg in legs]
     points = np.concatenate([rows[0], *(row[1:] for row in rows[1:])])
@@ -210,12 +217,30 @@ def plank(area: shapely.Geometry, thickness: float, axes: Points, foot: ArrayLik
 
 
 def hull(places: Points) -> Body:
-    """Return the convex hull of places (N, 3) [m] as a Manifold."""
+    """Return the convex hull of some places.
+
+    Parameters
+    ----------
+    places : (N, 3) float [m]
+
+    Returns
+    -------
+    manifold3d.Manifold [mm]
+    """
     return manifold3d.Manifold.hull_points(np.asarray(places) / MM)
 
 
 def united(bodies: Iterable[Body]) -> Body:
-    """Return the union of a list of Manifolds."""
+    """Return the union of some bodies.
+
+    Parameters
+    ----------
+    bodies : iterable of manifold3d.Manifold
+
+    Returns
+    -------
+    manifold3d.Manifold
+    """
     return manifold3d.Manifold.batch_boolean(list(bodies), manifold3d.OpType.Add)
 
 
@@ -269,7 +294,17 @@ def placed_as(body: Body, *, mirrored: bool, turned: float) -> Body:
 
 
 def moved(body: Body, by: tuple[float, float, float]) -> Body:
-    """Return a body moved by lengths (3,) [mm]."""
+    """Return a body moved.
+
+    Parameters
+    ----------
+    body : manifold3d.Manifold
+    by : (float, float, float) [mm]
+
+    Returns
+    -------
+    manifold3d.Manifold
+    """
     return body.translate(by)
 
 
@@ -300,12 +335,30 @@ def one_piece(body: Body, where: str) -> Body:
 
 
 def placed(solid: "BowlSolid") -> Body:
-    """Return a BowlSolid as a body as it stands in its files."""
+    """Return a bowl as a body as it stands in its files.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+
+    Returns
+    -------
+    manifold3d.Manifold [mm]
+    """
     return manifold3d.Manifold(manifold3d.Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
 
 
 def unplaced(solid: "BowlSolid") -> Body:
-    """Return a BowlSolid with its outlet at the angle 0, right-handed, to cast rays at."""
+    """Return a bowl with its outlet at the angle 0, right-handed, to cast rays at.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+
+    Returns
+    -------
+    manifold3d.Manifold [mm]
+    """
     whole = placed(solid).rotate((0.0, 0.0, -float(np.degrees(solid.plan.turned))))
     return whole.mirror((0.0, 1.0, 0.0)) if solid.plan.left else whole
 

@@ -1,4 +1,4 @@
-"""What the finished solid measures, by rays on its surface; whether what falls through comes back."""
+"""Measures of the finished solid, by rays on its surface; whether what falls through comes back."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,16 @@ class Measures:
 
 
 def measures(solid: BowlSolid) -> Measures:
-    """Measure a bowl, a BowlSolid."""
+    """Measure a bowl by rays on its surface.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+
+    Returns
+    -------
+    Measures
+    """
     plan, body = solid.plan, facets.unplaced(solid)
     path, far = plan.path, 3.0 * plan.path.radius
 
@@ -132,10 +141,24 @@ ON_TURN = "the turn of the track before"
 
 
 def ways_down(solid: BowlSolid) -> dict[str, str]:
-    """Return where what falls through each cut of a BowlSolid comes to lie, by the label of the cut.
+    """Return where what falls through each cut of a bowl comes to lie.
 
     That is straight down on the floor; where the wall steps outwards down its slope too, on the floor or on
-    the turn before, upstream of every device. Raises FeederError if it comes to lie on something else.
+    the turn before, upstream of every device.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+
+    Returns
+    -------
+    dict of str to str
+        By the label of the cut.
+
+    Raises
+    ------
+    FeederError
+        If it comes to lie on something else.
     """
     plan, ways = solid.plan, {}
     if plan.stretch is None:

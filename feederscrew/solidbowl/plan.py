@@ -126,23 +126,60 @@ class TrackPath:
     leans: tuple[tuple[float, float, float], ...] = ()  # from and to s it twists to another bank [rad]
 
     def wall_radius(self, s: Values) -> Values:
-        """Return the radius [m] of the wall's inner face at lengths s."""
+        """Return the radius of the wall's inner face at some lengths.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        float or (...) float [m]
+        """
         return self.radius + self.flare * (np.minimum(s, self.end) - self.end)
 
     def at(self, theta: Values) -> Values:
-        """Return the lengths s at angles about the axis, at most 0."""
+        """Return the lengths at some angles about the axis.
+
+        Parameters
+        ----------
+        theta : float or (...) float [rad]
+            At most 0, the outlet.
+
+        Returns
+        -------
+        (...) float [m]
+        """
         theta = np.asarray(theta, float)
         if self.flare == 0.0:
             return self.end + self.radius * theta
         return self.end + self.radius * np.expm1(self.flare * theta) / self.flare
 
     def angle(self, s: Values) -> Values:
-        """Return the angle [rad] about the axis at lengths s; it stays at 0 along the outlet."""
+        """Return the angle about the axis at some lengths; it stays at 0 along the outlet.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        float or (...) float [rad]
+        """
         before = (np.minimum(s, self.end) - self.end) / self.radius
         return before if self.flare == 0.0 else np.log1p(self.flare * before) / self.flare
 
     def bank_at(self, s: Values) -> Values:
-        """Return the bank [rad] at lengths s."""
+        """Return the bank at some lengths: linear over each twist.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        (...) float [rad]
+        """
         banks = [self.bank, *(bank for _, _, bank in self.leans)]
         bank_at = np.full(np.shape(s), float(self.bank))
         for (start, end, bank), before in zip(self.leans, banks):
@@ -155,27 +192,70 @@ class TrackPath:
         return min([self.bank, *(bank for _, _, bank in self.leans)])
 
     def rises(self, width: float) -> float:
-        """Return the length s [m], at most 0, at which a track of a width first comes out of the floor.
+        """Return the length at which a track first comes out of the floor: -width sin(bank) / tan(climb).
 
         Its free edge is the first on a banked track, and does so before the wall's side.
+
+        Parameters
+        ----------
+        width : float [m]
+            Of the track.
+
+        Returns
+        -------
+        float [m]
+            At most 0.
         """
         return -width * np.sin(self.bank) / np.tan(self.climb)
 
     def plan(self, s: Values, y: Values) -> Floats:
-        """Return the places (..., 2) [m] from above at lengths s and distances y."""
+        """Return places of the track from above.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+            Along the wall.
+        y : float or (...) float [m]
+            From the wall.
+
+        Returns
+        -------
+        (..., 2) float [m]
+        """
         s, y = np.broadcast_arrays(np.asarray(s, float), np.asarray(y, float))
         theta, straight = self.angle(s), np.maximum(s - self.end, 0.0)
         r, c, sn = self.wall_radius(s) - y * np.cos(self.bank_at(s)), np.cos(theta), np.sin(theta)
         return np.stack([r * c - straight * sn, r * sn + straight * c], axis=-1)
 
     def height(self, s: Values, y: Values = 0.0) -> Values:
-        """Return the height [m] of the track's surface over the floor's edge at lengths s, distances y."""
+        """Return the height of the track's surface over the floor's edge.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+            Along the wall.
+        y : float or (...) float [m], optional
+            From the wall.
+
+        Returns
+        -------
+        (...) float [m]
+        """
         s = np.asarray(s, float)
         fallen = sum((np.where(s >= at, drop, 0.0) for at, drop in self.drops), np.zeros(s.shape))
         return self.risen(np.minimum(s, self.end)) - fallen + np.sin(self.bank_at(s)) * np.asarray(y)
 
     def risen(self, s: Values) -> Values:
-        """Return by how much [m] the track climbs up to lengths s, its steps down left out."""
+        """Return by how much the track climbs up to some lengths, its steps down left out.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        (...) float [m]
+        """
         s, climbs = np.asarray(s, float), [self.climb, *(climb for _, climb in self.bends)]
         risen = np.tan(self.climb) * s
         for (at, climb), before in zip(self.bends, climbs):
@@ -183,7 +263,16 @@ class TrackPath:
         return risen
 
     def normal(self, s: float) -> Vector:
-        """Return the unit vector (3,) [1] square to the track's surface at a length s, by the wall."""
+        """Return the unit vector square to the track's surface, by the wall.
+
+        Parameters
+        ----------
+        s : float [m]
+
+        Returns
+        -------
+        (3,) float [1]
+        """
         theta, bank = float(self.angle(s)), float(self.bank_at(s))
         rise = float(self.risen(s + CLIMB_STEP_M) - self.risen(s - CLIMB_STEP_M)) / (2.0 * CLIMB_STEP_M)
         rise = rise if s < self.end else 0.0
@@ -247,7 +336,19 @@ class TrackPath:
         return self.places(s, 0.0) + z * self.normal(s) + (before + z * np.tan(bank)) * inwards, -inwards
 
     def places(self, s: Values, y: Values) -> Floats:
-        """Return points (..., 3) [m] of the track's surface."""
+        """Return points of the track's surface.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+            Along the wall.
+        y : float or (...) float [m]
+            From the wall.
+
+        Returns
+        -------
+        (..., 3) float [m]
+        """
         flat = self.plan(s, y)
         z = np.broadcast_to(self.height(s, y), flat.shape[:-1])
         return np.concatenate([flat, z[..., None]], axis=-1)
@@ -289,10 +390,19 @@ class Stairs:
         return self.upright + self.step * float(np.tan(self.slope)) + self.below
 
     def sections(self, path: TrackPath, theta: Values, low: float) -> Floats:
-        """Return the corners (M, K, 2) [m] of the wall's inner side: radius and height, from below upwards.
+        """Return the corners of the wall's inner side: radius and height, from below upwards.
 
-        ``theta`` (M,) [rad] lead from a turn before the outlet to the outlet; below the height ``low`` [m] no
-        wall is needed.
+        Parameters
+        ----------
+        path : TrackPath
+        theta : (M,) float [rad]
+            From a turn before the outlet to the outlet.
+        low : float [m]
+            Below this height no wall is needed.
+
+        Returns
+        -------
+        (M, K, 2) float [m]
         """
         last = path.at(-FULL_TURN_RAD * np.arange(1, 100))
         turns = int(np.argmax(path.risen(last) < low)) + 1
@@ -382,13 +492,22 @@ class BowlPlan:
         return -self.material.floor
 
     def floor(self, r: Values) -> Values:
-        """Return the height [m] of the floor at radii."""
+        """Return the height of the floor at some radii.
+
+        Parameters
+        ----------
+        r : float or (...) float [m]
+
+        Returns
+        -------
+        (...) float [m]
+        """
         return np.maximum(self.ring - np.asarray(r, float), 0.0) * np.tan(DOME)
 
 
 @dataclass(frozen=True)
 class SolidOptions:
-    """What is asked of the solid beside the sizes of the sheet."""
+    """Wishes for the solid beside the sizes of the sheet."""
 
     chord: float = ARC_CHORD_M
     material: str = "steel"

@@ -50,7 +50,17 @@ def solid(tooled: TooledTrack) -> tuple[Points, Triangles]:
 
 
 def triangles(tooled: TooledTrack) -> Floats:
-    """Return the triangles (F, 3, 3) [m] of the printed section, counter-clockwise seen from outside."""
+    """Return the triangles of the printed section.
+
+    Parameters
+    ----------
+    tooled : TooledTrack
+
+    Returns
+    -------
+    (F, 3, 3) float [m]
+        Corners by triangle, counter-clockwise seen from outside.
+    """
     points, faces = whole_surface.mesh(section_body(tooled, facets))
     # each from its first corner on, in the order of the corners
     corners = points[faces]

@@ -227,7 +227,23 @@ class Segments:
 
 
 def bed(text: str) -> tuple[float, ...]:
-    """Return the size (x, y, z) [m] of a printer's bed as typed, '220x220x250mm'; raises ArgumentError."""
+    """Return the size of a printer's bed as typed.
+
+    Parameters
+    ----------
+    text : str
+        '220x220x250mm'
+
+    Returns
+    -------
+    tuple of float [m]
+        x, y, z.
+
+    Raises
+    ------
+    ArgumentError
+        If it is not three lengths above 0.
+    """
     sides, size = text.replace("×", "x").lower().split("x"), []
     unit = sides[-1].lstrip(" 0123456789.+-")
     try:
@@ -394,9 +410,16 @@ def _dowels(
 
 
 def overhangs(solid: "BowlSolid") -> dict[str, float]:
-    """Return the area [m2] that hangs over by more than 45 deg, printed as a BowlSolid stands.
+    """Return the area that hangs over by more than 45 deg, printed as a bowl stands.
 
-    By what it belongs to; nothing of less than a square centimetre.
+    Parameters
+    ----------
+    solid : BowlSolid
+
+    Returns
+    -------
+    dict of str to float [m2]
+        By what it belongs to; nothing of less than a square centimetre.
     """
     plan, corners = solid.plan, solid.vertices[solid.faces]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -27,7 +27,16 @@ TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led
 
 
 def fillet(plan: BowlPlan) -> float:
-    """Return the radius [m] of the fillet below the track, where it meets the wall."""
+    """Return the radius of the fillet below the track, where it meets the wall.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+
+    Returns
+    -------
+    float [m]
+    """
     return min(plan.material.plate, 0.5 * plan.across)
 
 
@@ -316,7 +325,17 @@ def yokes(plan: BowlPlan, kit: ModuleType) -> list[Body]:
 
 
 def yoke_places(plan: BowlPlan) -> tuple[float, ...]:
-    """Return where along the way each yoke begins [m], YOKE thick; none without rails."""
+    """Return where along the way each yoke begins, YOKE thick.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+
+    Returns
+    -------
+    tuple of float [m]
+        Empty without rails.
+    """
     if plan.stretch is None or not plan.stretch.hangs:
         return ()
     return plan.first + plan.stretch.length, plan.path.end + plan.outlet - YOKE
@@ -382,6 +401,14 @@ def groove_spans(plan: BowlPlan) -> list[GrooveStretch]:
     """Return the grooves of a bowl, along its wall.
 
     They lie in the last turn: above them there is no other.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+
+    Returns
+    -------
+    list of GrooveStretch
     """
     earliest, last = float(plan.path.at(-MAX_GROOVE_WALL_RAD)), plan.path.end + plan.outlet
     grooves = () if plan.stretch is None else plan.stretch.grooves

@@ -1,4 +1,4 @@
-"""Which poses come to each device, which of them it lets pass and which it returns: for drawings."""
+"""Poses that come to each device, those that it lets pass and those that it returns: for drawings."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass

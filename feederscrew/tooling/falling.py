@@ -52,11 +52,31 @@ Supports = list[tuple[Vector, Vector]]  # two edges: a point [m], and the normal
 
 
 def may_lay_over(orientation: Orientation, low: float) -> bool:
-    """Return whether a blade across the track may lay a part over instead of holding it up.
+    """Tell whether a blade across the track may lay a part over instead of holding it up.
 
-    ``orientation`` travels: it knows its track's friction. ``low`` [m] is the height of the blade's edge, or
-    from which on an opening is too narrow.
-    Source: moments about the rear side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
+    The track pushes the part with friction mu; it turns about the rear side of its foot where the moment of
+    the push at the blade is beyond that of the weight:
+
+        (mu cos(climb) - sin(climb)) / (1 - mu^2) (z - mu (b + a)) + h sin(climb) > b cos(climb),
+
+    z the height at which the part first meets the blade, a how far ahead of the weight that is, b how far
+    behind it the rear side of the foot, h the height of the centre of mass. With mu of 1 or more nothing
+    limits the push, and z - mu (b + a) > 0 decides alone.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        It travels: it knows its track's friction.
+    low : float [m]
+        Height of the blade's edge, or from which on an opening is too narrow.
+
+    Returns
+    -------
+    bool
+
+    References
+    ----------
+    Moments about the rear side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
     """
     # how far ahead of the weight it reaches over the edge, and at which height it first does so
     points = orientation.posture.surface
@@ -82,12 +102,29 @@ def may_lay_over(orientation: Orientation, low: float) -> bool:
 
 
 def may_lay_aside(orientation: Orientation, low: float, sweep: float | None = None) -> bool:
-    """Return whether a swept blade may lay a part over towards the free edge as it slides along the face.
+    """Tell whether a swept blade may lay a part over towards the free edge as it slides along the face.
 
-    ``low`` [m] is the height of the blade's edge, ``sweep`` [rad] of its face to the direction of travel.
-    What slides along a blade turns until a side of it lies there, whichever comes: without a ``sweep`` the
-    push is square to some side, and tips it over the nearest.
-    Source: moments about a side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
+    A part that slides along a blade turns until a side of it lies there, whichever comes: without a ``sweep``
+    the push is square to some side, and tips it over the nearest. It tips over a side of the foot where mu z
+    times the share of the push across that side is beyond the way from the weight to the side.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        It travels: it knows its track's friction mu.
+    low : float [m]
+        Height z of the blade's edge.
+    sweep : float [rad], optional
+        Of its face to the direction of travel.
+
+    Returns
+    -------
+    bool
+        True also of a foot without an area.
+
+    References
+    ----------
+    Moments about a side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
     """
     hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
     if hull.geom_type != "Polygon":
@@ -101,17 +138,48 @@ def may_lay_aside(orientation: Orientation, low: float, sweep: float | None = No
 
 
 def clearing_limit(friction: float) -> float:
-    """Return the sweep [rad] below which a face of some friction [1] clears itself.
+    """Return the sweep below which a swept face clears itself: 90 deg less the angle of friction.
 
-    Source: 90 deg less the angle of friction; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    friction : float [1]
+        Of the face.
+
+    Returns
+    -------
+    float [rad]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     return 0.5 * math.pi - math.atan(friction)
 
 
 def clearing_time(device: Device, orientation: Orientation, bowl: Bowl) -> float:
-    """Return how long [s] an orientation that a device returns blocks the track; 0 of what drops at once.
+    """Return how long an orientation that a device returns blocks the track.
 
-    Source: docs/tooling.md, "1. The method".
+    It is the way from the weight to the free edge over the velocity along the blade.
+
+    Parameters
+    ----------
+    device : Device
+    orientation : Orientation
+    bowl : Bowl
+
+    Returns
+    -------
+    float [s]
+        0 of a device without a face: what it returns drops at once. Infinite where nothing slides along it.
+
+    Raises
+    ------
+    FeederError
+        If the motion along the blade has no end.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     if device.face is None:
         return 0.0
@@ -200,10 +268,26 @@ def along_blade(bowl: Bowl, sweep: float, friction: float) -> float:
 
 
 def may_wedge(orientation: Orientation, span: tuple[float, ...]) -> bool:
-    """Return whether a head that comes first may stick between rails [m off the wall] as a wedge.
+    """Tell whether a head that comes first may stick between rails as a wedge.
 
-    Friction then holds whatever presses it in, and the shank's weight need not turn it down.
-    Source: a wedge between two angles of friction; docs/tooling.md, "1. The method".
+    Friction then holds whatever presses it in, and the shank's weight need not turn it down: the angles at
+    which its underside meets both rails add up to no more than two angles of friction.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        It travels: it knows its track's friction.
+    span : tuple of float [m]
+        Of the slot: from and to, off the wall.
+
+    Returns
+    -------
+    bool
+        False where a rail does not meet it from below.
+
+    References
+    ----------
+    A wedge between two angles of friction; docs/tooling.md, "1. The method".
     """
     outward = turned(orientation.posture.surface[:, :2], orientation.heading)[:, 1]
     ring = outline(np.column_stack([outward, orientation.posture.surface[:, 2]]))
@@ -221,9 +305,23 @@ def may_wedge(orientation: Orientation, span: tuple[float, ...]) -> bool:
 
 
 def hangs_free(orientation: Orientation, span: tuple[float, ...]) -> bool:
-    """Return whether a head that hangs in a slot stays off the wall, and its weight turns the shank down.
+    """Tell whether a head that hangs in a slot stays off the wall, and its weight turns the shank down.
 
-    Source: own; docs/tooling.md, "1. The method": what touches rail and wall at once may wedge.
+    Parameters
+    ----------
+    orientation : Orientation
+        As it lies before.
+    span : tuple of float [m]
+        Of the slot: from and to, off the wall.
+
+    Returns
+    -------
+    bool
+        False of a part without a head. What touches rail and wall at once may wedge.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     own_neck = neck(orientation)
     if own_neck is None or too_near(own_neck, span) > 0.0:
@@ -232,14 +330,43 @@ def hangs_free(orientation: Orientation, span: tuple[float, ...]) -> bool:
 
 
 def too_near(own_neck: Neck, span: tuple[float, ...]) -> float:
-    """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is."""
+    """Return how much farther from the wall a slot must be for a head not to touch it.
+
+    Parameters
+    ----------
+    own_neck : Neck
+    span : tuple of float [m]
+        Of the slot: from and to, off the wall.
+
+    Returns
+    -------
+    float [m]
+        0 where it is far enough: the head stays ``OFF_WALL`` off the wall with its shank at the near rail.
+    """
     return max(OFF_WALL - span[0] - 0.5 * (own_neck.shank - own_neck.widest), 0.0)
 
 
 def wall_holds(orientation: Orientation, width: float) -> float:
-    """Return by how much [m] a strip along the wall, of a width [m], may be wider than a part passes.
+    """Return by how much a strip along the wall may be wider than a part passes by itself.
 
-    Source: own; docs/tooling.md, "1. The method": the wall holds what turns towards it.
+    The wall holds a part that turns towards it: c (2 z - h) / w, with c the height over which the drive lifts
+    it, z that at which it leans on the wall, h that of its centre of mass and w the strip's width; 0 at
+    least.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        It travels: it knows the height over which the drive lifts it.
+    width : float [m]
+        Of the strip.
+
+    Returns
+    -------
+    float [m]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     points = orientation.posture.surface
     across = turned(points[:, :2], orientation.heading)[:, 1]
@@ -248,10 +375,28 @@ def wall_holds(orientation: Orientation, width: float) -> float:
 
 
 def rides_over(orientation: Orientation, width: float, length: float) -> bool:
-    """Return whether a part on its round side along the track rides over a hole [m, m] by its sides.
+    """Tell whether a part on its round side along the track rides over a hole by its sides.
 
-    ``width`` is across the track, ``length`` along it, infinite of a hole that goes on.
-    Source: own; docs/tooling.md, "1. The method".
+    A round part of radius r sinks r - sqrt(r^2 - w^2 / 4) between edges w apart; the drive has to lift it so
+    far.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        It travels: it knows the height over which the drive lifts it.
+    width : float [m]
+        Of the hole across the track, w.
+    length : float [m]
+        Along it; infinite of a hole that goes on.
+
+    Returns
+    -------
+    bool
+        False of a part that does not lie on a round side, or rolls along the track.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     radius = orientation.posture.height
     if orientation.kind != "rolling" or orientation.rolls_across or width >= 2.0 * radius:
@@ -266,13 +411,27 @@ def rides_over(orientation: Orientation, width: float, length: float) -> bool:
 
 
 def may_rest(section: shapely.Geometry, width: float, friction: float, wall: bool = False) -> bool:
-    """Return whether a part may come to rest between two edges, tilted some way.
+    """Tell whether a part may come to rest between two edges, tilted some way.
 
-    ``section`` [m], shapely, is what is seen of it along the edges, its centre of mass at (0, 0); the edges
-    are ``width`` [m] apart. The ``friction`` [1] at both is none of those along which the part slides, since
-    the track shakes. With a ``wall`` in place of the first edge the part leans on it at any height. True also
-    of a part that is not convex as it is seen: it may catch an edge by a corner of its own.
-    Source: Coulomb's cones at two edges; docs/method/trial.md, "What other parts said of the rules".
+    Parameters
+    ----------
+    section : shapely geometry [m]
+        The part as seen along the edges, its centre of mass at (0, 0).
+    width : float [m]
+        Between the edges.
+    friction : float [1]
+        At both; 0 at edges along which the part slides, since the track shakes.
+    wall : bool, optional
+        Whether a wall stands in place of the first edge: the part leans on it at any height.
+
+    Returns
+    -------
+    bool
+        True also of a part that is not convex as it is seen: it may catch an edge by a corner of its own.
+
+    References
+    ----------
+    Coulomb's cones at two edges; docs/method/trial.md, "What other parts said of the rules".
     """
     hull = section.convex_hull
     if section.area < CONVEX_FILL_SHARE * hull.area:
@@ -331,7 +490,7 @@ def _chords(ring: Points, levels: Floats) -> tuple[Bools, Floats]:
 
 
 def _holds(two: Supports, friction: float) -> bool:
-    """Whether forces within cones of friction at two places hold a weight at (0, any height)."""
+    """Tell whether forces within cones of friction at two places hold a weight at (0, any height)."""
     wrenches = []
     for point, normal in two:
         for side in (-1.0, 1.0):
@@ -353,9 +512,24 @@ def _holds(two: Supports, friction: float) -> bool:
 
 
 def falls_through(orientation: Orientation, cut: Points) -> bool:
-    """Return whether a hole (K, 2) [m], unrolled, lets an orientation through that it does not carry.
+    """Tell whether a hole lets an orientation through that it does not carry.
 
-    Source: own; docs/tooling.md, "1. The method": what becomes of a part that does not pass.
+    The part goes down by one of its shadows, as it lies or tipped about a level axis, that fits into the hole
+    with ``SHADOW_CLEARANCE_M`` all round.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    cut : (K, 2) float [m]
+        The hole, unrolled: along the wall, and from it.
+
+    Returns
+    -------
+    bool
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     hole = _open(cut, orientation.track.width).buffer(-SHADOW_CLEARANCE_M, join_style="mitre")
     if hole.is_empty:
@@ -371,16 +545,39 @@ def falls_through(orientation: Orientation, cut: Points) -> bool:
 
 @functools.lru_cache(maxsize=8192)
 def surely_gone(device: Device, orientation: Orientation) -> bool:
-    """Return whether an orientation that travels and a device does not let pass is surely returned by it."""
+    """Tell whether an orientation that a device does not let pass is surely returned by it.
+
+    Parameters
+    ----------
+    device : Device
+    orientation : Orientation
+        It travels.
+
+    Returns
+    -------
+    bool
+        False also where a swept blade may lay it over instead.
+    """
     lays_over = device.face is not None and may_lay_aside(orientation, device.limit)
     return lets_go(device, orientation) and not lays_over
 
 
 def lets_go(device: Device, orientation: Orientation) -> bool:
-    """Return whether what a device cuts away lets an orientation that travels go for certain.
+    """Tell whether what a device cuts away lets an orientation go for certain.
 
     The part goes over the free edge, or through a hole along the track as it lies, or down between two edges
-    where no tilt of it can rest on them. True of a device that cuts nothing.
+    where no tilt of it can rest on them.
+
+    Parameters
+    ----------
+    device : Device
+    orientation : Orientation
+        It travels.
+
+    Returns
+    -------
+    bool
+        True of a device that cuts nothing.
     """
     track = orientation.track
     opening = opening_at(device, orientation)
@@ -412,7 +609,18 @@ def lets_go(device: Device, orientation: Orientation) -> bool:
 
 
 def fits_as_it_lies(orientation: Orientation, cut: Points) -> bool:
-    """Return whether an orientation fits through a hole (K, 2) [m] as it lies, anywhere on its way."""
+    """Tell whether an orientation fits through a hole as it lies, anywhere on its way.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    cut : (K, 2) float [m]
+        The hole, unrolled: along the wall, and from it.
+
+    Returns
+    -------
+    bool
+    """
     hole = _open(cut, orientation.track.width)
     behind = shapely.affinity.translate(hole, 0.0, -WALL_OVERCUT_M) if hole.bounds[1] <= 0.0 else hole
     hole = hole.union(behind).buffer(-SHADOW_CLEARANCE_M, join_style="mitre")
@@ -466,7 +674,7 @@ def _half_planes(part: shapely.Polygon) -> Floats | None:
 
 
 def _fits(shadow: Points, part: shapely.Polygon, half_planes: Floats | None) -> bool:
-    """Whether a convex shadow can be moved to lie within a polygon."""
+    """Tell whether a convex shadow can be moved to lie within a polygon."""
     if half_planes is None:  # something is left of the polygon beside the shadow swept along its border
         shadow = shadow - shadow.mean(axis=0)
         rings = map(shapely.get_coordinates, [part.exterior, *part.interiors])

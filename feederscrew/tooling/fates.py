@@ -1,4 +1,4 @@
-"""What becomes of every orientation along a chain of devices: one matrix a device."""
+"""Fates of every orientation along a chain of devices: one matrix a device."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -31,7 +31,7 @@ class DeviceFlow:
 
     @cached_property
     def leaving(self) -> Floats:
-        """(M, S) [1] share of each orientation that leaves in each state."""
+        """Return the share of each orientation that leaves in each state, (M, S) [1]."""
         return check.frozen(self._reached[-1])
 
     @cached_property
@@ -106,7 +106,18 @@ class DeviceFlow:
         return tuple((CARRIED, RETURNED, STOPPED)[k] for k in np.round(shares, 9).argmax(axis=1))
 
     def leaves_as(self, row: int) -> int:
-        """Return the state in which an orientation is fed: its own, or how it hangs if none leaves lying."""
+        """Return the state in which an orientation is fed: its own, or how it hangs if none leaves lying.
+
+        Parameters
+        ----------
+        row : int
+            Of the orientation.
+
+        Returns
+        -------
+        int
+            Of ``states``.
+        """
         becomes = int(self.leaving[row].argmax())
         if row in self.hangs_as and not self.leaving[row].any():
             return self.hangs_as[row]
@@ -129,11 +140,32 @@ def course(
 ) -> DeviceFlow:
     """Return what becomes of every orientation along a chain of devices.
 
-    ``devices`` are in the order parts meet them, ``orientations`` those of the part; ``sigma`` [m] is the
-    standard deviation of play and tolerance together, of every device. With ``rows``, places of orientations,
-    only those are followed, with what they become; the others count as if they did not come. Raises
-    ConfigError if a device means nothing behind rails, or in a groove.
-    Source: a chain of conditional shares; docs/tooling.md, "1. The method".
+    Each device is a matrix of the shares that go on from a state in another; the chain is their product.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    orientations : sequence of Orientation
+        The M of the part.
+    sigma : float [m], optional
+        Standard deviation of play and tolerance together, of every device.
+    rows : iterable of int, optional
+        Orientations that are followed, with what they become; the others count as if they did not come. All
+        without it.
+
+    Returns
+    -------
+    DeviceFlow
+
+    Raises
+    ------
+    ConfigError
+        If a device means nothing behind rails, or in a groove.
+
+    References
+    ----------
+    A chain of conditional shares; docs/tooling.md, "1. The method".
     """
     for fault in unfit(devices):
         raise fault
@@ -189,14 +221,35 @@ def course(
 
 
 def at_entry(orientations: Sequence[Orientation], devices: Sequence[Device]) -> tuple[Orientation, ...]:
-    """Return orientations as they come: where devices that lean the track come first, they begin there."""
+    """Return orientations as they come: where devices that lean the track come first, they begin there.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    devices : sequence of Device
+        In the order parts meet them.
+
+    Returns
+    -------
+    tuple of Orientation
+    """
     for device in leading_devices(devices):
         orientations = tuple(device.onward(orientation) for orientation in orientations)
     return tuple(orientations)
 
 
 def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
-    """Return the devices that come first and lean the track from its entry on, up to the end of a groove."""
+    """Return the devices that come first and lean the track from its entry on, up to the end of a groove.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+
+    Returns
+    -------
+    tuple of Device
+    """
     first_devices, grooved = [], False
     for device in devices:
         if not device.leans or (grooved and device.grooved is False):
@@ -207,7 +260,19 @@ def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
 
 
 def stand_astride(orientation: Orientation, span: tuple[float, ...]) -> Orientation:
-    """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
+    """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    span : tuple of float [m]
+        The slot: from and to, off the wall.
+
+    Returns
+    -------
+    Orientation
+        The one given where it hangs, or nothing beside the slot would carry it.
+    """
     if isinstance(orientation, Hanging) or orientation.falls_off:
         return orientation
     foot = footprints.rest_beside_slot(orientation.foot, span, orientation.distance, orientation.track.radius)

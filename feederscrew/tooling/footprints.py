@@ -1,4 +1,4 @@
-"""What of a part touches the track, facets, edges and points of its mesh, its verdicts, and its views.
+"""Footprint of a part on the track: facets, edges and points of its mesh, its verdicts, and its views.
 
 The verdicts of feet over holes are compiled: ``kernel``. Source: own; docs/tooling.md, "1. The method".
 """
@@ -44,7 +44,7 @@ SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 @dataclass(frozen=True, eq=False)
 class Footprint:
-    """What of a part touches the track, in track axes from the foot of the centre of mass."""
+    """Places where a part touches the track, in track axes from the foot of the centre of mass."""
 
     rings: tuple[Points, ...] = ()  # (K, 2) [m] borders of areas, holes of them as rings of their own
     edges: Floats = field(default_factory=lambda: np.empty((0, 2, 2)))  # (E, 2, 2) [m] lines of contact
@@ -52,7 +52,7 @@ class Footprint:
 
     @cached_property
     def corners(self) -> Points:
-        """(V, 2) [m] every corner of it."""
+        """Return every corner of it (V, 2) [m]."""
         return np.concatenate([*self.rings, self.edges.reshape(-1, 2), self.points])
 
 
@@ -63,8 +63,19 @@ class Footprint:
 def axial_foot(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> "Foot":
     """Return a foot about the bowl's axis, as the compiled verdict takes it.
 
-    ``distance`` [m] is from the wall, of a ``radius`` [m], to the foot of the centre of mass; on a banked
-    track the weight meets it nearer to the wall by ``shift`` [m].
+    Parameters
+    ----------
+    foot : Footprint
+    distance : float [m]
+        From the wall to the foot of the centre of mass.
+    radius : float [m]
+        Of the wall.
+    shift : float [m], optional
+        By which the weight meets a banked track nearer to the wall.
+
+    Returns
+    -------
+    Foot
     """
     # single points are short lines along the track: an edge that comes is noticed there
     middle, edges = radius - distance, foot.edges
@@ -112,7 +123,19 @@ def axial_foot(foot: Footprint, distance: float, radius: float, shift: float = 0
 
 
 def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "Buffers":
-    """Return arrays for the verdict of some feet over a hole of some edges and nodes; by default a ring."""
+    """Return arrays for the verdict of some feet over a hole.
+
+    Parameters
+    ----------
+    *feet : Foot
+        The largest sets the sizes.
+    edges, nodes : int, optional
+        Of the hole; by default a ring.
+
+    Returns
+    -------
+    Buffers
+    """
     rows = 6 * max(len(foot.sides) for foot in feet) * edges + 1
     corners = max(len(foot.corners) for foot in feet)
     points = corners + rows + nodes + edges
@@ -139,10 +162,30 @@ def _scratch_of(foot: "Foot", hole: HoleEdges) -> "Buffers":
 def least(
     foot: "Foot", hole: HoleEdges, work: "Buffers | None" = None, low: float = -np.inf, high: float = np.inf
 ) -> tuple[float, float]:
-    """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
+    """Return the least margin of a foot over a hole's passage, and where it is.
 
-    A margin below ``low`` may be given as any that is below it, one above ``high`` as any above.
-    Source: docs/tooling.md, "1. The method".
+    The margin is how far the foot of the centre of mass lies inside the convex hull of what is supported,
+    over every place of the hole below the part.
+
+    Parameters
+    ----------
+    foot : Foot
+    hole : HoleEdges
+    work : Buffers, optional
+        Of ``scratch``, to be used again.
+    low, high : float [m], optional
+        A margin below ``low`` may be given as any that is below it, one above ``high`` as any above.
+
+    Returns
+    -------
+    margin : float [m]
+        Negative where the foot is not carried.
+    shift : float [rad]
+        Of the hole, where it is.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     out = np.empty(2)
     kernel.least(foot, hole, work or _scratch_of(foot, hole), low, high, out)
@@ -150,27 +193,67 @@ def least(
 
 
 def unheld(foot: "Foot", hole: HoleEdges, work: "Buffers | None" = None, enough: float = np.inf) -> float:
-    """Return the longest way [m] over which a hole leaves a foot without support.
+    """Return the longest way over which a hole leaves a foot without support.
 
-    One longer than ``enough`` may be given as any that is longer.
-    Source: own; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    foot : Foot
+    hole : HoleEdges
+    work : Buffers, optional
+        Of ``scratch``, to be used again.
+    enough : float [m], optional
+        A way that is longer may be given as any that is longer.
+
+    Returns
+    -------
+    float [m]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     turn = enough * (1.0 + SECTOR_TOLERANCE) / foot.centre
     return float(kernel.longest(foot, hole, work or _scratch_of(foot, hole), turn)) * foot.centre
 
 
 def over_ring(foot: "Foot", low: float, high: float) -> float:
-    """Return the margin [m] of a foot on a track without what lies between two radii [m] about the axis.
+    """Return the margin of a foot on a track without what lies between two radii about the axis.
 
-    Source: docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    foot : Foot
+    low, high : float [m]
+        The radii.
+
+    Returns
+    -------
+    float [m]
+        Negative where the foot is not carried.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     return float(kernel.over_ring(foot, low, high, scratch(foot)))
 
 
 def balcony(foot: "Foot", radius: float) -> float:
-    """Return the least width of track [m] that carries a foot; infinite where none does.
+    """Return the least width of track that carries a foot.
 
-    Source: own; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    foot : Foot
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    float [m]
+        Infinite where no width does.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     work, widest = scratch(foot), _extent(foot, radius)
 
@@ -181,7 +264,19 @@ def balcony(foot: "Foot", radius: float) -> float:
 
 
 def canyon(foot: "Foot", radius: float) -> float:
-    """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
+    """Return the greatest width of a strip removed along the wall that a foot passes.
+
+    Parameters
+    ----------
+    foot : Foot
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    float [m]
+        0 where it passes none.
+    """
     work = scratch(foot)
 
     def falls(width: float) -> bool:
@@ -191,7 +286,19 @@ def canyon(foot: "Foot", radius: float) -> float:
 
 
 def halve(holds: Callable[[float], bool], high: float) -> tuple[float, float]:
-    """Return the values up to ``high`` between which something begins to hold, next to each other."""
+    """Return the values between which something begins to hold, next to each other, by sixty halvings.
+
+    Parameters
+    ----------
+    holds : callable
+        Of a value; false at 0, true at ``high``, with one change between them.
+    high : float [any]
+
+    Returns
+    -------
+    low, high : float [any]
+        It does not hold at the first, and holds at the second.
+    """
     low = 0.0
     for _ in range(60):
         middle = 0.5 * (low + high)
@@ -200,7 +307,19 @@ def halve(holds: Callable[[float], bool], high: float) -> tuple[float, float]:
 
 
 def longest_gap(foot: "Foot", radius: float) -> float:
-    """Return the greatest gap [m] across the track that a foot passes; 0 for none."""
+    """Return the greatest gap across the track that a foot passes.
+
+    Parameters
+    ----------
+    foot : Foot
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    float [m]
+        0 where it passes none.
+    """
     low, high, width = 0.0, 2.0 * foot.reach, _extent(foot, radius)
     work = _scratch_of(foot, gap(high, radius, width))
 
@@ -224,11 +343,21 @@ def _extent(foot: "Foot", radius: float) -> float:
 
 @lru_cache(maxsize=128)
 def find_footprint(posture: Posture, heading: float) -> Footprint:
-    """Return what touches the track, in track axes from the foot of the centre of mass.
+    """Find where a part touches the track, in track axes from the foot of the centre of mass.
 
     A part that rolls touches with the strip of its underside that a hole's edge would carry, up to
-    ``ROLLING_FOOT_SHARE`` of its height, however finely its round side is cut into facets. Where none of the
-    mesh is low enough to carry it, the contact polygon does. ``heading`` [rad] as in Orientation.
+    ``ROLLING_FOOT_SHARE`` of its height, however finely its round side is cut into facets. Where nothing of
+    the mesh is low enough to carry it, the contact polygon does.
+
+    Parameters
+    ----------
+    posture : Posture
+    heading : float [rad]
+        As in Orientation.
+
+    Returns
+    -------
+    Footprint
     """
     rolls = posture.kind == "rolling"
     polygon = Footprint(rings=(check.frozen(turned(posture.contact, heading)),))
@@ -257,9 +386,23 @@ def find_footprint(posture: Posture, heading: float) -> Footprint:
 
 
 def area_below(plan: Points, height: Floats, faces: Triangles, depth: float, cut: bool) -> shapely.Geometry:
-    """Return the union of the facets lower than a depth [m], with ``cut`` also of their parts below it.
+    """Return the union of the facets lower than a depth, seen from above.
 
-    Of facets (F, 3) int between corners, in plan (V, 2) [m] and of a height (V,) [m].
+    Parameters
+    ----------
+    plan : (V, 2) float [m]
+        Corners from above.
+    height : (V,) float [m]
+        Of the corners.
+    faces : (F, 3) int
+        Facets between corners.
+    depth : float [m]
+    cut : bool
+        Whether facets that are partly lower count with that part.
+
+    Returns
+    -------
+    shapely geometry [m]
     """
     low = height[faces] < depth
     pieces = list(shapely.polygons(plan[faces[low.all(axis=1)]]))
@@ -278,7 +421,17 @@ def area_below(plan: Points, height: Floats, faces: Triangles, depth: float, cut
 
 @lru_cache(maxsize=128)
 def edges_of(posture: Posture) -> Ints:
-    """Return the edges (E, 2) [1] of a posture's mesh, corners by their numbers, each once, ascending."""
+    """Return the edges of a posture's mesh.
+
+    Parameters
+    ----------
+    posture : Posture
+
+    Returns
+    -------
+    (E, 2) int
+        Corners by their rows in ``surface``, each edge once, ascending.
+    """
     faces = posture.facets
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return check.frozen(np.unique(np.sort(ends, axis=1), axis=0))
@@ -289,9 +442,18 @@ def _is_covered(points: Points, area: shapely.Geometry) -> Bools:
 
 
 def rings(area: shapely.Geometry, least: float = 0.0) -> tuple[Points, ...]:
-    """Return the borders (K, 2) [m] of an area, those of its holes too, without the corner repeated.
+    """Return the borders of an area, those of its holes too.
 
-    Areas and holes that are not larger than ``least`` [m2] are left out.
+    Parameters
+    ----------
+    area : shapely geometry [m]
+    least : float [m2], optional
+        Areas and holes that are not larger are left out.
+
+    Returns
+    -------
+    tuple of (K, 2) float [m]
+        Without the first corner repeated at the end.
     """
     parts = shapely.get_parts(area)
     areas = [piece for piece in parts if piece.geom_type == "Polygon" and piece.area > least]
@@ -303,8 +465,20 @@ def rings(area: shapely.Geometry, least: float = 0.0) -> tuple[Points, ...]:
 def ring(span: tuple[float, ...], distance: float, radius: float, reach: float) -> shapely.Polygon:
     """Return the area between two distances from the wall, about the foot of the centre of mass.
 
-    ``span`` [m, m] and ``distance`` [m] are from the wall, of a ``radius`` [m]; it goes on ahead and behind
-    as far as ``reach`` [m].
+    Parameters
+    ----------
+    span : tuple of float [m]
+        The distances.
+    distance : float [m]
+        From the wall to the foot of the centre of mass.
+    radius : float [m]
+        Of the wall.
+    reach : float [m]
+        How far the area goes on ahead and behind.
+
+    Returns
+    -------
+    shapely.Polygon [m]
     """
     most = min(reach / max(radius - span[1], 0.1 * radius), 0.999 * np.pi)
     count = 2 + int(2.0 * most * np.sqrt(radius / (8.0 * SLOT_CHORD_M)))
@@ -316,7 +490,22 @@ def ring(span: tuple[float, ...], distance: float, radius: float, reach: float) 
 
 
 def rest_beside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radius: float) -> Footprint:
-    """Return what of a footprint rests beside a slot; parameters as for ``ring``."""
+    """Return the part of a footprint that rests beside a slot.
+
+    Parameters
+    ----------
+    foot : Footprint
+    span : tuple of float [m]
+        The slot: from and to, off the wall.
+    distance : float [m]
+        From the wall to the foot of the centre of mass.
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    Footprint
+    """
     if not len(foot.corners):
         return foot
     return _cut_away(foot, ring(span, distance, radius, 2.0 * np.hypot(*foot.corners.T).max()))
@@ -324,9 +513,22 @@ def rest_beside_slot(foot: Footprint, span: tuple[float, ...], distance: float, 
 
 @lru_cache(maxsize=512)
 def clip_to_track(foot: Footprint, distance: float, radius: float, width: float) -> Footprint:
-    """Return what of a footprint lies over a track of some width [m]; distance and radius as for ``ring``.
+    """Return the part of a footprint that lies over a track.
 
-    Where none of it does, its corner nearest to the wall, which supports nothing.
+    Parameters
+    ----------
+    foot : Footprint
+    distance : float [m]
+        From the wall to the foot of the centre of mass.
+    radius : float [m]
+        Of the wall.
+    width : float [m]
+        Of the track.
+
+    Returns
+    -------
+    Footprint
+        Where none of it does, its corner nearest to the wall, which supports nothing.
     """
     middle, edge = radius - distance, radius - width
     if edge <= 0.0 or not len(foot.corners):
@@ -346,7 +548,7 @@ def clip_to_track(foot: Footprint, distance: float, radius: float, width: float)
 
 
 def _cut_away(foot: Footprint, off: shapely.Geometry) -> Footprint:
-    """What of a footprint lies outside an area."""
+    """Return the part of a footprint that lies outside an area."""
     area = shapely.union_all([shapely.Polygon()])
     for border in foot.rings:
         area = area.symmetric_difference(shapely.Polygon(border))
@@ -360,8 +562,19 @@ def _cut_away(foot: Footprint, off: shapely.Geometry) -> Footprint:
 def silhouette(posture: Posture, heading: float, distance: float, radius: float) -> tuple[Points, ...]:
     """Return the outline of a part seen along the track, swept past a radial gate.
 
-    Rings (K, 2) [m] of distance from the wall and height over the track, at a ``heading`` [rad]; ``distance``
-    and ``radius`` [m] as for ``ring``.
+    Parameters
+    ----------
+    posture : Posture
+    heading : float [rad]
+    distance : float [m]
+        From the wall to the foot of the centre of mass.
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    tuple of (K, 2) float [m]
+        Rings of distance from the wall and height over the track, exact to ``SILHOUETTE_STEP_M``.
     """
     points, faces = posture.surface, posture.facets
     plan = turned(points[:, :2], heading)
@@ -390,11 +603,23 @@ def silhouette(posture: Posture, heading: float, distance: float, radius: float)
 def visible_area(
     points: Points, faces: Triangles, sees: str, resolution: float = 0.0, line: float = 0.0
 ) -> shapely.Geometry:
-    """Return the area, shapely, that a sensor sees of a body: its front and, from above, its wall side at 0.
+    """Return the area that a sensor sees of a body: its front and, from above, its wall side at 0.
 
-    ``points`` (V, 3) [m] are its corners: along the wall, from it, over the track; ``faces`` (F, 3) int.
-    ``resolution`` [m] is that of the sensor: corners of what it sees are at multiples of it. ``sees`` and
-    ``line`` [m] as for ``sensor_views.outline``.
+    Parameters
+    ----------
+    points : (V, 3) float [m]
+        Its corners: along the wall, from it, over the track.
+    faces : (F, 3) int
+    sees : str
+        'outline', 'side' or 'relief', as for ``sensor_views.difference``.
+    resolution : float [m], optional
+        Of the sensor: corners of what it sees are at multiples of it.
+    line : float [m], optional
+        Of a 'relief': over which line, off the wall.
+
+    Returns
+    -------
+    shapely geometry [m]
     """
     if sees != "relief":
         projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]

@@ -33,7 +33,7 @@ SAFE_RADIUS = 1e-9  # [1] of a radius: a circle that a side misses by more, it m
 
 
 class Foot(NamedTuple):
-    """What touches the track, about the bowl's axis: x ahead, q away from the axis."""
+    """Footprint of a part about the bowl's axis: x ahead, q away from the axis."""
 
     sides: Floats  # (E, 4) [m] start and vector
     closed: Ints  # (E,) 1 where the side bounds an area
@@ -82,9 +82,22 @@ class Buffers(NamedTuple):
 def least(foot: Foot, hole: HoleEdges, scratch: Buffers, low: float, high: float, out: Floats) -> None:
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 
-    Into ``out`` (2,) [m, rad]. A margin below ``low`` [m] is as it comes first, not the lowest; one above
-    ``high`` [m] is any that is above.
-    Source: own; docs/tooling.md, "1. The method": exact from event to event.
+    The passage is cut at the events where a corner or a crossing comes or goes; between two events the margin
+    is exact at both ends, and no point moves by more than is looked for.
+
+    Parameters
+    ----------
+    foot : Foot
+    hole : HoleEdges
+    scratch : Buffers
+    low, high : float [m]
+        A margin below ``low`` is as it comes first, not the lowest; one above ``high`` is any that is above.
+    out : (2,) float [m, rad]
+        Filled.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     for k in range(len(foot.corners)):
         scratch.keep[k] = 1
@@ -105,10 +118,21 @@ def least(foot: Foot, hole: HoleEdges, scratch: Buffers, low: float, high: float
 
 @entry
 def longest(foot: Foot, hole: HoleEdges, scratch: Buffers, enough: float) -> float:
-    """Return the longest turn of the hole [rad] through which the margin stays below zero.
+    """Return the longest turn of the hole through which the margin stays below zero.
 
-    Between samples the margin is taken to change evenly. A turn longer than ``enough`` [rad] is returned as
-    soon as it is so long; infinite for the longest.
+    Between samples the margin is taken to change evenly.
+
+    Parameters
+    ----------
+    foot : Foot
+    hole : HoleEdges
+    scratch : Buffers
+    enough : float [rad]
+        A turn that is longer is returned as soon as it is so long; infinite for the longest.
+
+    Returns
+    -------
+    float [rad]
     """
     best = turn = 0.0
     for i in range(_events(foot, hole, scratch) - 1):
@@ -137,9 +161,22 @@ def longest(foot: Foot, hole: HoleEdges, scratch: Buffers, enough: float) -> flo
 
 @entry
 def over_ring(foot: Foot, low: float, high: float, scratch: Buffers) -> float:
-    """Return the margin [m] of a foot over the ring between two radii [m]: a balcony, a canyon, a slot.
+    """Return the margin of a foot over the ring between two radii: a balcony, a canyon, a slot.
 
-    Source: own; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    foot : Foot
+    low, high : float [m]
+        About the bowl's axis.
+    scratch : Buffers
+
+    Returns
+    -------
+    float [m]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     count, points = 0, scratch.points
     for k in range(len(foot.corners)):
@@ -165,10 +202,21 @@ def over_ring(foot: Foot, low: float, high: float, scratch: Buffers) -> float:
 
 @entry
 def farthest(places: Points, sides: Floats) -> float:
-    """Return how far [m] the farthest of some places (P, 2) [m] is from the nearest of some sides (S, 4) [m].
+    """Return how far the farthest of some places is from the nearest of some sides.
 
-    Of a side its start and the way to its end, which is not 0.
-    Source: own; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    places : (P, 2) float [m]
+    sides : (S, 4) float [m]
+        Start, and the way to the end, which is not 0.
+
+    Returns
+    -------
+    float [m]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     largest = 0.0
     for i in range(len(places)):
@@ -227,7 +275,7 @@ def _events(foot: Foot, hole: HoleEdges, scratch: Buffers) -> int:
 
 @compiled
 def _bound(foot: Foot, hole: HoleEdges, scratch: Buffers, i: int, out: Floats) -> float:
-    """What the margin in a piece is not below, from its two ends; infinite where it is not below ``out``."""
+    """Return a lower bound of the margin in a piece, from its ends; infinite where not below ``out``."""
     low, high = scratch.events[i], scratch.events[i + 1]
     if high - low <= INSTANT or _is_carried(foot, scratch, i, out[0]):
         return math.inf
@@ -384,7 +432,7 @@ def _add(points: Points, count: int, x: float, y: float) -> int:
 
 @outlined
 def _is_carried(foot: Foot, scratch: Buffers, i: int, margin: float) -> bool:
-    """Whether the corners that have track below in a piece carry a foot by a margin [m] for certain.
+    """Tell whether the corners that have track below in a piece carry a foot by a margin [m] for certain.
 
     More track can only carry it better, so the few corners of its hull are asked first; with all of them it
     is carried as on the whole track, to the last digit. Fills ``keep`` where that is not certain.
@@ -535,7 +583,7 @@ def _inset_between(points: Points, count: int, foot: Foot, k: int, last: int, is
 
 @compiled
 def _line(side: Floats) -> Line:
-    """What all edges need of a side."""
+    """Return the numbers of a side that all edges need."""
     x, q = side[0] + side[2], side[1] + side[3]
     start, end = math.hypot(side[0], side[1]), math.hypot(x, q)
     a = side[2] * side[2] + side[3] * side[3]

@@ -85,87 +85,87 @@ class Orientation:
 
     @property
     def solid(self) -> Part:
-        """The part that lies so."""
+        """Return the part that lies so."""
         return cast(Part, self.posture.solid)
 
     @property
     def returned(self) -> bool:
-        """Whether the track itself does not carry it."""
+        """Tell whether the bare track returns it: it does not carry it, or the drive tips it over."""
         return self.falls_off or self.turns_over
 
     @property
     def may_turn(self) -> bool:
-        """Whether a drive that throws it may bring it into another orientation on the bare track."""
+        """Tell whether a drive that throws it may bring it into another orientation on the bare track."""
         return self.may_tip or self.may_yaw
 
     @property
     def shift(self) -> float:
-        """By how much the weight meets a banked track nearer to the wall [m]."""
+        """Return by how much the weight meets a banked track nearer to the wall [m]: h tan(bank)."""
         return self.posture.height * np.tan(self.track.bank)
 
     @property
     def rolls_along(self) -> bool:
-        """Whether the axis about which it rolls lies more along the track than across it."""
+        """Tell whether the axis about which it rolls lies more along the track than across it."""
         axis = self.posture.axis
         along, across = (0.0, 1.0) if axis is None else np.abs(turned(axis, self.heading))
         return bool(along >= across)
 
     @property
     def rolls_across(self) -> bool:
-        """Whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
+        """Tell whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
         is_round = bool(np.isfinite(self.posture.rolling_circle))
         return self.kind == "rolling" and (is_round or not self.rolls_along)
 
     @property
     def along_a_bank(self) -> bool:
-        """Whether it rolls along a banked track, which does not bring it to the wall: it does not slip."""
+        """Tell whether it rolls along a banked track, which does not bring it to the wall without slip."""
         return self.kind == "rolling" and self.track.bank > 0.0 and not (self.rolls_along or self.groove)
 
     @property
     def wall_leans(self) -> float:
-        """How far the wall leans back from upright [rad]: it is the other face of a groove."""
+        """Return how far the wall leans back from upright [rad]: it is the other face of a groove."""
         return 0.5 * np.pi - self.groove if self.groove else 0.0
 
     @cached_property
     def axes(self) -> Floats:
-        """(3, 3) [1] the track's axes as rows, in the file's axes."""
+        """Return the track's axes as rows (3, 3) [1], in the file's axes."""
         c, s, (x, y, z) = np.cos(self.heading), np.sin(self.heading), cast(Floats, self.posture.axes)
         return np.array([c * x - s * y, s * x + c * y, z])
 
     @cached_property
     def foot(self) -> Footprint:
-        """What of it touches the track."""
+        """Return the footprint: where the part touches the track."""
         whole = footprints.find_footprint(self.posture, self.heading)
         return footprints.clip_to_track(whole, self.distance, self.track.radius, self.track.width)
 
     @cached_property
     def axial_foot(self) -> "Foot":
-        """Its foot as the compiled verdict takes it."""
+        """Return its foot as the compiled verdict takes it."""
         return footprints.axial_foot(self.foot, self.distance, self.track.radius, self.shift)
 
     @cached_property
     def margin(self) -> float:
-        """How far the foot of the centre of mass lies inside the supported hull on the whole track [m]."""
+        """Return how far inside the supported hull the weight meets the whole track [m]."""
         return footprints.over_ring(self.axial_foot, 0.0, 0.0)
 
     @cached_property
     def outline(self) -> Points:
-        """(J, 2) [m] convex outline from above, counter-clockwise."""
+        """Return its convex outline from above (J, 2) [m], counter-clockwise."""
         return turned(self.posture.outline, self.heading)
 
     @cached_property
     def silhouette(self) -> tuple[Points, ...]:
-        """Outline seen along the track: rings (K, 2) [m] of distance from the wall and height."""
+        """Return its outline seen along the track: rings (K, 2) [m] of distance from the wall and height."""
         return silhouette(self.posture, self.heading, self.distance, self.track.radius)
 
     @cached_property
     def view_ahead(self) -> shapely.Geometry:
-        """Its silhouette as a shapely geometry."""
+        """Return its silhouette as a shapely geometry."""
         return shapely.union_all([shapely.Polygon(ring) for ring in self.silhouette])
 
     @cached_property
     def aside(self) -> shapely.Geometry:
-        """Its outline seen from the bowl's axis: distances ahead of its weight and heights, shapely."""
+        """Return its outline seen from the bowl's axis, shapely: ahead of its weight, and heights [m]."""
         points = self.posture.surface
         plan = turned(points[:, :2], self.heading)
         side_view = visible_area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
@@ -173,17 +173,17 @@ class Orientation:
 
     @cached_property
     def balcony(self) -> float:
-        """Least width of track that carries it [m]; infinite where none does."""
+        """Return the least width of track that carries it [m]; infinite where none does."""
         return footprints.balcony(self.axial_foot, self.track.radius)
 
     @cached_property
     def canyon(self) -> float:
-        """Greatest width of a strip removed along the wall that it passes [m]; 0 for none."""
+        """Return the greatest width of a strip removed along the wall that it passes [m]; 0 for none."""
         return footprints.canyon(self.axial_foot, self.track.radius)
 
     @cached_property
     def gap(self) -> float:
-        """Greatest gap across the track that it passes [m]; 0 for none."""
+        """Return the greatest gap across the track that it passes [m]; 0 for none."""
         return _longest_gap(self.foot, self.distance, self.track.radius, self.shift)
 
 
@@ -200,9 +200,18 @@ CACHED = {name for name, value in vars(Orientation).items() if isinstance(value,
 
 @lru_cache(maxsize=64)
 def place(orientations: tuple[Orientation, ...]) -> tuple[Orientation, ...]:
-    """Return orientations as they lie where nothing carries them on; what is computed of them stays.
+    """Return orientations as they lie where nothing carries them on: no speed, no hop, no friction.
 
-    The same tuple gives the same records, so that their verdicts are remembered.
+    Whatever was computed of their shape stays. The same tuple gives the same records, so that their verdicts
+    are remembered.
+
+    Parameters
+    ----------
+    orientations : tuple of Orientation
+
+    Returns
+    -------
+    tuple of Orientation
     """
     placed = []
     for orientation in orientations:
@@ -215,9 +224,23 @@ def place(orientations: tuple[Orientation, ...]) -> tuple[Orientation, ...]:
 def orientations(part: Part, aspects: Aspects, track: Track) -> tuple[Orientation, ...]:
     """Return every stable aspect and heading of a part on a track.
 
-    In the order of its Aspects, the most frequent heading first; those that a turn of the part, which comes
-    from a mesh, maps onto each other are one. Raises FeederError if the part is a card without an outline, or
-    larger than the bowl.
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of that part.
+    track : Track
+
+    Returns
+    -------
+    tuple of Orientation
+        In the order of its Aspects, the most frequent heading first; those that a turn of the part maps onto
+        each other are one.
+
+    Raises
+    ------
+    FeederError
+        If the part is a card without an outline, or larger than the bowl.
     """
     orientations: list[Orientation] = []
     for row in np.flatnonzero(aspects.stable):
@@ -232,7 +255,24 @@ def orientations(part: Part, aspects: Aspects, track: Track) -> tuple[Orientatio
 def orientation_at(
     posture: Posture, headings: Headings, row: int, chances: dict[str, float], track: Track
 ) -> Orientation:
-    """Return a Posture at row ``row`` of its Headings, with the chances of its aspect by rule."""
+    """Return the orientation of a Posture at one of its headings.
+
+    Parameters
+    ----------
+    posture : Posture
+    headings : Headings
+        Of that posture on the track.
+    row : int
+        Of the headings.
+    chances : dict of str to float [1]
+        Of the aspect, by rule.
+    track : Track
+
+    Returns
+    -------
+    Orientation
+        Its chances are those of the aspect times the heading's share.
+    """
     share = float(headings.shares[row])
     return Orientation(
         posture=posture,
@@ -254,11 +294,28 @@ def orientation_at(
 def add_travel(orientations: Sequence[Orientation], bowl: Bowl) -> tuple[Orientation, ...]:
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
-    The velocity of the Bowl is that of the point mass; one that does not convey carries nothing. A part
-    without support is lost after ``FALLEN`` times sqrt((k^2 + h^2) / (g h)) [s], h the height of the centre
-    of mass and k the radius of gyration about the edge's direction, where that is not known the greatest
-    about a level axis.
-    Source: own; docs/tooling.md, "1. The method".
+    A part without support is lost after ``FALLEN`` times sqrt((k^2 + h^2) / (g h)) [s], h the height of the
+    centre of mass and k the radius of gyration about the edge's direction, where that is not known the
+    greatest about a level axis.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    bowl : Bowl
+        Its velocity is that of the point mass; a bowl that does not convey carries nothing.
+
+    Returns
+    -------
+    tuple of Orientation
+
+    Raises
+    ------
+    ConfigError
+        If the bowl's gravity cannot be.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     along, track, gravity = travel_speed(bowl), bowl.track, float(bowl.gravity)
     thrown = hop(bowl) if along > 0.0 else Hop(0.0, 0.0, 0.0)
@@ -294,7 +351,22 @@ def add_travel(orientations: Sequence[Orientation], bowl: Bowl) -> tuple[Orienta
 
 
 def travel_speed(bowl: Bowl) -> float:
-    """Return the velocity up the track [m/s]; 0 of a bowl that does not convey, if its gravity can be."""
+    """Return the velocity of a point mass up the track.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    float [m/s]
+        0 of a bowl that does not convey.
+
+    Raises
+    ------
+    ConfigError
+        If the bowl's gravity cannot be.
+    """
     try:
         velocity = answer.answer(bowl).velocity
     except ConfigError as fault:
@@ -305,9 +377,21 @@ def travel_speed(bowl: Bowl) -> float:
 
 
 def gyration(orientation: Orientation, angle: float) -> float:
-    """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track.
+    """Return the square of the radius of gyration about a level axis: k^2 = a^T I a / m.
 
-    Source: Steiner's theorem about a level axis.
+    Parameters
+    ----------
+    orientation : Orientation
+    angle : float [rad]
+        Of the axis a to the track, 0 along it.
+
+    Returns
+    -------
+    float [m2]
+
+    References
+    ----------
+    The moment of inertia about an axis through the centre of mass, by the tensor I.
     """
     inertia, turn = orientation.posture.inertia, angle - orientation.heading
     c, s = np.cos(turn), np.sin(turn)
@@ -316,7 +400,18 @@ def gyration(orientation: Orientation, angle: float) -> float:
 
 
 def name_mirror_images(orientations: Sequence[Orientation]) -> tuple[Orientation, ...]:
-    """Return orientations (M,) with the names of their mirror images, fore and aft."""
+    """Return orientations with the names of their mirror images, fore and aft.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+
+    Returns
+    -------
+    tuple of Orientation
+        ``mirror`` is '' where none is the image.
+    """
     looks = []
     for orientation in orientations:
         supports, moments = sameness.looks(orientation.posture, [orientation.heading])
@@ -348,7 +443,7 @@ class Neck:
 
 @dataclass(frozen=True, eq=False)
 class Shoulders:
-    """What of a part, as it lies, goes down into a slot, and what then holds it on both sides."""
+    """Shoulders of a part as it lies: its stem goes down into a slot, and they hold it on both sides."""
 
     stem: float  # [m] width across the track of what goes down
     nearest: float  # [m] from the foot of the centre of mass, inwards: what of it comes nearest to the wall
@@ -367,17 +462,17 @@ class Hanging(Orientation):
 
     @property
     def name(self) -> str:
-        """'hanging'; of a part with two heads also 'hanging 2'."""
+        """Return 'hanging'; of a part with two heads also 'hanging 2'."""
         return self.aspect
 
     @property
     def shift(self) -> float:
-        """A hanging part's weight pulls through its own slot, however the track is banked."""
+        """Return 0: a hanging part's weight pulls through its own slot, however the track is banked."""
         return 0.0
 
     @cached_property
     def foot(self) -> Footprint:
-        """What of the head rests on the rails."""
+        """Return the footprint of the head on the rails."""
         corners, points = cast(Points, self.posture.corners), self.posture.surface
         size = np.ptp(corners, axis=0).max()
         reach = 2.0 * np.hypot(*corners[:, :2].T).max()
@@ -390,7 +485,18 @@ class Hanging(Orientation):
         return Footprint(rings=rings)
 
     def over(self, span: tuple[float, ...]) -> float:
-        """Return the margin [m] by which shank and head fit rails at another distance; negative if not."""
+        """Return the margin by which shank and head fit rails at another distance.
+
+        Parameters
+        ----------
+        span : tuple of float [m]
+            Of their slot: from and to, off the wall.
+
+        Returns
+        -------
+        float [m]
+            Negative where they do not.
+        """
         first, last = (end - self.distance for end in span)
         (shank, head), wide = self.lies_on, self.neck
         free = min(shank - 0.5 * wide.shank - first, last - shank - 0.5 * wide.shank)
@@ -417,9 +523,16 @@ class _Pose:
 
 @lru_cache(maxsize=512)
 def neck(orientation: Orientation) -> "Neck | None":
-    """Return the Neck of a part as it lies: its shank and head.
+    """Return the shank and the head of a part as it lies.
 
-    None where no end is wider than the rest of the part, or its shank does not lie along the track.
+    Parameters
+    ----------
+    orientation : Orientation
+
+    Returns
+    -------
+    Neck or None
+        None where no end is wider than the rest of the part, or its shank does not lie along the track.
     """
     return _neck(_Pose(orientation))
 
@@ -498,7 +611,17 @@ def _extents(ring: Points) -> tuple[Floats, list[float]]:
 
 
 def head_first(orientation: Orientation) -> bool:
-    """Return whether a part with a head that lies along the track comes with its head ahead of its shank."""
+    """Tell whether a part with a head that lies along the track comes with its head ahead of its shank.
+
+    Parameters
+    ----------
+    orientation : Orientation
+
+    Returns
+    -------
+    bool
+        False of a part without a head.
+    """
     own_neck = neck(orientation)
     return own_neck is not None and bool(vectors.dot(orientation.axes[0], own_neck.down) < 0.0)
 
@@ -507,9 +630,19 @@ def head_first(orientation: Orientation) -> bool:
 def shoulders(orientation: Orientation, width: float) -> Shoulders | None:
     """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
-    What goes down is taken to lie in the middle of the slot, of a ``width`` [m]. None where nothing goes
-    down, or what rests on both sides then does not hold the centre of mass; of a part that has a head and a
-    shank along the track, too.
+    Its stem is taken to lie in the middle of the slot.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    width : float [m]
+        Of the slot.
+
+    Returns
+    -------
+    Shoulders or None
+        None where nothing goes down, or what rests on both sides then does not hold the centre of mass; also
+        of a part that has a head and a shank along the track, hangs already, or rolls.
     """
     if isinstance(orientation, Hanging) or orientation.kind == "rolling" or neck(orientation) is not None:
         return None
@@ -541,10 +674,22 @@ def _shoulders(pose: _Pose, height: float, radius: float, distance: float, width
 
 
 def shoulder_margin(orientation: Orientation, span: tuple[float, ...]) -> float:
-    """Return by how much [m] shoulders hold a part in a slot between two distances from the wall.
+    """Return by how much shoulders hold a part in a slot.
 
-    0 where it has to move across the track before its stem goes down; -inf where none hold it.
-    Source: own; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    orientation : Orientation
+    span : tuple of float [m]
+        The slot: from and to, off the wall.
+
+    Returns
+    -------
+    float [m]
+        0 where it has to move across the track before its stem goes down; -inf where none hold it.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     stemmed = shoulders(orientation, span[1] - span[0])
     if stemmed is None:
@@ -576,9 +721,18 @@ def _neck_of(orientation: Orientation, stemmed: Shoulders) -> Neck:
 
 
 def shouldered_neck(orientation: Orientation, play: float) -> Neck | None:
-    """Return the neck of a part that stands on its stem, with shoulders over a slot so much wider [m].
+    """Return the neck of a part that stands on its stem, with shoulders over a slot.
 
-    None where nothing of it goes down into such a slot, or its shoulders do not hold it.
+    Parameters
+    ----------
+    orientation : Orientation
+    play : float [m]
+        By which the slot is wider than the stem.
+
+    Returns
+    -------
+    Neck or None
+        None where nothing of it goes down into such a slot, or its shoulders do not hold it.
     """
     if isinstance(orientation, Hanging) or not len(orientation.foot.corners):
         return None
@@ -587,9 +741,20 @@ def shouldered_neck(orientation: Orientation, play: float) -> Neck | None:
 
 
 def may_hang(orientation: Orientation, span: tuple[float, ...]) -> bool:
-    """Return whether a slot [m] between rails is as wide as a part's neck and narrower than its head.
+    """Tell whether a slot between rails is as wide as a part's neck and narrower than its head.
 
     Whether the part comes to hang in it, as it lies, is another question.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    span : tuple of float [m]
+        The slot: from and to, off the wall.
+
+    Returns
+    -------
+    bool
+        False of a part that hangs already.
     """
     width = span[1] - span[0]
     if isinstance(orientation, Hanging):
@@ -601,11 +766,21 @@ def may_hang(orientation: Orientation, span: tuple[float, ...]) -> bool:
 
 
 def hang(orientation: Orientation, span: tuple[float, ...], hanging: Sequence[Hanging] = ()) -> Hanging:
-    """Return a part hanging between rails that it came to lying.
+    """Return a part hanging between rails that it came to lying: it goes down by its shank.
 
-    It goes down by its shank in a slot whose ``span`` [m] is from the wall. Parts that hang by the same head
-    as one of those ``hanging`` in the slot already are that orientation, however they lay before and however
-    they are turned about the vertical.
+    Parameters
+    ----------
+    orientation : Orientation
+        As it came; with a neck or shoulders for this slot.
+    span : tuple of float [m]
+        The slot: from and to, off the wall.
+    hanging : sequence of Hanging, optional
+        Those that hang in the slot already. Parts that hang by the same head as one of them are that
+        orientation, however they lay before and however they are turned about the vertical.
+
+    Returns
+    -------
+    Hanging
     """
     stemmed, half = shoulders(orientation, span[1] - span[0]), 0.5 * (span[1] - span[0])
     corners = _about_centre(orientation, orientation.axes)

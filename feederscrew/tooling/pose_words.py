@@ -60,7 +60,7 @@ def _long_side(orientation: Orientation) -> str:
 
 
 def _leads(orientation: Orientation) -> str:
-    """What of a part is ahead or behind, at the wall or at the free edge; '' where nothing tells it."""
+    """Return what of a part is ahead or behind, at the wall or at the free edge; '' if nothing tells it."""
     if neck(orientation) is not None:
         return "head ahead" if head_first(orientation) else "head behind"
     plan = orientation.outline
@@ -98,7 +98,7 @@ def _where(what: str, off: Vector, size: Vector) -> str:
 
 
 def _heavy_side(orientation: Orientation) -> str:
-    """Whether the heavier half is down or up; '' where neither is, and of a part that rolls."""
+    """Tell whether the heavier half is down or up; '' where neither is, and of a part that rolls."""
     off = orientation.posture.height / orientation.height - 0.5
     if abs(off) < OFF_SHARE or orientation.kind == "rolling":
         return ""

@@ -1,4 +1,4 @@
-"""What a sensor sees of an orientation, and by how much two differ."""
+"""View of an orientation by a sensor, and by how much two differ."""
 
 import functools
 from typing import NamedTuple
@@ -32,13 +32,26 @@ class Border(NamedTuple):
 
 
 def difference(orientation: Orientation, other: Orientation, sees: str) -> float:
-    """Return by how much [m] two orientations differ for a sensor.
+    """Return by how much two orientations differ for a sensor.
 
-    ``sees`` is 'outline' from above, 'side' from the bowl's axis, 'height', or 'relief' along the line over
-    which the other one's centre of mass goes. The greatest distance from a place of either to the other one,
-    both with their front at the same place and, seen from above, as near to the wall. The least of how they
-    may come: from above the outline is turned until it fits, seen otherwise the first may come askew.
-    Source: own; docs/tooling.md, "1. The method".
+    It is the greatest distance from a place of either border to the other one, both with their front at the
+    same place and, seen from above, as near to the wall. The least counts of how they may come: from above
+    the outline is turned until it fits, seen otherwise the first may come askew.
+
+    Parameters
+    ----------
+    orientation, other : Orientation
+    sees : str
+        'outline' from above, 'side' from the bowl's axis, 'height', or 'relief' along the line over which the
+        other one's centre of mass goes.
+
+    Returns
+    -------
+    float [m]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     if sees == "height":
         return abs(orientation.height - other.height)
@@ -56,7 +69,19 @@ def _difference(lies: View, wanted_lies: View, sees: str) -> float:
 
 
 def askew(orientation: Orientation, sees: str) -> float:
-    """Return by how much [m] an orientation may differ from itself for a sensor, as parts come askew."""
+    """Return by how much an orientation may differ from itself for a sensor, as parts come askew.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    sees : str
+        As for ``difference``.
+
+    Returns
+    -------
+    float [m]
+        0 of an outline, which is turned until it fits, and of a height.
+    """
     if sees in ("outline", "height"):
         return 0.0
     return _askew(_lies(orientation, orientation.distance, sees), sees)
@@ -69,14 +94,22 @@ def _askew(lies: View, sees: str) -> float:
 
 
 def _lies(orientation: Orientation, line: float, sees: str) -> View:
-    """What a sensor sees depends on: the posture, the heading, and how far from its line it lies [m]."""
+    """Return all that a sensor's view depends on: posture, heading, and how far off its line it lies [m]."""
     return orientation.posture, orientation.heading, orientation.distance - line if sees == "relief" else 0.0
 
 
 def fit_difference(view: shapely.Geometry, wanted: shapely.Geometry, enough: float = 0.0) -> float:
-    """Return by how much [m] an area seen from above differs from another one, turned until it fits best.
+    """Return by how much an area seen from above differs from another one, turned until it fits best.
 
-    Once they differ by no more than ``enough`` [m], or by more at any turn, no better fit is sought.
+    Parameters
+    ----------
+    view, wanted : shapely geometry [m]
+    enough : float [m], optional
+        Once they differ by no more, or by more at any turn, no better fit is sought.
+
+    Returns
+    -------
+    float [m]
     """
     return _fit_difference(border(view), border(wanted), enough)
 
@@ -119,7 +152,16 @@ def _fit_difference(view: Border, wanted: Border, enough: float) -> float:
 
 
 def border(area: shapely.Geometry) -> Border:
-    """Return the border of an area, a shapely geometry."""
+    """Return the border of an area, with places along it and its sides.
+
+    Parameters
+    ----------
+    area : shapely geometry [m]
+
+    Returns
+    -------
+    Border
+    """
     rings = area.boundary
     places = shapely.get_coordinates(shapely.segmentize(rings, 10.0 * BORDER_STEP_M))
     corners, ring = shapely.get_coordinates(shapely.get_parts(rings), return_index=True)
@@ -128,19 +170,47 @@ def border(area: shapely.Geometry) -> Border:
 
 
 def border_distance(first: Border, second: Border) -> float:
-    """Return the greatest distance [m] from a place of either Border to the other one."""
+    """Return the greatest distance from a place of either border to the other one.
+
+    Parameters
+    ----------
+    first, second : Border
+
+    Returns
+    -------
+    float [m]
+    """
     return max(kernel.farthest(a.places, b.sides) for a, b in ((first, second), (second, first)))
 
 
 def outline_distance(first: shapely.Geometry, second: shapely.Geometry) -> float:
-    """Return the greatest distance [m] from a place of either area's border to the other's."""
+    """Return the greatest distance from a place of either area's border to the other's.
+
+    Parameters
+    ----------
+    first, second : shapely geometry [m]
+
+    Returns
+    -------
+    float [m]
+    """
     return border_distance(border(first), border(second))
 
 
 def outline(orientation: Orientation, sees: str, line: float = 0.0) -> shapely.Geometry:
-    """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
+    """Return the area that a sensor sees of an orientation: ahead from its front, and from its side.
 
-    ``sees`` as for ``difference``, 'relief' along a ``line`` [m] off the wall.
+    Parameters
+    ----------
+    orientation : Orientation
+    sees : str
+        As for ``difference``.
+    line : float [m], optional
+        Of a 'relief': over which line, off the wall.
+
+    Returns
+    -------
+    shapely geometry [m]
     """
     return _outline(_lies(orientation, line, sees), sees)
 

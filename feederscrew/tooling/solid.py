@@ -22,15 +22,46 @@ WALL_OVERLAP_M = 1e-3  # [m] by which wall and gates reach into plate and wall, 
 def leaning_wall(
     radius: float, start: float, stop: float, lean: float, high: float
 ) -> tuple[Points, Triangles]:
-    """Return the vertices and faces of a wall that leans back [rad] between two places [m].
+    """Return the surface of a wall that leans back, between two places along it.
 
-    Source: own; docs/tooling.md, "A groove".
+    Parameters
+    ----------
+    radius : float [m]
+        Of the wall, at its foot.
+    start, stop : float [m]
+    lean : float [rad]
+        Back from upright.
+    high : float [m]
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+
+    References
+    ----------
+    docs/tooling.md, "A groove".
     """
     return _surface(_revolve_leaning(radius, start, stop, lean, high))
 
 
 def leaning_profile(radius: float, lean: float, high: float) -> Points:
-    """Return the section (4, 2) [m] of a wall that leans back [rad]: distance from the axis, height."""
+    """Return the section of a wall that leans back.
+
+    Parameters
+    ----------
+    radius : float [m]
+        Of the wall, at its foot.
+    lean : float [rad]
+        Back from upright.
+    high : float [m]
+        Along the wall.
+
+    Returns
+    -------
+    (4, 2) float [m]
+        Distance from the axis, and height.
+    """
     up, out = np.array([np.sin(lean), np.cos(lean)]), np.array([np.cos(lean), -np.sin(lean)])
     low, top = -WALL_OVERLAP_M * up, high * up
     return np.array([low, low + WALL * out, top + WALL * out, top]) + [radius, 0.0]
@@ -46,9 +77,18 @@ def _revolve_leaning(radius: float, start: float, stop: float, lean: float, high
 
 
 def prism(area: shapely.Geometry, low: float, high: float) -> tuple[Points, Triangles]:
-    """Return the closed surface of a body over an area [m], shapely, between two heights [m].
+    """Return the closed surface of a body over an area, between two heights.
 
-    Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside.
+    Parameters
+    ----------
+    area : shapely geometry [m]
+    low, high : float [m]
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+        Corners counter-clockwise seen from outside.
     """
     return _surface(extrude(area, low, high))
 
@@ -59,7 +99,17 @@ def _surface(body: "Manifold") -> tuple[Points, Triangles]:
 
 
 def extrude(area: shapely.Geometry, low: float, high: float) -> "Manifold":
-    """Return a body [mm] over a shapely area [m] of the plane between two heights [m]."""
+    """Return a body over an area of the plane, between two heights.
+
+    Parameters
+    ----------
+    area : shapely geometry [m]
+    low, high : float [m]
+
+    Returns
+    -------
+    manifold3d.Manifold [mm]
+    """
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
     corners = [np.asarray(ring.coords)[:-1] / MM for ring in rings]

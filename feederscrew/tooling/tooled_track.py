@@ -44,7 +44,7 @@ class PlacedDevice:
 
     @property
     def label(self) -> str:
-        """'gap 9 mm': kind and value, the latter where it is one number."""
+        """Return 'gap 9 mm': kind and value, the latter where it is one number."""
         return self.device.label
 
     @property
@@ -67,7 +67,18 @@ class PlacedDevice:
         return float(along.min()), float(along.max())
 
     def shop_work(self, width: float) -> tuple[ShopWork, ...]:
-        """Return what the shop must do to its cuts on a track of a width [m], beside cutting outlines."""
+        """Return what the shop must do to its cuts, beside cutting outlines.
+
+        Parameters
+        ----------
+        width : float [m]
+            Of the track.
+
+        Returns
+        -------
+        tuple of ShopWork
+            Each once.
+        """
         work = [job for opening in self.openings for job in opening.shop_work(width)]
         return tuple(dict.fromkeys(work))
 
@@ -111,13 +122,31 @@ class TooledTrack:
     grooves: tuple[GrooveStretch, ...] = ()
 
     def climb_at(self, s: Values) -> Floats:
-        """Return the climb [rad] at lengths s [m]: constant between its changes."""
+        """Return the climb at some lengths: constant between its changes.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        (...) float [rad]
+        """
         places = np.array([at for at, _ in self.climbs])
         climbs = np.array([self.track.climb, *(climb for _, climb in self.climbs)])
         return climbs[np.searchsorted(places, s, side="right")]
 
     def bank_at(self, s: Values) -> Floats:
-        """Return the bank [rad] at lengths s [m]: linear over each twist."""
+        """Return the bank at some lengths: linear over each twist.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        (...) float [rad]
+        """
         bank = np.full(np.shape(s), float(self.track.bank))
         before = self.track.bank
         for start, end, after in self.banks:
@@ -126,7 +155,16 @@ class TooledTrack:
         return bank
 
     def wall_lean_at(self, s: Values) -> Floats:
-        """Return the lean [rad] of the wall from upright at lengths s [m]; it opens and closes linearly."""
+        """Return the lean of the wall from upright at some lengths; it opens and closes linearly.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        (...) float [rad]
+        """
         lean = np.zeros(np.shape(s))
         for groove in self.grooves:
             opened = np.clip((np.asarray(s) - groove.start) / groove.opens, 0.0, 1.0)
@@ -135,7 +173,16 @@ class TooledTrack:
         return lean
 
     def level_at(self, s: Values) -> Floats:
-        """Return the level [m] at lengths s [m], its climb left out: it falls at each step."""
+        """Return the level of the track at some lengths, its climb left out: it falls at each step.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        (...) float [m]
+        """
         fallen = [np.where(np.asarray(s) >= at, drop, 0.0) for at, drop in self.drops]
         return -np.sum(fallen, axis=0) if fallen else np.zeros(np.shape(s))
 
@@ -145,7 +192,16 @@ class TooledTrack:
         return tuple((placed, opening) for placed in self.devices for opening in placed.openings)
 
     def opened_to(self, s: float) -> "TooledTrack":
-        """Return the track with the slots that are open at its end up to another length s [m]."""
+        """Return the track with the slots that are open at its end up to another length.
+
+        Parameters
+        ----------
+        s : float [m]
+
+        Returns
+        -------
+        TooledTrack
+        """
         devices = tuple(
             replace(
                 item,
@@ -162,7 +218,7 @@ class TooledTrack:
 
     @property
     def hangs(self) -> bool:
-        """Whether parts leave hanging between rails."""
+        """Tell whether parts leave hanging between rails."""
         return any(placed.features.hangs for placed in self.devices)
 
     @property
@@ -260,7 +316,7 @@ def lay_out(
 def _drawn_width(
     track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]
 ) -> tuple[float, list[Features]]:
-    """How much of a track is drawn across [m], and the features on that: of a very wide one not all."""
+    """Return the width [m] of a track that is drawn, and the features on it: of a very wide one not all."""
     own = [device.features(track, orientations) for device in devices]
     if track.width <= track.extent:
         return track.width, own
@@ -308,10 +364,24 @@ def continue_slots(
 
 
 def bend_ring(ring: Points, radius: float, shift: float = 0.0, chord: float = DRAWN_CHORD_M) -> Points:
-    """Return a ring (K, 2) [m], along the wall and from it, as it lies in the bowl, (N, 2) [m].
+    """Return a ring as it lies in the bowl, its sides along the wall bent to arcs.
 
-    From the point where the wall of a ``radius`` [m] is tangent to X, the bowl's axis at (0, radius); turned
-    ahead by ``shift`` [rad], joined by chords by which an arc may be seen too flat by ``chord`` [m].
+    It is measured from the point where the wall is tangent to X, the bowl's axis at (0, radius).
+
+    Parameters
+    ----------
+    ring : (K, 2) float [m]
+        Along the wall, and from it.
+    radius : float [m]
+        Of the wall.
+    shift : float [rad], optional
+        By which it is turned ahead.
+    chord : float [m], optional
+        By which an arc may be seen too flat.
+
+    Returns
+    -------
+    (N, 2) float [m]
     """
     border = shapely.linestrings(np.vstack([ring, ring[:1]]))
     fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(8.0 * radius * chord)))[:-1]
@@ -341,10 +411,19 @@ def track_at_entry(track: Track, devices: Sequence[Device], orientations: Sequen
 
 
 def walls_of(tooled: TooledTrack) -> list[tuple[float, float, float]]:
-    """Return stretches of the wall as the track's own plane has it, (from, to, lean) [m, m, rad].
+    """Return stretches of the wall as the track's own plane has it.
 
     It leans back by a groove's lean from upright, less the bank of the track: beside a banked track an
     upright wall stands over it.
+
+    Parameters
+    ----------
+    tooled : TooledTrack
+
+    Returns
+    -------
+    list of (float [m], float [m], float [rad])
+        From, to and lean.
     """
     length = tooled.length
     changes = {0.0, length}

@@ -40,7 +40,18 @@ class Passage:
     opening: shapely.Geometry | None  # [m] of a gate, in distances from the wall and heights
 
     def angle(self, placed: PlacedDevice) -> float:
-        """Return where the part is on a tooled track [rad]: from the tangent at its datum."""
+        """Return where the part is on a tooled track, from the tangent at its datum.
+
+        Parameters
+        ----------
+        placed : PlacedDevice
+            Of the passage's device.
+
+        Returns
+        -------
+        float [rad]
+            At a gate that it does not pass, where it touches the gate.
+        """
         orientation, radius = self.orientation, self.orientation.track.radius
         if placed.footprints and self.verdict.passes <= 0.0:
             ahead, from_wall = self.outline.T
@@ -53,7 +64,19 @@ class Passage:
 
 
 def worst_passage(device: Device, orientation: Orientation, orientations: Sequence[Orientation]) -> Passage:
-    """Return an orientation at the place of a device where its margin is least."""
+    """Return an orientation at the place of a device where its margin is least.
+
+    Parameters
+    ----------
+    device : Device
+    orientation : Orientation
+    orientations : sequence of Orientation
+        All of the part: a device may name any.
+
+    Returns
+    -------
+    Passage
+    """
     outcome = verdict(device, orientation, orientations)
     touching, weight = foot_area(orientation), (0.0, orientation.distance - orientation.shift)
     features = device.features(orientation.track, orientations)
@@ -88,7 +111,16 @@ def worst_passage(device: Device, orientation: Orientation, orientations: Sequen
 
 
 def foot_area(orientation: Orientation) -> shapely.Geometry:
-    """Return what of an orientation touches the track, as a shapely geometry from the wall [m]."""
+    """Return the footprint of an orientation as an area with lines and points, from the wall.
+
+    Parameters
+    ----------
+    orientation : Orientation
+
+    Returns
+    -------
+    shapely geometry [m]
+    """
     up = [0.0, orientation.distance]
     areas = [shapely.Polygon(ring + up) for ring in orientation.foot.rings]
     parts = [reduce(shapely.symmetric_difference, areas)] if areas else []
@@ -98,7 +130,20 @@ def foot_area(orientation: Orientation) -> shapely.Geometry:
 
 
 def passage_fate(orientation: Orientation, passages: Sequence[Passage]) -> str:
-    """Return in words what becomes of an orientation at the end of Passages, none of which returned it."""
+    """Return in words what becomes of an orientation at the end of its passages.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        As it came.
+    passages : sequence of Passage
+        None of which returned it.
+
+    Returns
+    -------
+    str
+        'leaves', 'leaves as B@90', 'tips over on the track'.
+    """
     last = passages[-1].after if passages else orientation
     if last.returned:
         return "falls off the track" if last.falls_off else "tips over on the track"
@@ -110,9 +155,20 @@ def passage_fate(orientation: Orientation, passages: Sequence[Passage]) -> str:
 def until_returned(
     devices: Sequence[Device], orientation: Orientation, orientations: Sequence[Orientation]
 ) -> list[Passage]:
-    """Return the Passages of an orientation, as most parts go on, up to the device that returns it.
+    """Return the passages of an orientation, as most parts go on, up to the device that returns it.
 
-    None of one that the bare track does not carry.
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    orientation : Orientation
+    orientations : sequence of Orientation
+        All of the part.
+
+    Returns
+    -------
+    list of Passage
+        Empty for an orientation that the bare track does not carry.
     """
     passages = []
     for device in () if orientation.returned else devices:
@@ -130,7 +186,7 @@ def _hole_shift(opening: TrackOpening | None, orientation: Orientation) -> float
 
 
 def _hole(opening: TrackOpening | None, orientation: Orientation, turn: float) -> shapely.Geometry | None:
-    """What an opening takes away where the margin is least, about the radial line of the foot."""
+    """Return the hole of a device where the margin is least, about the radial line of the foot."""
     if opening is None:
         return None
     track, length = orientation.track, SHOWN_HOLE_LENGTHS * orientation.length

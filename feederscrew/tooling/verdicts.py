@@ -49,9 +49,24 @@ def verdict(
 ) -> Verdict:
     """Return what a device does with an orientation.
 
-    A device may name any of the part's ``orientations``; raises ConfigError if the part does not have one
-    that it names. With a ``sigma`` [m], the standard deviation of play and tolerance together, the share that
-    passes is Phi(margin / sigma), not 0 or 1.
+    Parameters
+    ----------
+    device : Device
+    orientation : Orientation
+    orientations : sequence of Orientation, optional
+        All of the part: a device may name any.
+    sigma : float [m], optional
+        Standard deviation of play and tolerance together. With it the share that passes is Phi(margin /
+        sigma), not 0 or 1.
+
+    Returns
+    -------
+    Verdict
+
+    Raises
+    ------
+    ConfigError
+        If the part does not have an orientation that the device names.
     """
     return _verdict(device, orientation, tuple(orientations), sigma)
 
@@ -78,12 +93,29 @@ def _verdict(
 
 
 def drift_speed(push: float, friction: float, swing: float, gravity: float) -> float:
-    """Return the velocity [m/s] at which a steady sideways push moves what slips on a vibrating track.
+    """Return the velocity at which a steady sideways push moves what slips on a vibrating track.
 
-    ``push`` [m/s2] is force over mass, ``swing`` [m/s] the amplitude of the relative velocity along the
-    track. Infinite where friction [1] does not hold the push back at all: beyond v = 4 V / e, where it is
-    0.94 of what holds on a still track.
-    Source: v = a pi V / (2 mu g ln(4 V / v)), the mean of Coulomb friction over a sine, for v well below V;
+    It solves v = a pi V / (2 mu g ln(4 V / v)), the mean of Coulomb friction over a sine, for v well below V.
+
+    Parameters
+    ----------
+    push : float [m/s2]
+        a, force over mass.
+    friction : float [1]
+        mu.
+    swing : float [m/s]
+        V, the amplitude of the relative velocity along the track.
+    gravity : float [m/s2]
+        g.
+
+    Returns
+    -------
+    float [m/s]
+        Infinite where friction does not hold the push back at all: beyond v = 4 V / e, where it is 0.94 of
+        what holds on a still track.
+
+    References
+    ----------
     docs/tooling.md, "1. The method".
     """
     fastest = 4.0 * swing / math.e
@@ -101,12 +133,28 @@ def drift_speed(push: float, friction: float, swing: float, gravity: float) -> f
 
 
 def force_to_clear(orientation: Orientation, wide: float, height: float) -> float:
-    """Return the least sideways force [N] that takes an orientation that travels off the track as it passes.
+    """Return the least sideways force that takes an orientation off the track as it passes.
 
-    It acts over a way along the track of ``wide`` [m], at a ``height`` [m] over it. The part drifts to the
-    free edge in the time it takes to pass, or slides outright; or it tips over the side of its foot, where
-    force times height is beyond weight times the way from its centre of mass to that side.
-    Source: docs/tooling.md, "1. The method".
+    The part drifts to the free edge in the time it takes to pass, or slides outright; or it tips over the
+    side of its foot, where force times height is beyond weight times the way from its centre of mass to that
+    side.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        It travels: it knows its speed and its track's friction.
+    wide : float [m]
+        The way along the track over which the force acts.
+    height : float [m]
+        Over the track, at which it acts.
+
+    Returns
+    -------
+    float [N]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     weight = orientation.posture.mass * orientation.gravity
     reach = float(orientation.foot.corners[:, 1].max()) + orientation.shift  # of its foot, to the free edge
@@ -135,7 +183,7 @@ PlaceShares = tuple[tuple[int, float], ...]  # places of orientations, and the s
 
 @dataclass(frozen=True)
 class Turn:
-    """How an orientation turns over, and into which."""
+    """A way in which an orientation turns over, and into which."""
 
     angle: float  # [rad] at which the centre of mass stands over its barrier
     lift: float  # [m] by which it is then higher than lying
@@ -149,10 +197,26 @@ class Turn:
 def over_step(
     orientation: Orientation, orientations: Sequence[Orientation], height: float
 ) -> tuple[PlaceShares, float]:
-    """Return what a step of a height [m] does with an orientation: (place, share [1]) each, and a margin [m].
+    """Return what a step does with an orientation.
 
-    The margin is negative where momentum decides.
-    Source: docs/tooling.md, "4. Turning parts over".
+    Parameters
+    ----------
+    orientation : Orientation
+    orientations : sequence of Orientation
+        All of the part.
+    height : float [m]
+        Of the step.
+
+    Returns
+    -------
+    shares : tuple of (int, float [1])
+        The orientations into which it is turned, by their places, and the share of each.
+    margin : float [m]
+        Negative where momentum decides.
+
+    References
+    ----------
+    docs/tooling.md, "4. Turning parts over".
     """
     turn = turn_over(orientation, tuple(orientations), False)
     room = turn.sure - turn.lift
@@ -172,10 +236,26 @@ def over_step(
 def beyond_ledge(
     orientation: Orientation, orientations: Sequence[Orientation], width: float
 ) -> tuple[PlaceShares, float]:
-    """Return what becomes of what has its weight beyond a ledge of a width [m], as ``over_step``.
+    """Return what becomes of an orientation that has its weight beyond a ledge.
 
-    Of what stays, the margin is the height by which it misses its barriers.
-    Source: docs/tooling.md, "4. Turning parts over".
+    Parameters
+    ----------
+    orientation : Orientation
+    orientations : sequence of Orientation
+        All of the part.
+    width : float [m]
+        Of the ledge.
+
+    Returns
+    -------
+    shares : tuple of (int, float [1])
+        As ``over_step``; empty where it stays.
+    margin : float [m]
+        Of what stays, the height by which it misses its barriers.
+
+    References
+    ----------
+    docs/tooling.md, "4. Turning parts over".
     """
     turn, drop = turn_over(orientation, tuple(orientations), True), below_ledge(orientations)
     if drop >= turn.sure:
@@ -239,9 +319,23 @@ def _carries_on(orientation: Orientation, axis: Vector, first: float, last: floa
 
 @functools.lru_cache(maxsize=2048)
 def turn_over(orientation: Orientation, orientations: tuple[Orientation, ...], inwards: bool) -> Turn:
-    """Return how an orientation turns over: its leading edge, as at a step, or ``inwards``, as at a ledge.
+    """Return how an orientation turns over an edge, and into which.
 
-    Source: docs/tooling.md, "4. Turning parts over".
+    Parameters
+    ----------
+    orientation : Orientation
+    orientations : tuple of Orientation
+        All of the part.
+    inwards : bool
+        Towards the bowl's axis, as at a ledge; else over its leading edge, as at a step.
+
+    Returns
+    -------
+    Turn
+
+    References
+    ----------
+    docs/tooling.md, "4. Turning parts over".
     """
     solid, high = orientation.solid, orientation.posture.height
     hull = convex_hull(cast(Points, solid.vertices), solid.centre_of_mass, solid.source)
@@ -316,10 +410,24 @@ def _look(orientation: Orientation) -> Floats:
 def becomes_in_groove(
     orientation: Orientation, orientations: Sequence[Orientation], angle: float
 ) -> tuple[tuple[int, float], ...]:
-    """Return what an orientation becomes in a groove, (place, share) each; place -1 is none of the known.
+    """Return what an orientation becomes in a groove; it comes askew, one way as often as the other.
 
-    It comes askew, one way as often as the other; ``angle`` [rad] is of both faces from level.
-    Source: own; docs/tooling.md, "A groove".
+    Parameters
+    ----------
+    orientation : Orientation
+    orientations : sequence of Orientation
+        All of the part.
+    angle : float [rad]
+        Of both faces from level.
+
+    Returns
+    -------
+    tuple of (int, float [1])
+        The orientations that it becomes, by their places, -1 for an unknown one, and the share of each.
+
+    References
+    ----------
+    docs/tooling.md, "A groove".
     """
     shares: dict[int, float] = {}
     own = DeviceEncounter(orientation, orientations).place
@@ -339,9 +447,22 @@ def becomes_in_groove(
 def groove_height(points: Points, angle: float) -> Floats:
     """Return how high over the bottom of a groove a centre of mass is, its part resting on both faces.
 
-    ``points`` (..., V, 3) [m] are of the part from its centre of mass: ahead, inwards along the inner face,
-    square to that face; ``angle`` [rad] is of both faces from level.
-    Source: own; docs/tooling.md, "A groove".
+    With d and e its distances to the inner and the outer face it is (d + e) / (2 cos(angle)).
+
+    Parameters
+    ----------
+    points : (..., V, 3) float [m]
+        Of the part from its centre of mass: ahead, inwards along the inner face, square to that face.
+    angle : float [rad]
+        Of both faces from level.
+
+    Returns
+    -------
+    (...) float [m]
+
+    References
+    ----------
+    docs/tooling.md, "A groove".
     """
     s, c = np.sin(2.0 * angle), np.cos(2.0 * angle)
     inner = -points[..., 2].min(axis=-1)
@@ -350,10 +471,22 @@ def groove_height(points: Points, angle: float) -> Floats:
 
 
 def settled_in_groove(points: Points, angle: float) -> Floats:
-    """Return a part (V, 3) [m] as it comes to lie in a groove: turned downhill until no turn leads lower.
+    """Return a part as it comes to lie in a groove: turned downhill until no turn leads lower.
 
-    Parameters as for ``groove_height``.
-    Source: own; docs/tooling.md, "A groove".
+    Parameters
+    ----------
+    points : (V, 3) float [m]
+        As of ``groove_height``.
+    angle : float [rad]
+        Of both faces from level.
+
+    Returns
+    -------
+    (V, 3) float [m]
+
+    References
+    ----------
+    docs/tooling.md, "A groove".
     """
     step, here = FIRST_STEP_RAD, float(groove_height(points, angle))
     while step > LAST_STEP_RAD:
@@ -382,13 +515,13 @@ def _turns(step: float) -> Floats:
 
 @functools.lru_cache(maxsize=2048)
 def _reach_in_groove(posture: Posture, heading: float, angle: float) -> Floats:
-    """What one that comes with a heading reaches (REACH_DIRECTIONS,) [m] as it lies in a groove."""
+    """Return how far a part that comes at a heading reaches (REACH_DIRECTIONS,) [m], lying in a groove."""
     return _reach(settled_in_groove(_corners_from_centre(posture, heading), angle))
 
 
 @functools.lru_cache(maxsize=2048)
 def _reaches(posture: Posture, heading: float) -> Floats:
-    """What an orientation reaches (N, REACH_DIRECTIONS) [m], turned a little."""
+    """Return how far an orientation reaches (N, REACH_DIRECTIONS) [m], turned a little."""
     return np.array([_reach(_corners_from_centre(posture, heading + by)) for by in HEADING_OFFSETS])
 
 
@@ -419,7 +552,16 @@ def _asks_among(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class DeviceEncounter:
-    """One orientation at a device: what a device asks of it, and how it says what becomes of it."""
+    """One orientation at a device: answers what a device asks of it, and makes verdicts.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    orientations : sequence of Orientation, optional
+        All of the part.
+    sigma : float [m], optional
+        Standard deviation of play and tolerance together.
+    """
 
     def __init__(
         self, orientation: Orientation, orientations: Sequence[Orientation] = (), sigma: float = 0.0
@@ -431,7 +573,7 @@ class DeviceEncounter:
 
     @property
     def place(self) -> int:
-        """Its place among the orientations, also where the track leans otherwise by now."""
+        """Return its place among the orientations, also where the track leans otherwise by now."""
         own = self.orientation
         for k, other in enumerate(self.orientations):
             if other is own or (other.posture is own.posture and other.heading == own.heading):
@@ -443,26 +585,80 @@ class DeviceEncounter:
         return Verdict(1.0, float("nan"))
 
     def verdict(self, margin: float, shift: float = 0.0, hangs: bool = False) -> Verdict:
-        """Return the verdict of a margin [m]; ``shift`` [rad] and ``hangs`` as in Verdict."""
+        """Return the verdict of a margin.
+
+        Parameters
+        ----------
+        margin : float [m]
+        shift : float [rad], optional
+            As in Verdict.
+        hangs : bool, optional
+            As in Verdict.
+
+        Returns
+        -------
+        Verdict
+        """
         return Verdict(self.share(margin), float(margin), float(shift), hangs)
 
     def turning(self, shares: PlaceShares, margin: float) -> Verdict:
-        """Return the verdict of a device that turns shares of it into others: (place, share) each."""
+        """Return the verdict of a device that turns shares of it into others.
+
+        Parameters
+        ----------
+        shares : tuple of (int, float [1])
+            Places of orientations, and the share of each.
+        margin : float [m]
+
+        Returns
+        -------
+        Verdict
+            The rest goes on as it came.
+        """
         here, stays = self.place, 1.0 - sum(part for _, part in shares)
         return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + tuple(shares))
 
     def share(self, margin: float) -> float:
-        """Return the share that passes at a margin [m]."""
+        """Return the share that passes at a margin.
+
+        Parameters
+        ----------
+        margin : float [m]
+
+        Returns
+        -------
+        float [1]
+        """
         return share(margin, self.sigma)
 
     def over_span(self, span: tuple[float, ...]) -> float:
-        """Return its margin [m] on a track without what lies between two distances off the wall."""
+        """Return its margin on a track without what lies between two distances off the wall.
+
+        Parameters
+        ----------
+        span : tuple of float [m]
+            From and to, off the wall.
+
+        Returns
+        -------
+        float [m]
+        """
         radius, (first, last) = self.orientation.track.radius, span
         high = radius - first if first > 0.0 else 2.0 * radius
         return footprints.over_ring(self.orientation.axial_foot, max(radius - last, 0.0), high)
 
     def over_slot(self, span: tuple[float, ...]) -> float:
-        """Return the same, unless it may ride over the hole on its sides: it is then not sure."""
+        """Return its margin as ``over_span``; not sure where it may ride over the hole on its sides.
+
+        Parameters
+        ----------
+        span : tuple of float [m]
+            From and to, off the wall.
+
+        Returns
+        -------
+        float [m]
+        """
         margin = self.over_span(span)
         return max(margin, -UNSURE) if self.rides(span[1] - span[0], np.inf) else margin
 
@@ -480,14 +676,35 @@ class DeviceEncounter:
     rolled_over = _asks_among(beyond_ledge)  # (width)
 
     def held_by_head(self, width: float, widest: float) -> float:
-        """Return by how much [m] a slot of some width lets the shank down and, ``widest``, holds the head."""
+        """Return by how much a slot lets the shank down and holds the head.
+
+        Parameters
+        ----------
+        width : float [m]
+            Of the slot.
+        widest : float [m]
+            The slot's greatest width, at which it has to hold the head.
+
+        Returns
+        -------
+        float [m]
+            Negative where it does not do both; -inf of a part without a head.
+        """
         own_neck = neck(self.orientation)
         return -np.inf if own_neck is None else min(width - own_neck.shank, own_neck.head - widest)
 
     def may_catch(self, entry: tuple[float, ...], span: tuple[float, ...]) -> bool:
-        """Return whether its head may stick between rails as a wedge, or its shank not turn down.
+        """Tell whether its head may stick between rails as a wedge, or its shank not turn down.
 
-        The rails begin with an ``entry`` and have a ``span``: each is from and to, off the wall [m].
+        Parameters
+        ----------
+        entry, span : tuple of float [m]
+            Of the rails' slot at its begin and behind it: from and to, off the wall.
+
+        Returns
+        -------
+        bool
+            False of an orientation that is only placed.
         """
         own, own_neck = self.orientation, neck(self.orientation)
         if own.grip <= 0.0:
@@ -500,10 +717,23 @@ class DeviceEncounter:
         return not (goes_down and falling.hangs_free(own, span))
 
     def blown(self, force: float, down: float, seconds: float) -> float:
-        """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
+        """Return how far a force carries it over a track that stands still, less its way to the free edge.
 
-        ``down`` [N] presses it on the track meanwhile. Less what it has to go to leave it: negative where it
-        stays, as what hangs between rails does.
+        With the speed v = (F - mu N) t / m after a time t it goes v t / 2, and then v^2 / (2 g mu).
+
+        Parameters
+        ----------
+        force : float [N]
+            F, sideways.
+        down : float [N]
+            Presses it on the track meanwhile: N is its weight and that.
+        seconds : float [s]
+            t.
+
+        Returns
+        -------
+        float [m]
+            Negative where it stays, as what hangs between rails does.
         """
         orientation, gravity = self.orientation, self.orientation.gravity
         mass, to_edge = orientation.posture.mass, orientation.track.width - orientation.distance
@@ -515,9 +745,19 @@ class DeviceEncounter:
         return float(distance - to_edge)
 
     def unless_laid_over(self, margin: float, low: float, sweep: float = 0.0) -> float:
-        """Return the margin [m] of what a blade from a height on holds up: none where it may lay it over.
+        """Return the margin of a part that a blade holds up; not sure where it may lay the part over.
 
-        A face with a ``sweep`` [rad] to the direction of travel may do so to the side as well.
+        Parameters
+        ----------
+        margin : float [m]
+        low : float [m]
+            Height of the blade's edge.
+        sweep : float [rad], optional
+            Of its face to the direction of travel: such a blade may lay it over to the side as well.
+
+        Returns
+        -------
+        float [m]
         """
         if not margin < 0.0 < self.orientation.grip:
             return margin
@@ -527,7 +767,17 @@ class DeviceEncounter:
         return max(margin, -UNSURE) if over else margin
 
     def through(self, opening: shapely.Geometry) -> float:
-        """Return its margin [m] in an opening; none of one that travels where the gate may lay it over."""
+        """Return its margin in an opening: not sure where the gate may lay over a part that travels.
+
+        Parameters
+        ----------
+        opening : shapely geometry [m]
+            Distance from the wall, and height.
+
+        Returns
+        -------
+        float [m]
+        """
         orientation, margin = self.orientation, opening_margin(opening, self.orientation)
         if margin >= 0.0 or orientation.grip <= 0.0:
             return margin
@@ -535,7 +785,17 @@ class DeviceEncounter:
         return self.unless_laid_over(margin, orientation.view_ahead.intersection(worn).bounds[1])
 
     def laid_in_groove(self, angle: float) -> Verdict:
-        """Return the verdict of a groove, of faces at an angle [rad]: sure of what lies in it as it came."""
+        """Return the verdict of a groove: sure of what lies in it as it came.
+
+        Parameters
+        ----------
+        angle : float [rad]
+            Of both faces from level.
+
+        Returns
+        -------
+        Verdict
+        """
         here, landed = self.place, becomes_in_groove(self.orientation, self.orientations, angle)
         if landed == ((here, 1.0),):
             return self.passing()
@@ -543,11 +803,24 @@ class DeviceEncounter:
 
 
 def opening_margin(opening: shapely.Geometry, orientation: Orientation) -> float:
-    """Return by how much [m] what is seen of a part over the track stays within an opening.
+    """Return by how much a part, as it is seen over the track, stays within an opening.
 
-    The opening is a shapely geometry of distance from the wall and height [m]; track and wall are no border
-    of it, and what of the part is beyond the track's free edge meets no gate.
-    Source: own; docs/tooling.md, "1. The method".
+    Track and wall are no border of it, and what of the part is beyond the track's free edge meets no gate.
+
+    Parameters
+    ----------
+    opening : shapely geometry [m]
+        Distance from the wall, and height.
+    orientation : Orientation
+
+    Returns
+    -------
+    float [m]
+        Negative by how far it reaches into the gate.
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     width = orientation.track.width
     over_track = shapely.box(-BEYOND_OPENING_M, -BEYOND_OPENING_M, width, BEYOND_OPENING_M)

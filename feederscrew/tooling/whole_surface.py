@@ -25,11 +25,23 @@ MAX_MERGE_ROUNDS = 60
 
 
 def mesh(body: Any) -> tuple[Points, Triangles]:
-    """Return the surface of a Manifold [mm], the same however it was made.
+    """Return the surface of a Manifold, the same however it was made.
 
-    Vertices (V, 3) [m], numbers that single precision holds in millimetres, no two nearer than 2e-4 mm; faces
-    (F, 3) int, counter-clockwise seen from outside. Raises FeederError if sheets of the surface that touch
-    cannot be told apart.
+    Parameters
+    ----------
+    body : manifold3d.Manifold [mm]
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+        Numbers that single precision holds in millimetres, no two nearer than 2e-4 mm.
+    faces : (F, 3) int
+        Counter-clockwise seen from outside.
+
+    Raises
+    ------
+    FeederError
+        If sheets of the surface that touch cannot be told apart.
     """
     for simpler in SIMPLER[:-1]:
         with contextlib.suppress(FeederError):
@@ -63,11 +75,26 @@ def _surface(body: Any, simpler: float) -> tuple[Points, Triangles]:
 
 
 def close_surface(points: Points, faces: Triangles) -> tuple[Points, Triangles]:
-    """Return points and faces of a surface that is closed by the places of its corners alone.
+    """Return a surface that is closed by the places of its corners alone.
 
-    ``points`` (V, 3) [mm] are in single precision, several may lie at one place; each edge of the ``faces``
-    (F, 3) int has one facet in either direction. Of those returned no two points in use are at one place, no
-    face is without an area. Raises FeederError if sixty rounds do not do it.
+    Parameters
+    ----------
+    points : (V, 3) float [mm]
+        In single precision; several may lie at one place.
+    faces : (F, 3) int
+        Each edge has one facet in either direction.
+
+    Returns
+    -------
+    points : (V, 3) float [mm]
+        No two in use are at one place.
+    faces : (F', 3) int
+        None is without an area.
+
+    Raises
+    ------
+    FeederError
+        If ``MAX_MERGE_ROUNDS`` rounds do not do it.
     """
     points = np.array(points, float)
     for _ in range(MAX_MERGE_ROUNDS):

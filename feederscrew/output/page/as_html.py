@@ -65,7 +65,16 @@ FOLLOWING = (  # what the script shows: its name, what a reader calls it
 
 
 def html(page: kinds.Page) -> str:
-    """Return the page as HTML."""
+    """Return the page as HTML.
+
+    Parameters
+    ----------
+    page : Page
+
+    Returns
+    -------
+    str
+    """
     all_blocks = [*page.opening, *(block for section in page.sections for block in section.blocks)]
     matrices = [block for block in all_blocks if isinstance(block, kinds.Matrix)]
     cells = (cell for block in matrices for row in block.rows for cell in row)
@@ -125,7 +134,16 @@ class PoseNames:
         self.found: dict[str, kinds.Pose] = {}
 
     def marked(self, body: str) -> str:
-        """Return HTML with its names marked; the first can have the focus, and has a picture on paper."""
+        """Return HTML with its names marked; the first can have the focus, and has a picture on paper.
+
+        Parameters
+        ----------
+        body : str
+
+        Returns
+        -------
+        str
+        """
         met: set[str] = set()
 
         def mark(match: re.Match[str]) -> str:
@@ -151,7 +169,16 @@ class PoseNames:
 
 
 def escape(text: str) -> str:
-    """Return a text as HTML, its lines kept, with an escape for every letter that is not printable."""
+    """Return a text as HTML, its lines kept, with an escape for every letter that is not printable.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+    """
     return html_escape("\n".join(map(printable, text.split("\n"))))
 
 
@@ -348,7 +375,17 @@ def _long(mark: str, cell: str) -> str:
 
 
 def texts_of(frame: Frame) -> tuple[list[tuple[str, str]], list[bool], list[list[str]]]:
-    """Return a frame as a page shows it: heads of (name, unit), which are of numbers, and cells by column."""
+    """Return a frame as a page shows it.
+
+    Parameters
+    ----------
+    frame : Frame
+
+    Returns
+    -------
+    list of (str, str), list of bool, list of list of str
+        Heads of name and unit, which columns are of numbers, and cells by column.
+    """
     numeric = [tables.is_numeric(column) for column in frame.values()]
     heads = [tables.head_of(frame, name) for name in frame]
     texts = [tables.cells(head, column, SHORT, NOTHING) for head, column in zip(heads, frame.values())]

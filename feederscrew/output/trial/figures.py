@@ -71,7 +71,16 @@ def matrix(run: TrialRun, ax: "style.Axes | None" = None) -> Figure:
 
 
 def paths(run: TrialRun) -> Figure:
-    """Draw where the centres of mass of a TrialRun went over each device, unrolled, from above."""
+    """Draw where the centres of mass of parts went over each device, unrolled, from above.
+
+    Parameters
+    ----------
+    run : TrialRun
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     sent, radius = run.course, run.bowl.track.radius
     flat_paths = [[unroll_path(path, radius) for path in ride.paths] for ride in sent.rides]
     widest = 1e3 * max(off.max(initial=0.0) for rides in flat_paths for _, off in rides)
@@ -126,7 +135,16 @@ def paths(run: TrialRun) -> Figure:
 
 
 def label_of(fate: Fate | None) -> str:
-    """Return the fate of a part as a legend has it: 'rolled back', 'blown off'."""
+    """Return the fate of a part as a legend has it: 'rolled back', 'blown off'.
+
+    Parameters
+    ----------
+    fate : Fate or None
+
+    Returns
+    -------
+    str
+    """
     return "blown off" if fate is BLOWN_OFF else fate.word.replace("_", " ")
 
 

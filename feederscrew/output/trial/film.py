@@ -45,10 +45,18 @@ GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above 
 
 
 def require_writer(path: str | os.PathLike[str]) -> None:
-    """Raise the line that says what to install where a film cannot be written.
+    """Refuse a film that cannot be written, and say what to install.
 
-    FeederError if the name does not end in one of ``ENDINGS``, or there is no such folder; MissingPackage if
-    it needs ffmpeg, which is not installed.
+    Parameters
+    ----------
+    path : str or path-like
+
+    Raises
+    ------
+    FeederError
+        If the name does not end in one of ``ENDINGS``, or there is no such folder.
+    MissingPackage
+        If it needs ffmpeg, which is not installed.
     """
     from matplotlib.animation import FFMpegWriter
 
@@ -199,7 +207,21 @@ class FilmSet:
             self.air.append(shading.average_samples(covered, SAMPLES)[..., :1])
 
     def drawn(self, poses: Floats, colours: list[Floats], jets_blow: Sequence[bool] = ()) -> Floats:
-        """Return the image (rows, columns, 3) with parts at poses (N, 7), [m] and w x y z, and their air."""
+        """Return the image with parts in their poses, and their air.
+
+        Parameters
+        ----------
+        poses : (N, 7) array
+            Places [m] and attitudes w x y z; a part whose pose is not finite is left out.
+        colours : list of array
+            Of each part.
+        jets_blow : sequence of bool, optional
+            Whether each jet blows.
+
+        Returns
+        -------
+        (R, C, 3) array
+        """
         samples, nearness, image = self.samples.copy(), self.nearness.copy(), self.image.copy()
         there = [(pose, colour) for pose, colour in zip(poses, colours) if np.isfinite(pose).all()]
         boxes = [self._draw(samples, nearness, pose, colour) for pose, colour in there]

@@ -29,7 +29,16 @@ HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
 
 
 def offers(study: TrialStudy) -> list[offer.Offer]:
-    """Offer the files of a TrialStudy."""
+    """Offer the files of a trial.
+
+    Parameters
+    ----------
+    study : TrialStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     run = study.runs[0]
     files = [offer.table("trial.csv", frame, study), offer.table("trial_stations.csv", _stations, run)]
     if run.landing is not None:
@@ -40,7 +49,16 @@ def offers(study: TrialStudy) -> list[offer.Offer]:
 
 
 def pictures(study: TrialStudy) -> list[offer.Offer]:
-    """Offer the pictures of its first run: orientations in and out, paths, stills."""
+    """Offer the pictures of its first run: orientations in and out, paths, stills.
+
+    Parameters
+    ----------
+    study : TrialStudy
+
+    Returns
+    -------
+    list of Offer
+    """
     run, over = study.runs[0], "Paths over each device, from above"
     stills = "A part that passes and one that does not"
     return [
@@ -51,7 +69,16 @@ def pictures(study: TrialStudy) -> list[offer.Offer]:
 
 
 def document(study: TrialStudy) -> dict[str, Any]:
-    """Return a TrialStudy as the JSON document: of the first amplitude, and of all where there are more."""
+    """Return a trial as the JSON document: of the first amplitude, and of all where there are more.
+
+    Parameters
+    ----------
+    study : TrialStudy
+
+    Returns
+    -------
+    dict
+    """
     entries = {
         **part_facts.part(study.part, study.warnings),
         **row_of(study, "rule answer launch seed partial"),
@@ -106,7 +133,14 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
 def filled_entry(filled: FilledQueue) -> dict[str, Any]:
     """Return what a queue did at one fill as a dict: rate and purity of wanted parts, with their bounds.
 
-    Rates are None of one that was stopped. The purity has its one-sided lower bound (95 %).
+    Parameters
+    ----------
+    filled : FilledQueue
+
+    Returns
+    -------
+    dict
+        Rates are None of one that was stopped. The purity has its one-sided lower bound (95 %).
     """
     rates: list[float | None] = [rate / PER_MINUTE for rate in (filled.rate, *filled.ends)]
     purity = filled.right / filled.left if filled.left else None
@@ -124,7 +158,18 @@ def filled_entry(filled: FilledQueue) -> dict[str, Any]:
 
 
 def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]:
-    """Return one row an orientation tried, those that differ from the static rule first."""
+    """Return one row an orientation tried, those that differ from the static rule first.
+
+    Parameters
+    ----------
+    run : TrialRun
+    people : bool, optional
+        Whether they are for people; the rows are the same.
+
+    Returns
+    -------
+    list of dict
+    """
     margin, ends, counts, sent, rows = run.margin, run.ends, run.counts, run.course, []
     tried = np.flatnonzero(run.tried_counts).tolist()
     for k in sorted(tried, key=lambda k: (not run.is_odd[k], not run.differs[k], k)):
@@ -154,7 +199,16 @@ def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]
 
 
 def spare(study: TrialStudy) -> tuple[Sequence[str], ...]:
-    """Return groups of columns to leave out of a table that is too wide; fates of no part go first."""
+    """Return groups of columns to leave out of a table that is too wide; fates of no part go first.
+
+    Parameters
+    ----------
+    study : TrialStudy
+
+    Returns
+    -------
+    tuple of sequences of str
+    """
     counts = sum(run.counts.sum(axis=0) for run in study.runs)
     none = [fate.word for fate in Fate if not counts[fate] and fate is not Fate.PASSED]
     measures = (*ENGINE_FIGURES, "length_mm", "velocity_mm_s")
@@ -180,7 +234,18 @@ def _outlet_columns(outlet: Outlet) -> dict[str, Any]:
 
 
 def frame(study: TrialStudy, *, people: bool = False) -> Frame:
-    """Return the rows of every amplitude as a table; for people with devices as the trade names them."""
+    """Return the rows of every amplitude as a table.
+
+    Parameters
+    ----------
+    study : TrialStudy
+    people : bool, optional
+        Handed to ``orientations``.
+
+    Returns
+    -------
+    Frame
+    """
     rows = []
     for run in study.runs:
         lead = {"amplitude_mm": run.bowl.drive.amplitude / MM} if len(study.runs) > 1 else {}
@@ -204,7 +269,16 @@ def _stations(run: TrialRun) -> Frame:
 
 
 def summary(study: TrialStudy) -> Iterator[str]:
-    """Yield what is said beside the table, a sentence each."""
+    """Yield what is said beside the table, a sentence each.
+
+    Parameters
+    ----------
+    study : TrialStudy
+
+    Yields
+    ------
+    str
+    """
     yield f"orientations in the shares of {study.answer}"
     for run in study.runs:
         rolling = run.roll_back_velocity / MM_S
@@ -260,7 +334,16 @@ def summary(study: TrialStudy) -> Iterator[str]:
 
 
 def filled_text(filled: FilledQueue) -> str:
-    """Return what a queue did at one fill in a sentence."""
+    """Return what a queue did at one fill in a sentence.
+
+    Parameters
+    ----------
+    filled : FilledQueue
+
+    Returns
+    -------
+    str
+    """
     low, high = (end / PER_MINUTE for end in filled.ends)
     shown = 100.0 * share_at_least(filled.right, filled.left)
     instead = ", ".join(f"{pose.text}: {count}" for pose, count in filled.left_instead[:3])
@@ -272,7 +355,16 @@ def filled_text(filled: FilledQueue) -> str:
 
 
 def engine(study: TrialStudy) -> Iterator[str]:
-    """Yield how closely each run of the engine kept to the laws, a sentence each: for those who check it."""
+    """Yield how closely each run of the engine kept to the laws, a sentence each: for those who check it.
+
+    Parameters
+    ----------
+    study : TrialStudy
+
+    Yields
+    ------
+    str
+    """
     for run in study.runs:
         yield (
             f"in {run.course.seconds.sum():.4g} part-seconds the deepest penetration was "

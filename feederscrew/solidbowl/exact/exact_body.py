@@ -52,7 +52,17 @@ _near = contextvars.ContextVar("near", default=FUZZY_TOLERANCES_MM[0])
 
 
 def check(where: str = "step") -> None:
-    """Raise MissingPackage, which says what to install, where OpenCASCADE is not here."""
+    """Refuse to go on where OpenCASCADE is not installed; the fault says what to install.
+
+    Parameters
+    ----------
+    where : str, optional
+        The argument that asks for it.
+
+    Raises
+    ------
+    MissingPackage
+    """
     try:
         import OCP.STEPControl  # noqa: F401
     except ImportError:
@@ -62,7 +72,16 @@ def check(where: str = "step") -> None:
 
 @contextlib.contextmanager
 def meeting(near: float) -> Iterator[None]:
-    """Unite and cut bodies whose faces and edges meet within a length [mm], within a ``with``."""
+    """Unite and cut bodies whose faces and edges meet within a length, within a ``with``.
+
+    Parameters
+    ----------
+    near : float [mm]
+
+    Yields
+    ------
+    None
+    """
     before = _near.set(near)
     try:
         yield
@@ -71,12 +90,26 @@ def meeting(near: float) -> Iterator[None]:
 
 
 def axis() -> Handle:
-    """Return the Z axis."""
+    """Return the Z axis.
+
+    Returns
+    -------
+    gp_Ax1
+    """
     return gp.gp_Ax1(point([0, 0, 0]), gp.gp_Dir(0, 0, 1))
 
 
 def point(place: Iterable[float]) -> Handle:
-    """Return a place (3,) [mm]."""
+    """Return a place.
+
+    Parameters
+    ----------
+    place : (3,) float [mm]
+
+    Returns
+    -------
+    gp_Pnt
+    """
     return gp.gp_Pnt(*map(float, place))
 
 
@@ -118,7 +151,16 @@ def parts(body: Body, kind: Handle) -> list[Body]:
 
 
 def polygon(corners: Points) -> Body:
-    """Return the closed outline through corners (K, 3) [mm]."""
+    """Return the closed outline through some corners.
+
+    Parameters
+    ----------
+    corners : (K, 3) float [mm]
+
+    Returns
+    -------
+    TopoDS_Wire
+    """
     wire = BRepBuilderAPI.BRepBuilderAPI_MakePolygon()
     for corner in corners:
         wire.Add(point(corner))
@@ -127,7 +169,16 @@ def polygon(corners: Points) -> Body:
 
 
 def flat_face(corners: Points) -> Body:
-    """Return the flat face within corners (K, 3) [mm]."""
+    """Return the flat face within some corners.
+
+    Parameters
+    ----------
+    corners : (K, 3) float [mm]
+
+    Returns
+    -------
+    TopoDS_Face
+    """
     return BRepBuilderAPI.BRepBuilderAPI_MakeFace(polygon(corners), True).Face()
 
 
@@ -151,7 +202,16 @@ def drawn(wires: list[Body], along: Iterable[float]) -> Body:
 
 
 def outwards(body: Body) -> Body:
-    """Return a body, turned inside out where its volume is negative."""
+    """Return a body, turned inside out where its volume is negative.
+
+    Parameters
+    ----------
+    body : TopoDS_Shape
+
+    Returns
+    -------
+    TopoDS_Shape
+    """
     return body if volume(body) > 0.0 else body.Reversed()
 
 
@@ -187,14 +247,37 @@ def side(path: TrackPath, start: Points, stop: Points, z: float) -> Body:
 
 
 def spline_curve(places: Points) -> Handle:
-    """Return a spline through places (M, 3) [mm] as a curve."""
+    """Return a spline through some places as a curve.
+
+    Parameters
+    ----------
+    places : (M, 3) float [mm]
+
+    Returns
+    -------
+    Geom_BSplineCurve
+    """
     poles, knots, often, degree = spline(places)
     along = row("double", knots.tolist()), row("int", often.tolist())
     return Geom.Geom_BSplineCurve(row("gp_Pnt", map(point, poles)), *along, degree)
 
 
 def spline(places: Points) -> Spline:
-    """Return poles (N, 3), knots, multiplicities and degree of a spline through places (M, 3)."""
+    """Return a spline through some places.
+
+    Parameters
+    ----------
+    places : (M, 3) float [mm]
+
+    Returns
+    -------
+    poles : (N, 3) float [mm]
+    knots : (J,) float [1]
+        From 0 to 1.
+    multiplicities : (J,) int
+    degree : int
+        3, or less through fewer than four places.
+    """
     degree = min(3, len(places) - 1)
     curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
     return curve.c, *np.unique(curve.t, return_counts=True), degree
@@ -245,7 +328,16 @@ def row(kind: str, values: Iterable[object]) -> Handle:
 
 
 def volume(body: Body) -> float:
-    """Return the volume [mm3] of a body."""
+    """Return the volume of a body, to a millionth of it.
+
+    Parameters
+    ----------
+    body : TopoDS_Shape
+
+    Returns
+    -------
+    float [mm3]
+    """
     properties, door = GProp.GProp_GProps(), BRepGProp.BRepGProp
     measure = getattr(door, "VolumeProperties_s", None) or door.VolumeProperties
     measure(body, properties, 1e-6, False, False)  # to 1e-6 of the volume
@@ -253,7 +345,16 @@ def volume(body: Body) -> float:
 
 
 def kinds(body: Body) -> dict[str, int]:
-    """Return how many faces of a body are planes, cylinders, cones and ruled splines, a dict."""
+    """Return how many faces of a body are planes, cylinders, cones and ruled splines.
+
+    Parameters
+    ----------
+    body : TopoDS_Shape
+
+    Returns
+    -------
+    dict of str to int
+    """
     names = {"Plane": "planes", "Cylinder": "cylinders", "Cone": "cones", "BSplineSurface": "ruled"}
     surface_kinds = dict.fromkeys(names.values(), 0)
     for part in parts(body, TopAbs.TopAbs_FACE):
@@ -264,7 +365,16 @@ def kinds(body: Body) -> dict[str, int]:
 
 
 def valid(body: Body) -> bool:
-    """Say whether OpenCASCADE finds nothing wrong with a body."""
+    """Tell whether OpenCASCADE finds nothing wrong with a body.
+
+    Parameters
+    ----------
+    body : TopoDS_Shape
+
+    Returns
+    -------
+    bool
+    """
     return bool(BRepCheck.BRepCheck_Analyzer(body).IsValid())
 
 
@@ -289,7 +399,17 @@ def below(body: Body, place: Points) -> float | None:
 
 
 def swept(legs: Sequence[tuple[Points, Points]]) -> Body:
-    """Return a body whose section is handed on from frame to frame; as ``facets.swept``."""
+    """Return a body whose section is handed on from frame to frame; as ``facets.swept``.
+
+    Parameters
+    ----------
+    legs : sequence of ((M, K, 2) float [m], (M, 2, 2) float [m])
+        Sections and frames of each leg.
+
+    Returns
+    -------
+    TopoDS_Shape
+    """
     rows = [in_space(*leg) / MM for leg in legs]
     faces = [flat_face(rows[0][0][::-1]), flat_face(rows[-1][-1])]
     for leg in rows:
@@ -455,7 +575,17 @@ def over(path: TrackPath, ring: Points, low: float, high: float, chord: float) -
 
 
 def united(bodies: list[Body]) -> Body:
-    """Return the union of bodies, one after the other."""
+    """Return the union of bodies, one after the other.
+
+    Parameters
+    ----------
+    bodies : list of TopoDS_Shape
+        One at least.
+
+    Returns
+    -------
+    TopoDS_Shape
+    """
     whole, *rest = bodies
     for other in rest:
         whole = _combined(BRepAlgoAPI.BRepAlgoAPI_Fuse, whole, [other])

@@ -43,7 +43,18 @@ class StepFile:
 def step_file(bowl: BowlSolid) -> StepFile:
     """Return a bowl as a STEP file with exact faces.
 
-    Raises FeederError if OpenCASCADE is not installed, or what it makes is not the bowl of the facets.
+    Parameters
+    ----------
+    bowl : BowlSolid
+
+    Returns
+    -------
+    StepFile
+
+    Raises
+    ------
+    FeederError
+        If OpenCASCADE is not installed, or what it makes is not the bowl of the facets.
     """
     exact_body.check()
     *rest, last = exact_body.FUZZY_TOLERANCES_MM
@@ -125,10 +136,24 @@ def step_bytes(bodies: list[Body], name: str) -> bytes:
 
 
 def section_file(section: TooledTrack) -> bytes:
-    """Return the section of track with its cuts as the bytes of a STEP file in millimetres.
+    """Return the section of track with its cuts as a STEP file in millimetres.
 
-    One solid in the axes of ``tooling.solid.solid``: the wall is tangent to X at the origin. Raises
-    MissingPackage without OpenCASCADE, FeederError if what it makes is not the section of the facets.
+    It is one solid: the wall is tangent to X at the origin.
+
+    Parameters
+    ----------
+    section : TooledTrack
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    MissingPackage
+        If OpenCASCADE is not installed.
+    FeederError
+        If what it makes is not the section of the facets.
     """
     exact_body.check()
     vertices, faces = solid(section)

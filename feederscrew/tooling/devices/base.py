@@ -1,4 +1,4 @@
-"""What every device along the track offers to those who read, judge, draw, make and try it.
+"""Device along the track: what it offers to those who read, judge, draw, make and try it.
 
 A device says its `Features`, of no kind by name, and its verdict. `tooled_track` places the features of a
 chain; trial, drawings and solids are made of them.
@@ -41,7 +41,7 @@ COMPARED_DIGITS = 7  # decimals of a value in SI units: a tenth of a micrometre
 
 
 class DeviceFate(enum.StrEnum):
-    """What becomes at a device of a part that does not pass it as it came; tables print the word."""
+    """Fate at a device of a part that does not pass it as it came; tables print the word."""
 
     RETURNED = "returned"
     STOPPED = "stopped"
@@ -53,7 +53,7 @@ RETURNED, STOPPED, CARRIED = DeviceFate
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a device does with one orientation."""
+    """The answer of a device for one orientation."""
 
     passes: float  # [1] share that passes; the rest goes back into the bowl
     margin: float  # [m] by which it passes, negative: by which it fails; NaN of a measured share
@@ -63,12 +63,12 @@ class Verdict:
 
     @property
     def decided(self) -> bool:
-        """Whether statics tells what becomes of it: where a device turns, momentum may."""
+        """Tell whether statics tells what becomes of it: where a device turns, momentum may."""
         return not self.onto or self.margin >= 0.0
 
     @property
     def sure(self) -> bool:
-        """Whether its margin is one: not where momentum, friction or the wall may decide otherwise."""
+        """Tell whether its margin is one: not where momentum, friction or the wall may decide otherwise."""
         return not -UNSURE <= self.margin <= 0.0
 
 
@@ -131,11 +131,37 @@ class Device:
 
     @staticmethod
     def read(entry: Entry) -> dict[str, Any]:
-        """Return what an entry of a bowl file gives of the fields: by default a length."""
+        """Return the fields that an entry of a bowl file gives: by default a length.
+
+        Parameters
+        ----------
+        entry : Entry
+            'kind: value'.
+
+        Returns
+        -------
+        dict of str to object
+            Keywords of the class, in SI units.
+
+        Raises
+        ------
+        ConfigError
+            If the value is not of the kind's ``form``.
+        """
         return values.length(entry)
 
     def misfits(self, width: float) -> list[ConfigError]:
-        """Return what is wrong with it on a track of some width [m]."""
+        """Return what is wrong with it on a track.
+
+        Parameters
+        ----------
+        width : float [m]
+            Of the track.
+
+        Returns
+        -------
+        list of ConfigError
+        """
         return []
 
     def value_text(self) -> str:
@@ -147,7 +173,17 @@ class Device:
         return replace(self, text=self.value_text())
 
     def valued(self, limit: float) -> Self:
-        """Return it with another value [m], and with the text of that."""
+        """Return it with another value, and with the text of that.
+
+        Parameters
+        ----------
+        limit : float [m]
+
+        Returns
+        -------
+        Device
+            Of the same kind.
+        """
         return replace(self, limit=limit).rewritten()
 
     def document_values(self) -> dict[str, Any]:
@@ -161,7 +197,7 @@ class Device:
 
     @property
     def compared_values(self) -> tuple[ComparedValue, ...]:
-        """Everything that it does, as values one after another: the same for devices that do the same."""
+        """Return everything that it does, as values in a row: the same for devices that do the same."""
         own = (one.name for one in fields(self) if one.name not in WRITTEN_FIELDS)
         return tuple(
             value for name in own for value in compared(getattr(self, name), is_angle=name in self.angles)
@@ -169,32 +205,32 @@ class Device:
 
     @property
     def is_one_value(self) -> bool:
-        """Whether a bowl file has one value of it, and neither a mapping nor a list."""
+        """Tell whether a bowl file has one value of it, and neither a mapping nor a list."""
         return not self.text.startswith(("{", "["))
 
     @property
     def brief(self) -> str:
-        """'narrowed track 13.35 mm'; of a device of several values its name alone: the drawings have them."""
+        """Return 'narrowed track 13.35 mm'; of a device of several values, which drawings have, its name."""
         return f"{self.kind} {self.text}".rstrip() if self.is_one_value else self.kind
 
     @property
     def label(self) -> str:
-        """'gap 9 mm': kind and value, the latter where it is one number."""
+        """Return 'gap 9 mm': kind and value, the latter where it is one number."""
         return f"{self.kind} {self.text}" if math.isfinite(self.limit) or self.labelled else self.kind
 
     @property
     def full_name(self) -> str:
-        """The same with what it works by, where that differs: 'vision reject (camera from above)'."""
+        """Return its kind, with what it works by where that differs: 'vision reject (camera from above)'."""
         return self.kind
 
     @property
     def short(self) -> str:
-        """Its value as a bowl file has it, headings in whole degrees."""
+        """Return its value as a bowl file has it, headings in whole degrees."""
         return orientation_names.whole_degrees(self.text)
 
     @property
     def value_words(self) -> str:
-        """Its value in words, for a table: '9.25 mm', 'from 2 to 5 mm off the wall'."""
+        """Return its value in words, for a table: '9.25 mm', 'from 2 to 5 mm off the wall'."""
         if self.corners:
             return f"polygon of {len(self.corners)} corners"
         if self.like:
@@ -204,15 +240,26 @@ class Device:
 
     @property
     def shop_words(self) -> tuple[str, ...]:
-        """What a shop buys and sets for it, a sentence each: sensor, nozzles, valve; () of plain steel."""
+        """Return a sentence for each thing that a shop buys and sets: sensor, valve; () of plain steel."""
         return ()
 
     def hole_faults(
         self, width: float, near: float, far: float, *, endless: bool = True
     ) -> list[ConfigError]:
-        """Return what is wrong with a hole between two distances off the wall of a track of a width [m].
+        """Return what is wrong with a hole between two distances off the wall.
 
-        ``endless``: it goes on along the track, so that one as wide as the track leaves none.
+        Parameters
+        ----------
+        width : float [m]
+            Of the track.
+        near, far : float [m]
+            Between which the hole lies.
+        endless : bool, optional
+            Whether it goes on along the track, so that one as wide as the track leaves none.
+
+        Returns
+        -------
+        list of ConfigError
         """
         wide, faults = f"the track is {1e3 * width:.4g} mm wide", []
         if endless and near <= 0.0 and far >= width:
@@ -227,19 +274,59 @@ class Device:
 
     @classmethod
     def needed(cls, orientation: "Orientation") -> float:
-        """Return the value [m] of a device of this kind that an orientation just passes."""
+        """Return the value of a device of this kind that an orientation just passes.
+
+        Parameters
+        ----------
+        orientation : Orientation
+
+        Returns
+        -------
+        float [m]
+
+        Raises
+        ------
+        NotImplementedError
+            If a device of this kind is not one number.
+        """
         if not cls.limited_by:
             raise NotImplementedError(f"{cls.kind} is not one number")
         return getattr(orientation, cls.limited_by)
 
     @classmethod
     def proposal(cls, where: str, limit: float) -> Self:
-        """Return the device of a value [m] that a design tries."""
+        """Return the device of a value that a design tries.
+
+        Parameters
+        ----------
+        where : str
+            What asks for it.
+        limit : float [m]
+
+        Returns
+        -------
+        Device
+            Of this kind.
+        """
         return cls(where, limit=limit)
 
     @classmethod
     def relieving(cls, wanted: "Sequence[Orientation]", margin: float, where: str) -> "Device | None":
-        """Return the device before the tooling at which orientations leave where they back up, or None."""
+        """Return the device before the tooling at which orientations leave where they back up.
+
+        Parameters
+        ----------
+        wanted : sequence of Orientation
+        margin : float [m]
+            By which it carries them.
+        where : str
+            What asks for it.
+
+        Returns
+        -------
+        Device or None
+            None where this kind is not for that, or cannot.
+        """
         return None
 
     # -- as it stands on the track
@@ -269,17 +356,36 @@ class Device:
 
     @property
     def face(self) -> tuple[float, float | None] | None:
-        """Sweep [rad] and friction [1] or None of a blade's face that may clear itself; None of others."""
+        """Return sweep [rad] and friction [1] or None of a blade's face that may clear itself; else None."""
         return None
 
     # -- what it does with parts
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
-        """Return what it does with the orientation of a DeviceEncounter, by what statics knows of it."""
+        """Return what it does with an orientation, by what statics knows of it.
+
+        Parameters
+        ----------
+        encounter : DeviceEncounter
+
+        Returns
+        -------
+        Verdict
+        """
         return encounter.passing()
 
     def fate(self, encounter: "DeviceEncounter") -> str:
-        """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it."""
+        """Return what becomes of an orientation that it does not let pass.
+
+        Parameters
+        ----------
+        encounter : DeviceEncounter
+
+        Returns
+        -------
+        DeviceFate
+            RETURNED, or STOPPED before it.
+        """
         if self.rejected:
             return self.rejected
         opening = opening_at(self, encounter.orientation)
@@ -291,27 +397,73 @@ class Device:
         return RETURNED if encounter.falls_through(opening.ring) else STOPPED
 
     def onward(self, orientation: "Orientation") -> "Orientation":
-        """Return an orientation that it lets pass as it goes on behind it."""
+        """Return an orientation that it lets pass as it goes on behind it.
+
+        Parameters
+        ----------
+        orientation : Orientation
+
+        Returns
+        -------
+        Orientation
+        """
         return orientation
 
     def hop_blur(self, orientation: "Orientation") -> float:
-        """Return what the hop of an orientation takes of its margin [m].
+        """Return what the hop of an orientation takes of its margin.
 
         Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
         how high it hops: a part off the track by so much is as far off its place.
+
+        Parameters
+        ----------
+        orientation : Orientation
+
+        Returns
+        -------
+        float [m]
         """
         return orientation.hop
 
     def gap(self, orientation: "Orientation", speed: float) -> float:
-        """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
+        """Return the free way that it needs between parts.
+
+        Parameters
+        ----------
+        orientation : Orientation
+        speed : float [m/s]
+            At which they come.
+
+        Returns
+        -------
+        float [m]
+        """
         return 0.0
 
     def acts(self, track: "Track") -> bool:
-        """Return whether it does anything at all on a track."""
+        """Tell whether it does anything at all on a track.
+
+        Parameters
+        ----------
+        track : Track
+
+        Returns
+        -------
+        bool
+        """
         return True
 
     def more(self, encounter: "DeviceEncounter") -> float:
-        """Return by how much more [m] an orientation that travels passes it than one that is placed."""
+        """Return by how much more an orientation that travels passes it than one that is placed.
+
+        Parameters
+        ----------
+        encounter : DeviceEncounter
+
+        Returns
+        -------
+        float [m]
+        """
         return 0.0
 
 
@@ -367,7 +519,17 @@ def gate_features(
 
 
 def tall_of(orientations: "Sequence[Orientation]", least: float) -> float:
-    """Return how tall [m] a gate is made: over the tallest part, and over a ``least`` height [m]."""
+    """Return how tall a gate is made: twice the tallest part, or the least height, and its frame.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    least : float [m]
+
+    Returns
+    -------
+    float [m]
+    """
     return max(max(orientation.height for orientation in orientations), least) + GATE_FRAME_M
 
 
@@ -398,28 +560,73 @@ def compared(value: Any, *, is_angle: bool = False) -> Iterator[ComparedValue]:
 
 
 def length_text(value: float) -> str:
-    """Return a length [m] as a bowl file has it, to a ten-thousandth of a millimetre: '9.25 mm'."""
+    """Return a length as a bowl file has it, to a ten-thousandth of a millimetre: '9.25 mm'.
+
+    Parameters
+    ----------
+    value : float [m]
+
+    Returns
+    -------
+    str
+    """
     steps = value / WRITTEN_STEP_M
     return f"{(round(steps) if math.isfinite(steps) else steps) * WRITTEN_STEP_M / MM:.9g} mm"
 
 
 def degrees_words(angle: float) -> str:
-    """Return an angle [rad] for people: '30 deg'."""
+    """Return an angle for people: '30 deg'.
+
+    Parameters
+    ----------
+    angle : float [rad]
+
+    Returns
+    -------
+    str
+    """
     return f"{math.degrees(angle):.4g} deg"
 
 
 def length_words(length: float) -> str:
-    """Return a length [m] for people: '8.35 mm'."""
+    """Return a length for people: '8.35 mm'.
+
+    Parameters
+    ----------
+    length : float [m]
+
+    Returns
+    -------
+    str
+    """
     return f"{length / MM:.4g} mm"
 
 
 def span_words(span: tuple[float, ...]) -> str:
-    """Return a span [m] off the wall for people: 'from 2 to 5 mm off the wall'."""
+    """Return a span off the wall for people: 'from 2 to 5 mm off the wall'.
+
+    Parameters
+    ----------
+    span : tuple of float [m]
+
+    Returns
+    -------
+    str
+    """
     return f"from {span[0] / MM:.4g} to {span[1] / MM:.4g} mm off the wall"
 
 
 def keeps(orientations: Iterable[tuple[str, float]]) -> str:
-    """Return aspects and headings [rad] in words: 'A at heading 188 and 354 deg, B at heading 90 deg'."""
+    """Return aspects and headings in words: 'A at heading 188 and 354 deg, B at heading 90 deg'.
+
+    Parameters
+    ----------
+    orientations : iterable of (str, float [rad])
+
+    Returns
+    -------
+    str
+    """
     headings: dict[str, list[str]] = {}
     for aspect, heading in orientations:
         headings.setdefault(aspect, []).append(f"{round(math.degrees(heading)) % 360}")
@@ -427,34 +634,93 @@ def keeps(orientations: Iterable[tuple[str, float]]) -> str:
 
 
 def angle_text(value: float) -> str:
-    """Return an angle [rad] as a bowl file has it: '30 deg'."""
+    """Return an angle as a bowl file has it: '30 deg'.
+
+    Parameters
+    ----------
+    value : float [rad]
+
+    Returns
+    -------
+    str
+    """
     return f"{math.degrees(value):.9g} deg"
 
 
 def corners_text(corners: Sequence[Corner]) -> str:
-    """Return corners [m] as a bowl file has them."""
+    """Return corners as a bowl file has them: '[[0 mm, 2 mm], [5 mm, 2 mm], ...]'.
+
+    Parameters
+    ----------
+    corners : sequence of (float, float) [m]
+
+    Returns
+    -------
+    str
+    """
     return f"[{', '.join(f'[{length_text(x)}, {length_text(y)}]' for x, y in corners)}]"
 
 
 def mapping_text(entries: Iterable[tuple[str, str]]) -> str:
-    """Return pairs of a key and a text as a bowl file has them on one line; without those of no text."""
+    """Return pairs of a key and a text as a bowl file has them on one line: '{from: 2 mm, to: 5 mm}'.
+
+    Parameters
+    ----------
+    entries : iterable of (str, str)
+        Those of no text are left out.
+
+    Returns
+    -------
+    str
+    """
     return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
 
 def size_of(orientation: "Orientation") -> float:
-    """Return the greatest length [m] of an orientation in the plane of the track or across it."""
+    """Return the greatest length of an orientation in the plane of the track or across it.
+
+    Parameters
+    ----------
+    orientation : Orientation
+
+    Returns
+    -------
+    float [m]
+    """
     return float(np.hypot(orientation.length, max(orientation.width, orientation.height)))
 
 
 def room_of(orientations: "Sequence[Orientation]") -> float:
-    """Return the length of track [m] that one has to itself, by the longest orientation."""
+    """Return the length of track that a device has to itself, by the longest orientation.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    float [m]
+        ``ROOM_PER_DEVICE`` of their lengths.
+    """
     return ROOM_PER_DEVICE * max(orientation.length for orientation in orientations)
 
 
 def share(margin: float, sigma: float) -> float:
-    """Return the share that passes at a margin [m], its standard deviation being ``sigma`` [m].
+    """Return the share that passes at a margin: Phi(margin / sigma).
 
-    Source: the normal distribution of what a margin scatters by.
+    Parameters
+    ----------
+    margin : float [m]
+    sigma : float [m]
+        Standard deviation of the margin; 0: all or nothing.
+
+    Returns
+    -------
+    float [1]
+
+    References
+    ----------
+    The normal distribution of what a margin scatters by.
     """
     if sigma > 0.0:
         return 0.5 * math.erfc(-margin / (sigma * math.sqrt(2.0)))
@@ -462,11 +728,27 @@ def share(margin: float, sigma: float) -> float:
 
 
 def carried(margin: float, travel: float, carry: float) -> float:
-    """Return the margin [m] of an orientation that travels, from that of one that is placed.
+    """Return the margin of an orientation that travels, from that of one that is placed.
 
-    What it travels on before it has tipped, ``carry`` [m], is taken from the way over which it is not
-    supported, ``travel`` [m]; within it the verdict has no margin.
-    Source: own; docs/tooling.md, "1. The method": a part that travels needs time to tip.
+    A part that travels needs time to tip: what it travels on before it has tipped is taken from the way over
+    which it is not supported. Within it the verdict has no margin.
+
+    Parameters
+    ----------
+    margin : float [m]
+        Of one that is placed.
+    travel : float [m]
+        The way over which it is not supported.
+    carry : float [m]
+        The way that it travels on before it has tipped.
+
+    Returns
+    -------
+    float [m]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     return margin if margin >= 0.0 else min(max(margin, carry - travel), -UNSURE)
 

@@ -127,7 +127,17 @@ class Wiper(_Overhead):
         return (self.sweep, self.friction) if self.sweep < SQUARE_FACE_RAD else None
 
     def clear_of(self, grip: float) -> bool:
-        """Return whether its face sweeps parts off a track of some friction."""
+        """Tell whether its face sweeps parts off a track: sweep below 90 deg less the angle of friction.
+
+        Parameters
+        ----------
+        grip : float [1]
+            Friction of the track, that of a face of which nothing else is said.
+
+        Returns
+        -------
+        bool
+        """
         friction = grip if self.friction is None else self.friction
         return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
 
@@ -213,7 +223,22 @@ class Profile(Device):
         return gate_features(free, orientations, track.extent, is_gate=True)
 
     def free(self, orientations: "Sequence[Orientation]") -> shapely.Geometry:
-        """Return the opening however wide the track is, in distances from the wall and heights [m]."""
+        """Return the opening however wide the track is, in distances from the wall and heights.
+
+        Parameters
+        ----------
+        orientations : sequence of Orientation
+            Of the part: the opening may name one.
+
+        Returns
+        -------
+        shapely geometry [m]
+
+        Raises
+        ------
+        ConfigError
+            If the part does not have the orientation that it names.
+        """
         if not self.like:
             return shapely.Polygon(self.corners)
         aspect, heading, play = self.like

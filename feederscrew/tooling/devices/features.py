@@ -26,7 +26,7 @@ SAME_PLACE_M = 1e-9  # [m] nearer places are one
 
 
 class ShopWork(enum.StrEnum):
-    """What the shop must do to a cut beside cutting its outline; papers print the words."""
+    """Work of the shop on a cut beside cutting its outline; papers print the words."""
 
     OPEN_AT_OUTLET = "open at the outlet: saw the web out, parts hang in it to the end"
     RUNS_INTO_NEXT = "runs into the slot of the next rails: no web between them"
@@ -49,36 +49,74 @@ class TrackOpening:
 
     @property
     def begin(self) -> float:
-        """Where it begins [m] along the wall."""
+        """Return where it begins [m] along the wall."""
         return float(self.ring[:, 0].min())
 
     @property
     def end(self) -> float:
-        """Where it ends [m] along the wall."""
+        """Return where it ends [m] along the wall."""
         return float(self.ring[:, 0].max())
 
     def extended(self, end: float) -> "TrackOpening":
-        """Return the opening with its far end at another place [m] along the wall."""
+        """Return the opening with its far end at another place along the wall.
+
+        Parameters
+        ----------
+        end : float [m]
+
+        Returns
+        -------
+        TrackOpening
+        """
         ring = self.ring.copy()
         ring[ring[:, 0] >= self.end - SAME_PLACE_M, 0] = end
         return replace(self, ring=ring)
 
     def lasting(self, length: float) -> "TrackOpening":
-        """Return the opening of a device that lasts a length [m] along the track; itself of a fixed shape."""
+        """Return the opening of a device that lasts a length along the track.
+
+        Parameters
+        ----------
+        length : float [m]
+
+        Returns
+        -------
+        TrackOpening
+            Itself of a fixed shape.
+        """
         return self if self.span is None else self.extended(max(length, self.tapered + 0.5 * length))
 
     @property
     def tapered(self) -> float:
-        """How far [m] a lead-in goes, up to where the cut is as wide as its span; 0 without."""
+        """Return how far [m] a lead-in goes, up to where the cut is as wide as its span; 0 without."""
         inner = self.ring[self.ring[:, 0] < self.end - SAME_PLACE_M, 0]
         return float(inner.max()) if len(inner) and inner.max() > self.begin else 0.0
 
     def shifted(self, along: float) -> "TrackOpening":
-        """Return the opening further along the wall by a length [m]."""
+        """Return the opening further along the wall.
+
+        Parameters
+        ----------
+        along : float [m]
+
+        Returns
+        -------
+        TrackOpening
+        """
         return replace(self, ring=self.ring + [along, 0.0])
 
     def shop_work(self, width: float) -> tuple[ShopWork, ...]:
-        """Return what the shop must do to it on a track of a width [m], beside cutting its outline."""
+        """Return what the shop must do to it, beside cutting its outline.
+
+        Parameters
+        ----------
+        width : float [m]
+            Of the track.
+
+        Returns
+        -------
+        tuple of ShopWork
+        """
         end = ShopWork.RUNS_INTO_NEXT if self.runs_on else ShopWork.OPEN_AT_OUTLET
         work = [end, ShopWork.YOKE_BELOW] if self.hangs else []
         y = self.ring[:, 1]
@@ -97,7 +135,18 @@ class Drop:
     length: float = 0.0  # [m] of a ledge as it is made, before it comes down to the lower track
 
     def beside(self, width: float) -> Points:
-        """Return what is missing of the upper track (4, 2) [m] of a width [m]."""
+        """Return what is missing of the upper track.
+
+        Parameters
+        ----------
+        width : float [m]
+            Of the track.
+
+        Returns
+        -------
+        (4, 2) float [m]
+            Along the wall, and from it.
+        """
         return box_ring(0.0, self.reach, self.aside, width)
 
 
@@ -152,9 +201,19 @@ class Blade:
         )
 
     def footprint(self, radius: float) -> Points:
-        """Return the plate seen from above, unrolled along a wall of a radius [m], (K, 2) [m].
+        """Return the plate seen from above, unrolled along the wall.
 
-        A flat plate: in the unrolled track its sides bend. The first corner is that of its face at the wall.
+        It is a flat plate: in the unrolled track its sides bend.
+
+        Parameters
+        ----------
+        radius : float [m]
+            Of the wall.
+
+        Returns
+        -------
+        (K, 2) float [m]
+            The first corner is that of its face at the wall.
         """
         near, _, far, _ = self.solid.bounds
         flat = shapely.box(near, 0.0, far, self.thickness).exterior
@@ -202,7 +261,7 @@ class Jet:
 
 @dataclass(frozen=True, eq=False)
 class Sensor:
-    """What looks at each part as its centre of mass comes to a place, and sets off the pulsed jets."""
+    """A sensor that looks at each part as its centre of mass comes to a place, and sets off pulsed jets."""
 
     at: float  # [m] x
     sees: str  # 'outline' from above, 'side' from the bowl's axis, 'height' or 'relief'
@@ -228,7 +287,7 @@ class Features:
 
     @property
     def hangs(self) -> bool:
-        """Whether parts leave hanging, their centres of mass below the track."""
+        """Tell whether parts leave hanging, their centres of mass below the track."""
         return any(opening.hangs for opening in self.openings)
 
     @property
@@ -241,5 +300,17 @@ NO_FEATURES = Features()
 
 
 def box_ring(x0: float, x1: float, y0: float, y1: float) -> Points:
-    """Return the corners (4, 2) [m] of what lies between two places along the track and two across it."""
+    """Return the corners of what lies between two places along the track and two across it.
+
+    Parameters
+    ----------
+    x0, x1 : float [m]
+        Along the wall.
+    y0, y1 : float [m]
+        From the wall.
+
+    Returns
+    -------
+    (4, 2) float [m]
+    """
     return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])

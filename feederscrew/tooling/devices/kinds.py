@@ -17,7 +17,13 @@ _ADDED = re.compile(r"\s*\([^()]*\)\s*$")  # what a full name says more: '(camer
 
 
 def register_kinds() -> dict[str, type[Device]]:
-    """Fill KINDS with the classes of all modules of this folder, and return it."""
+    """Fill KINDS with the classes of all modules of this folder, and return it.
+
+    Returns
+    -------
+    dict of str to class of Device
+        By the names that files have.
+    """
     classes = []
     for info in pkgutil.iter_modules(devices.__path__):
         module = importlib.import_module(f"{devices.__name__}.{info.name}")
@@ -33,16 +39,36 @@ def register_kinds() -> dict[str, type[Device]]:
 
 
 def find_kind(name: str) -> type[Device] | None:
-    """Return the kind of device that a name means, or None: the one place where names are looked up.
+    """Return the kind of device that a name means: the one place where names are looked up.
 
-    It takes each name that something prints: 'vision reject', 'Vision reject (camera from above)', with
-    blanks, hyphens or underscores, and the keys of bowl files of before, 'sorter'.
+    Parameters
+    ----------
+    name : str
+        Each name that something prints: 'vision reject', 'Vision reject (camera from above)', with blanks,
+        hyphens or underscores, and the keys of bowl files of before, 'sorter'.
+
+    Returns
+    -------
+    class of Device, or None
     """
     return _BY_SPELLING.get(_spelling(name))
 
 
 def make_device(kind: str, where: str, **values: Any) -> Device:
-    """Return a device of a kind by its name, as ``find_kind`` takes it.
+    """Return a device of a kind by its name.
+
+    Parameters
+    ----------
+    kind : str
+        As ``find_kind`` takes it.
+    where : str
+        What asks for it, for its faults.
+    **values : object
+        Fields of the class, in SI units.
+
+    Returns
+    -------
+    Device
 
     Raises
     ------
@@ -53,7 +79,17 @@ def make_device(kind: str, where: str, **values: Any) -> Device:
 
 
 def names(**traits: object) -> tuple[str, ...]:
-    """Return the names of the kinds that have some traits, such as ``hangs=True``: a tuple of str."""
+    """Return the names of the kinds that have some traits.
+
+    Parameters
+    ----------
+    **traits : object
+        Attributes of the class and their values: ``hangs=True``.
+
+    Returns
+    -------
+    tuple of str
+    """
     return tuple(
         name
         for name, kind in KINDS.items()
@@ -62,17 +98,41 @@ def names(**traits: object) -> tuple[str, ...]:
 
 
 def cost_class(devices: Sequence[Device]) -> int:
-    """Return what a chain takes, the dearest of its devices: 1 steel alone, 2 steady air, 3 a sensor."""
+    """Return the cost class of a chain, that of the dearest of its devices.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+
+    Returns
+    -------
+    int
+        1 steel alone, 2 steady air, 3 a sensor with a valve.
+    """
     return max((device.cost_class for device in devices), default=1)
 
 
 def dearer(cost: int) -> tuple[str, ...]:
-    """Return the names of the kinds whose cost class is above one: a tuple of str."""
+    """Return the names of the kinds whose cost class is above one.
+
+    Parameters
+    ----------
+    cost : int
+
+    Returns
+    -------
+    tuple of str
+    """
     return tuple(name for name, kind in KINDS.items() if kind.cost_class > cost)
 
 
 def leaning() -> tuple[type[Lean], ...]:
-    """Return the kinds (type, ...) that lean the track."""
+    """Return the kinds that lean the track.
+
+    Returns
+    -------
+    tuple of class of Lean
+    """
     return tuple(kind for kind in KINDS.values() if issubclass(kind, Lean))
 
 

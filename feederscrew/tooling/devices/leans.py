@@ -58,25 +58,70 @@ class Lean(Device):
 
     @classmethod
     def of(cls, degrees: float, where: str) -> Self:
-        """Return the stretch at an angle [deg]."""
+        """Return the stretch at an angle.
+
+        Parameters
+        ----------
+        degrees : float [deg]
+        where : str
+            What asks for it.
+
+        Returns
+        -------
+        Lean
+            Of this kind.
+        """
         return cls(where, angle=math.radians(degrees)).rewritten()
 
     @classmethod
     def holding(cls, orientation: "Orientation", wall_friction: float, where: str) -> "tuple[Lean, ...]":
-        """Return the devices, in order, that hold what rolls on the level; none where they cannot.
+        """Return the devices, in order, that hold what rolls on the level.
 
-        ``wall_friction`` [1] is that of the wall, ``where`` what asks for it.
+        Parameters
+        ----------
+        orientation : Orientation
+        wall_friction : float [1]
+        where : str
+            What asks for them.
+
+        Returns
+        -------
+        tuple of Lean
+            Empty where they cannot.
         """
         return ()
 
     @classmethod
     def leanings(cls, orientation: "Orientation", where: str) -> "list[tuple[Lean, ...]]":
-        """Return other ways to lean the track for an orientation, devices in order each."""
+        """Return other ways to lean the track for an orientation.
+
+        Parameters
+        ----------
+        orientation : Orientation
+        where : str
+            What asks for them.
+
+        Returns
+        -------
+        list of tuple of Lean
+            Devices in order each.
+        """
         return []
 
     @classmethod
     def parting(cls, where: str) -> "Lean | None":
-        """Return the stretch of track on which parts come apart, or None."""
+        """Return the stretch of track on which parts come apart.
+
+        Parameters
+        ----------
+        where : str
+            What asks for it.
+
+        Returns
+        -------
+        Lean or None
+            None of a kind that is not for that.
+        """
         return None
 
     def document_values(self) -> dict[str, Any]:
@@ -191,7 +236,7 @@ class Separation(Lean):
 
     @property
     def serves(self) -> str:  # type: ignore[override]  # of others a text of the class
-        """What it is for: on the way down parts come apart, on the way up rails begin."""
+        """Return what it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
     def onward(self, orientation: "Orientation") -> "Orientation":

@@ -73,7 +73,17 @@ class Step(_Turner):
 
     @classmethod
     def changes(cls, often: "Sequence[DeviceEncounter]") -> list[float]:
-        """Return the values [m] at which it changes what it does in some DeviceEncounters."""
+        """Return the values at which it changes what it does with some orientation.
+
+        Parameters
+        ----------
+        often : sequence of DeviceEncounter
+
+        Returns
+        -------
+        list of float [m]
+            Ascending, each once.
+        """
         turns = [encounter.pitched(False) for encounter in often]
         return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
 
@@ -112,7 +122,17 @@ class Tip(_Ledge, _Turner):
 
     @classmethod
     def changes(cls, often: "Sequence[DeviceEncounter]") -> list[float]:
-        """Return the values [m] at which it changes what it does in some DeviceEncounters."""
+        """Return the values at which it changes what it does with some orientation.
+
+        Parameters
+        ----------
+        often : sequence of DeviceEncounter
+
+        Returns
+        -------
+        list of float [m]
+            Ascending, each once.
+        """
         return sorted({x for x in (one.orientation.balcony for one in often) if np.isfinite(x)})
 
 
@@ -123,9 +143,19 @@ def _along(span: tuple[float, float], orientations: "Sequence[Orientation]") -> 
 
 
 def below_ledge(orientations: "Sequence[Orientation]") -> float:
-    """Return how far below a ledge the second track lies [m]: half the part's greatest length.
+    """Return how far below a ledge the second track lies: half the part's greatest length.
 
-    Source: own; docs/tooling.md, "4. Turning parts over".
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    float [m]
+
+    References
+    ----------
+    docs/tooling.md, "4. Turning parts over".
     """
     return LOWER * max(max(orientation.length, orientation.height) for orientation in orientations)
 
@@ -180,9 +210,19 @@ class PressureBreak(_Balcony):
 
     @classmethod
     def relieving(cls, wanted: "Sequence[Orientation]", margin: float, where: str) -> Device | None:
-        """Return the break that carries some orientations by a margin [m], beside what their hop takes of it.
+        """Return the break that carries some orientations by a margin, beside what their hop takes of it.
 
-        None where one of them would not reach over the ledge, and so not leave it where they back up.
+        Parameters
+        ----------
+        wanted : sequence of Orientation
+        margin : float [m]
+        where : str
+            What asks for it.
+
+        Returns
+        -------
+        Device or None
+            None where one of them would not reach over the ledge, and so not leave it where they back up.
         """
         least = max(orientation.balcony + margin + cls(where).hop_blur(orientation) for orientation in wanted)
         limit = math.ceil(least / SHOP_STEP_M - 1e-6) * SHOP_STEP_M
@@ -313,14 +353,35 @@ class Rails(Device):
         return np.array(ring)
 
     def with_span(self, span: Sequence[float], lead: tuple[float, ...] | None = None) -> Device:
-        """Return the rails with another slot [m] and, where given, another lead-in, written anew."""
+        """Return the rails with another slot and, where given, another lead-in, written anew.
+
+        Parameters
+        ----------
+        span : sequence of float [m]
+            From and to, off the wall.
+        lead : tuple of float [m], optional
+            From, to, length and taper of the lead-in, which reaches as far as the slot at least.
+
+        Returns
+        -------
+        Rails
+        """
         lead = self.lead if lead is None else lead
         if lead:
             lead = (min(lead[0], span[0]), max(lead[1], span[1]), *lead[2:])
         return replace(self, span=tuple(span), lead=tuple(lead)).rewritten()
 
     def hop_blur(self, orientation: "Orientation") -> float:
-        """Return nothing: its margins are widths of head, shank and slot, which a hop does not change."""
+        """Return 0: its margins are widths of head, shank and slot, which a hop does not change.
+
+        Parameters
+        ----------
+        orientation : Orientation
+
+        Returns
+        -------
+        float [m]
+        """
         return 0.0
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:

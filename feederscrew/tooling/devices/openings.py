@@ -34,7 +34,7 @@ HOLE_EDGE = record_type("arc", "alpha", "kappa", "gamma", "low", "high", "bulge"
 
 
 class HoleEdges(NamedTuple):
-    """What is cut out of the track, about the bowl's axis."""
+    """Edges of a hole in the track, about the bowl's axis."""
 
     edges: np.recarray  # (M,) HOLE_EDGE
     nodes: Points  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
@@ -43,7 +43,21 @@ class HoleEdges(NamedTuple):
 def polygon(corners: Points, radius: float) -> HoleEdges:
     """Return a hole about the bowl's axis from its unrolled polygon, straight edges when unrolled.
 
-    ``corners`` (K, 2) [m] are lengths along the wall and distances from it, ``radius`` [m] is the wall's.
+    Parameters
+    ----------
+    corners : (K, 2) float [m]
+        Along the wall, and from it, either way round.
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    HoleEdges
+
+    Raises
+    ------
+    ValueError
+        If the shape is wrong or an entry is not finite.
     """
     ring = check.shaped("corners", corners, (-1, 2)).tolist()
     # counter-clockwise, length along to the right and distance from the wall upwards
@@ -74,9 +88,20 @@ def polygon(corners: Points, radius: float) -> HoleEdges:
 
 
 def gap(length: float, radius: float, width: float) -> HoleEdges:
-    """Return a gap across the track of a length [m]: the edge left is radial, the edge met parallel to it.
+    """Return a gap across the track: the edge left is radial, the edge met parallel to it.
 
-    It reaches from the wall, of a ``radius`` [m], as far as the ``width`` [m].
+    Parameters
+    ----------
+    length : float [m]
+        Between both edges.
+    radius : float [m]
+        Of the wall, from which it reaches ...
+    width : float [m]
+        ... so far.
+
+    Returns
+    -------
+    HoleEdges
     """
     low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + WALL_OVERCUT_M
     rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
@@ -109,15 +134,37 @@ def _sides(corners: Sequence[Corner]) -> list[tuple[Corner, Corner]]:
 
 
 def through_the_wall(corners: Sequence[Corner]) -> list[Corner]:
-    """Return the corners [m] of a hole, in pairs, with every edge along the wall moved behind it."""
+    """Return the corners of a hole with every edge along the wall moved behind it.
+
+    Parameters
+    ----------
+    corners : sequence of (float, float) [m]
+        Along the wall, and from it.
+
+    Returns
+    -------
+    list of (float, float) [m]
+    """
     return _moved_out(corners, math.inf, WALL_OVERCUT_M)
 
 
 def beyond_borders(corners: Sequence[Corner], width: float, far: float) -> list[Corner]:
-    """Return the corners [m] of a hole, in pairs, with edges along the wall and the free edge moved out.
+    """Return the corners of a hole with edges along the wall and the free edge moved out.
 
-    Those from a ``width`` [m] off the wall on are along the free edge; they are moved by ``far`` [m]. Edges
-    that only end there stay as they are: what lies beside them in a corner carries parts.
+    Edges that only end there stay as they are: what lies beside them in a corner carries parts.
+
+    Parameters
+    ----------
+    corners : sequence of (float, float) [m]
+        Along the wall, and from it.
+    width : float [m]
+        Off the wall: edges from there on are along the free edge.
+    far : float [m]
+        By which they are moved.
+
+    Returns
+    -------
+    list of (float, float) [m]
     """
     out = _moved_out(corners, width, far)
     sides = zip((out[-1], *out[:-1]), out, (*out[1:], out[0]))

@@ -19,9 +19,18 @@ HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] with decimals
 
 
 def split_name(name: str) -> tuple[str, float | None]:
-    """Return the aspect and the heading [rad] that a name such as 'A@354' or 'C@174 hanging' names.
+    """Return the aspect and the heading that a name names, as tables and drawings print it.
 
-    The heading of the name of an aspect alone is None. Names are as tables and drawings print them.
+    Parameters
+    ----------
+    name : str
+        'A@354', 'C@174 hanging', 'A'.
+
+    Returns
+    -------
+    aspect : str
+    heading : float [rad] or None
+        None of the name of an aspect alone.
     """
     if named := NAMED.fullmatch(name.strip()):
         return named["aspect"], float(np.radians(float(named["degrees"])))
@@ -37,11 +46,32 @@ def place(
     named: str = "",
     kind: type[FeederError] = FeederError,
 ) -> int:
-    """Return the place of an orientation by its aspect and heading [rad]: the one nearest in heading.
+    """Return the place of an orientation by its aspect and heading: the one nearest in heading.
 
-    ``aspects`` and ``headings`` [rad] are those of the M orientations; ``aspect`` is in capitals or not. If
-    the part has no such orientation, a fault of a ``kind`` says where it is written and what names it, as
-    'profile names'.
+    Parameters
+    ----------
+    aspects : sequence of str
+        Of the M orientations.
+    headings : sequence of float [rad]
+        Of the same.
+    aspect : str
+        In capitals or not.
+    heading : float [rad]
+    where : str
+        Where it is written, for the fault.
+    named : str, optional
+        What names it: 'profile names'.
+    kind : class, optional
+        Of the fault.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    FeederError
+        Of the ``kind``, if no orientation of the aspect is within ``HEADING_TOLERANCE_RAD``.
     """
     aspect_rows = _places(aspects, aspect)
     if aspect_rows:
@@ -67,19 +97,71 @@ def place_of(
     named: str = "",
     kind: type[FeederError] = ConfigError,
 ) -> int:
-    """Return the same among orientations (M,)."""
+    """Return the place of an orientation among others, as ``place`` does.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    aspect : str
+    heading : float [rad]
+    where : str
+    named : str, optional
+    kind : class, optional
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    FeederError
+        Of the ``kind``, if there is no such orientation.
+    """
     names = [orientation.aspect for orientation in orientations]
     turns = [orientation.heading for orientation in orientations]
     return place(names, turns, aspect, heading, where, named, kind)
 
 
 def nearest(aspects: Sequence[str], headings: Sequence[float] | Floats, aspect: str, heading: float) -> int:
-    """Return the place of an orientation that is known from another track: its headings are others there."""
+    """Return the place of an orientation that is known from another track: its headings are others there.
+
+    Parameters
+    ----------
+    aspects : sequence of str
+    headings : sequence of float [rad]
+    aspect : str
+        One of them.
+    heading : float [rad]
+
+    Returns
+    -------
+    int
+    """
     return min(_places(aspects, aspect), key=lambda k: abs(_turn(headings[k] - heading)))
 
 
 def rows(aspects: Sequence[str], aspect: str, where: str, kind: type[FeederError] = FeederError) -> list[int]:
-    """Return the places of an aspect's orientations; a fault where there is none."""
+    """Return the places of an aspect's orientations.
+
+    Parameters
+    ----------
+    aspects : sequence of str
+        Of the M orientations.
+    aspect : str
+    where : str
+        Where it is written, for the fault.
+    kind : class, optional
+        Of the fault.
+
+    Returns
+    -------
+    list of int
+
+    Raises
+    ------
+    FeederError
+        Of the ``kind``, if there is none.
+    """
     aspect_rows = _places(aspects, aspect)
     if not aspect_rows:
         listed = ", ".join(dict.fromkeys(aspects))
@@ -96,10 +178,30 @@ def _turn(angle: Values) -> float:
 
 
 def written(aspect: str, heading: float) -> str:
-    """Return an orientation by its aspect and heading [rad] as a bowl file names it: 'A@90'."""
+    """Return an orientation as a bowl file names it: 'A@90'.
+
+    Parameters
+    ----------
+    aspect : str
+    heading : float [rad]
+
+    Returns
+    -------
+    str
+    """
     return units.quoted(f"{aspect}@{np.degrees(heading):.9g}")
 
 
 def whole_degrees(text: str) -> str:
-    """Return a text such as '{of: A@90.4021}' with its headings in whole degrees, as people read them."""
+    """Return a text with its headings in whole degrees, as people read them.
+
+    Parameters
+    ----------
+    text : str
+        '{of: A@90.4021}'
+
+    Returns
+    -------
+    str
+    """
     return HEADING.sub(lambda degrees: f"@{round(float(degrees[1])) % 360}", text)

@@ -81,11 +81,26 @@ JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
 
 
 def thrust(diameter: float, pressure: float) -> float:
-    """Return the thrust [N] of a nozzle of a diameter [m] at a pressure [Pa] above the ambient.
+    """Return the thrust of a nozzle: isentropic flow of air, gamma = 1.4, of a convergent nozzle.
 
-    Isentropic flow of air of a convergent nozzle: beyond the critical ratio of 1.893 the mouth has the
-    critical pressure, below it the ambient one.
-    Source: the ideal nozzle; docs/validation.md, "Air jet".
+    With the pressure p0 in the nozzle and pa around it, both absolute, and the area A of the mouth: F = 2.4 A
+    p0 / 1.893 - A pa where p0 / pa is beyond the critical ratio of 1.893, and the mouth has the critical
+    pressure; below it F = 7 A p0 ((pa / p0)^(1/1.4) - pa / p0), and the mouth has the ambient one.
+
+    Parameters
+    ----------
+    diameter : float [m]
+        Of the mouth.
+    pressure : float [Pa]
+        Above the ambient.
+
+    Returns
+    -------
+    float [N]
+
+    References
+    ----------
+    The ideal nozzle; docs/validation.md, "Air jet".
     """
     area, whole = 0.25 * math.pi * diameter**2, pressure + AMBIENT_PRESSURE_PA
     if whole / AMBIENT_PRESSURE_PA > CHOKED:
@@ -108,23 +123,55 @@ class Nozzles:
         return thrust(self.diameter, self.pressure)
 
     def heights(self, orientations: "Sequence[Orientation]") -> Floats:
-        """Return their heights [m] over the track, (N,), upwards.
+        """Return their heights over the track, upwards.
 
         Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
         orientation has something before its centre of mass that is not a mere slope, as far as they are
         enough for that; the others are spread between those and the top of the tallest.
+
+        Parameters
+        ----------
+        orientations : sequence of Orientation
+
+        Returns
+        -------
+        (N,) float [m]
         """
         return np.array(_heights(self, tuple(orientations)))
 
     def moves(self, orientation: "Orientation", heights: Sequence[float]) -> float:
-        """Return the force outwards, less the friction of that down, over the thrust of a nozzle [1]."""
+        """Return the force outwards, less the friction of that down, over the thrust of a nozzle.
+
+        Parameters
+        ----------
+        orientation : Orientation
+        heights : sequence of float [m]
+            Of the nozzles.
+
+        Returns
+        -------
+        float [1]
+        """
         pushes = [_share(orientation, self.diameter, float(height)) for height in heights]
         return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
 
     def push(
         self, orientation: "Orientation", orientations: "Sequence[Orientation]", ahead: float = 0.0
     ) -> tuple[float, float]:
-        """Return the force [N] outwards, and down, on an orientation ``ahead`` [m] of them by its weight."""
+        """Return the forces on an orientation.
+
+        Parameters
+        ----------
+        orientation : Orientation
+        orientations : sequence of Orientation
+            All of the part: they set the heights.
+        ahead : float [m], optional
+            By which the weight is ahead of the nozzles.
+
+        Returns
+        -------
+        out, down : float [N]
+        """
         heights = self.heights(orientations)
         pushes = [_share(orientation, self.diameter, float(height), ahead) for height in heights]
         out, down = (self.thrust * sum(push[k] for push in pushes) for k in range(2))
@@ -177,7 +224,7 @@ def _heights(nozzles: Nozzles, orientations: "Sequence[Orientation]") -> tuple[f
 def _share(
     orientation: "Orientation", diameter: float, height: float, ahead: float = 0.0
 ) -> tuple[float, float]:
-    """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
+    """Return the share of a jet's thrust that an orientation takes [1]: outwards from the wall, and down."""
     return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
 
 
@@ -286,9 +333,22 @@ class Sorter(Device):
         where: str,
         unlike: "Callable[[str], Sequence[Orientation]]" = lambda view: (),
     ) -> list["Sorter"]:
-        """Return the sorters of an orientation, with the play [m] by which what they pass may differ.
+        """Return the sorters of an orientation, one for each view.
 
-        Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
+        Parameters
+        ----------
+        encounter : DeviceEncounter
+            With the orientation that passes.
+        margin : float [m]
+            By which what passes may differ, beside resolution, skew and hop.
+        where : str
+            What asks for them.
+        unlike : callable, optional
+            From a view to orientations that pass too, though they look otherwise: they are named beside it.
+
+        Returns
+        -------
+        list of Sorter
         """
         orientation, sorters = encounter.orientation, []
         for view in SENSOR_VIEWS:
@@ -300,7 +360,16 @@ class Sorter(Device):
         return sorters
 
     def with_play(self, play: float) -> Device:
-        """Return the same sorter with other play [m], and headings as its text has them."""
+        """Return the same sorter with other play, and headings as its text has them.
+
+        Parameters
+        ----------
+        play : float [m]
+
+        Returns
+        -------
+        Sorter
+        """
         turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in self.names]
         first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
         return replace(self, like=(*first, float(play)), also=tuple(also)).rewritten()
@@ -361,9 +430,16 @@ class Sorter(Device):
                 "thrust_N": self.jet.thrust}  # fmt: skip
 
     def differs(self, encounter: "DeviceEncounter") -> float:
-        """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.
+        """Return by how much an orientation is seen to differ from the nearest of the wanted ones.
 
-        At least, of what is not wanted; at most, of what is: either may come askew.
+        Parameters
+        ----------
+        encounter : DeviceEncounter
+
+        Returns
+        -------
+        float [m]
+            At least, of what is not wanted; at most, of what is: either may come askew.
         """
         wanted, own = self.wanted(encounter.orientations), encounter.orientation
         if any((other.aspect, other.heading) == (own.aspect, own.heading) for other in wanted):
@@ -440,8 +516,21 @@ class SteadyJet(Device):
     ) -> "list[SteadyJet]":
         """Return the jets that blow surely off some orientations and surely leave others, one a height.
 
-        ``wanted`` and ``competitors`` are DeviceEncounters. Each jet has the least pressure that blows off as
-        many as the greatest one that leaves all that are wanted.
+        Each jet has the least pressure that blows off as many as the greatest one that leaves all that are
+        wanted.
+
+        Parameters
+        ----------
+        wanted, competitors : sequence of DeviceEncounter
+            Those that it leaves, and those that it blows off.
+        orientations : sequence of Orientation
+            All of the part.
+        where : str
+            What asks for them.
+
+        Returns
+        -------
+        list of SteadyJet
         """
         jets, top = [], max(orientation.height for orientation in orientations)
         for height in np.round(top * (np.arange(NOZZLE_HEIGHTS) + 0.5) / NOZZLE_HEIGHTS, 4):
@@ -479,11 +568,29 @@ class SteadyJet(Device):
         return Nozzles(self.nozzle, self.pressure, self.height)
 
     def factor(self, encounter: "DeviceEncounter") -> float:
-        """Return its mean force on an orientation that passes, over the one that just moves it off [1]."""
+        """Return its mean force on an orientation that passes, over the one that just moves it off.
+
+        Parameters
+        ----------
+        encounter : DeviceEncounter
+
+        Returns
+        -------
+        float [1]
+        """
         return float(np.mean(self._factors(encounter)))
 
     def most(self, encounter: "DeviceEncounter") -> float:
-        """Return the greatest such factor [1] at any place along an orientation."""
+        """Return the greatest such factor at any place along an orientation.
+
+        Parameters
+        ----------
+        encounter : DeviceEncounter
+
+        Returns
+        -------
+        float [1]
+        """
         return float(self._factors(encounter).max())
 
     def _factors(self, encounter: "DeviceEncounter") -> Floats:

@@ -1,4 +1,4 @@
-"""How the values of devices are written in a bowl file, and their faults."""
+"""Values of devices as a bowl file writes them, and their faults."""
 
 import math
 from collections.abc import Sequence
@@ -31,7 +31,21 @@ NOZZLE = {  # the same of a jet
 
 
 def length(entry: Entry) -> dict[str, Any]:
-    """Read a length above 0, as {'limit': [m]}."""
+    """Read a length above 0.
+
+    Parameters
+    ----------
+    entry : Entry
+
+    Returns
+    -------
+    dict
+        {'limit': float [m]}
+
+    Raises
+    ------
+    ConfigError
+    """
     limit = _quantity(entry.value, entry.key, "length")
     if limit <= 0.0:
         what = f"{entry.key} is {units.one_line(entry.value.text)}"
@@ -40,7 +54,21 @@ def length(entry: Entry) -> dict[str, Any]:
 
 
 def blade(entry: Entry) -> dict[str, Any]:
-    """Read a clearance, or {clearance: 6 mm, sweep: 30 deg, friction: 0.2, contour: [[0 mm, 6 mm], ...]}."""
+    """Read a clearance, or {clearance: 6 mm, sweep: 30 deg, friction: 0.2, contour: [[0 mm, 6 mm], ...]}.
+
+    Parameters
+    ----------
+    entry : Entry
+
+    Returns
+    -------
+    dict
+        Fields of a wiper, in SI units.
+
+    Raises
+    ------
+    ConfigError
+    """
     if entry.value.kind != "mapping":
         return length(entry)
     mend, more = "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour")
@@ -56,7 +84,23 @@ def blade(entry: Entry) -> dict[str, Any]:
 
 
 def sensor(entry: Entry, views: Sequence[str]) -> dict[str, Any]:
-    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}."""
+    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}.
+
+    Parameters
+    ----------
+    entry : Entry
+    views : sequence of str
+        That 'sees' may name.
+
+    Returns
+    -------
+    dict
+        Fields of a vision reject, in SI units.
+
+    Raises
+    ------
+    ConfigError
+    """
     names, more = ("of", "play", "sees", "resolution", "jet"), ("sees", "resolution", "jet")
     arguments = mapping(entry, names, "write {of: A@90, play: 0.5 mm, sees: outline}", more)
     node = arguments["of"].value
@@ -76,7 +120,25 @@ def sensor(entry: Entry, views: Sequence[str]) -> dict[str, Any]:
 
 
 def nozzle(entry: Entry, more: Sequence[str] = (), needed: Sequence[str] = ()) -> dict[str, Any]:
-    """Read {nozzle: 2 mm, pressure: 3 bar, height: 4 mm}, and the time of a pulse where there is one."""
+    """Read {nozzle: 2 mm, pressure: 3 bar, height: 4 mm}, and the time of a pulse where there is one.
+
+    Parameters
+    ----------
+    entry : Entry
+    more : sequence of str, optional
+        Further keys: 'time', 'nozzles'.
+    needed : sequence of str, optional
+        Keys that may not be missing.
+
+    Returns
+    -------
+    dict
+        Values by key, in SI units.
+
+    Raises
+    ------
+    ConfigError
+    """
     names = ("nozzle", "pressure", "height", *more)
     optional = [name for name in names if name not in needed]
     arguments = mapping(entry, names, "write {nozzle: 2 mm, pressure: 3 bar}", optional)
@@ -84,7 +146,26 @@ def nozzle(entry: Entry, more: Sequence[str] = (), needed: Sequence[str] = ()) -
 
 
 def within(entry: dict[str, Entry], name: str, dimension: str, low: float, high: float) -> float:
-    """Read one value of a mapping, from ``low`` to ``high`` in SI units."""
+    """Read one value of a mapping, within limits.
+
+    Parameters
+    ----------
+    entry : dict of str to Entry
+        As ``mapping`` returns it.
+    name : str
+        Its key.
+    dimension : str
+        Of ``units``.
+    low, high : float [SI]
+
+    Returns
+    -------
+    float [SI]
+
+    Raises
+    ------
+    ConfigError
+    """
     node = entry[name].value
     value = _quantity(node, name, dimension)
     if low <= value <= high:
@@ -97,7 +178,27 @@ def within(entry: dict[str, Entry], name: str, dimension: str, low: float, high:
 def span(
     entry: Entry, more: Sequence[str] = (), needed: Sequence[str] = ()
 ) -> tuple[dict[str, Any], dict[str, Entry]]:
-    """Read {from: 2 mm, to: 5 mm} with more entries beside it: {'span': (m, m)}, and all by key."""
+    """Read {from: 2 mm, to: 5 mm} with more entries beside it.
+
+    Parameters
+    ----------
+    entry : Entry
+    more : sequence of str, optional
+        Further keys.
+    needed : sequence of str, optional
+        Further keys that may not be missing.
+
+    Returns
+    -------
+    fields : dict
+        {'span': (float, float) [m]}
+    arguments : dict of str to Entry
+        All entries by key.
+
+    Raises
+    ------
+    ConfigError
+    """
     names = ("from", "to", *needed, *more)
     arguments = mapping(entry, names, "write {from: 2 mm, to: 5 mm}", more)
     ends = ((arguments[name].value, f"{entry.key} {name}") for name in ("from", "to"))
@@ -109,7 +210,21 @@ def span(
 
 
 def shares(entry: Entry) -> dict[str, Any]:
-    """Read the share that passes by aspect, as {'shares': ((aspect, 1), ...)}."""
+    """Read the share that passes by aspect.
+
+    Parameters
+    ----------
+    entry : Entry
+
+    Returns
+    -------
+    dict
+        {'shares': ((aspect, share [1]), ...)}
+
+    Raises
+    ------
+    ConfigError
+    """
     if entry.value.kind != "mapping" or not entry.value.entries:
         mend = "write below it one line an aspect, as 'A: 0.9'"
         raise ConfigError(entry.where, "yield names no aspect", mend)
@@ -124,7 +239,22 @@ def shares(entry: Entry) -> dict[str, Any]:
 
 
 def polygon(entry: Entry) -> dict[str, Any]:
-    """Read a polygon of lengths, or the file that holds it, as 'corners' and what was assumed of the file."""
+    """Read a polygon of lengths, or the DXF file that holds it.
+
+    Parameters
+    ----------
+    entry : Entry
+
+    Returns
+    -------
+    dict
+        'corners' (K, 2) [m], and 'assumption': what was assumed of the file, a sentence.
+
+    Raises
+    ------
+    ConfigError
+        If it has fewer than three corners, no area, crosses itself, or the drawing does not hold it.
+    """
     corners: Any
     if entry.value.kind != "mapping":
         corners, assumption = _corners(entry.value, entry.key), ""
@@ -162,7 +292,7 @@ def polygon(entry: Entry) -> dict[str, Any]:
 
 
 def _remark_on_drawing(read: "Outlines", name: str) -> str:
-    """What was taken for granted of a drawing, in a line; '' of nothing."""
+    """Return a line of what was taken for granted of a drawing; '' where nothing was."""
     remarks = []
     if not read.has_unit:
         remarks.append(("names no unit ($INSUNITS), read in mm", "save it in millimetres"))
@@ -177,7 +307,21 @@ def _remark_on_drawing(read: "Outlines", name: str) -> str:
 
 
 def opening(entry: Entry) -> dict[str, Any]:
-    """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}, as {'corners': ...} or {'like': ...}."""
+    """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}.
+
+    Parameters
+    ----------
+    entry : Entry
+
+    Returns
+    -------
+    dict
+        As of ``polygon``, or {'like': (aspect, heading [rad], play [m])}.
+
+    Raises
+    ------
+    ConfigError
+    """
     if entry.value.kind != "mapping":
         return polygon(entry)
     arguments = mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}")
@@ -200,7 +344,16 @@ def _play(entry: dict[str, Entry]) -> float:
 
 
 def crossed(corners: Sequence[Corner]) -> bool:
-    """Return whether two sides of corners (K, 2) [m] that are no neighbours meet, or two corners coincide."""
+    """Tell whether two sides of a polygon that are no neighbours meet, or two corners coincide.
+
+    Parameters
+    ----------
+    corners : sequence of (float, float) [m]
+
+    Returns
+    -------
+    bool
+    """
 
     def left(o: Sequence[float], p: Sequence[float], q: Sequence[float]) -> float:
         return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
@@ -220,7 +373,16 @@ def crossed(corners: Sequence[Corner]) -> bool:
 
 
 def written(node: Node) -> str:
-    """Return a value on one line, as it may be written in a bowl file."""
+    """Return a value on one line, as it may be written in a bowl file.
+
+    Parameters
+    ----------
+    node : Node
+
+    Returns
+    -------
+    str
+    """
     if node.kind == "list":
         return f"[{', '.join(map(written, node.items))}]"
     if node.kind == "mapping":
@@ -230,7 +392,27 @@ def written(node: Node) -> str:
 
 
 def mapping(entry: Entry, names: Sequence[str], mend: str, optional: Sequence[str] = ()) -> dict[str, Entry]:
-    """Return the entries of a mapping by key; a ConfigError for keys unknown or missing."""
+    """Return the entries of a mapping by key.
+
+    Parameters
+    ----------
+    entry : Entry
+    names : sequence of str
+        Keys that there may be.
+    mend : str
+        Says what to write where one is missing.
+    optional : sequence of str, optional
+        Keys that may be missing.
+
+    Returns
+    -------
+    dict of str to Entry
+
+    Raises
+    ------
+    ConfigError
+        If a key is unknown or missing.
+    """
     entries = {item.key: item for item in entry.value.entries} if entry.value.kind == "mapping" else {}
     for item in entries.values():
         if item.key not in names:

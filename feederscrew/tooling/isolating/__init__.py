@@ -1,1 +1,1 @@
-"""Which devices let one orientation leave and return the others: searched, proposed, explained."""
+"""Devices that let one orientation leave and return the others: searched, proposed, explained."""

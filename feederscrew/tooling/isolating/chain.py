@@ -40,23 +40,52 @@ PRINTED_SHARE_STEP = 1e-4  # [1] shares that differ by less are printed alike
 
 
 def snap_to_shop_step(value: float, step: float, up: bool) -> float:
-    """Return the nearest multiple of a step [m] that is not below a value, or not above it."""
+    """Return the nearest multiple of a step that is not below a value, or not above it.
+
+    Parameters
+    ----------
+    value, step : float [m]
+    up : bool
+        Whether it is not below.
+
+    Returns
+    -------
+    float [m]
+    """
     count = value / step
     return float((np.ceil(count - 1e-6) if up else np.floor(count + 1e-6)) * step)
 
 
 def in_mm(value: float) -> str:
-    """Return a length [m] as a bowl file has it: '9.25 mm'."""
+    """Return a length as a bowl file has it: '9.25 mm'.
+
+    Parameters
+    ----------
+    value : float [m]
+
+    Returns
+    -------
+    str
+    """
     return f"{1e3 * round_finely(value):.9g} mm"
 
 
 def round_finely(value: float) -> float:
-    """Return a length [m] rounded to what a bowl file says of it."""
+    """Return a length rounded to what a bowl file says of it.
+
+    Parameters
+    ----------
+    value : float [m]
+
+    Returns
+    -------
+    float [m]
+    """
     return float(np.round(value / SHOP_ROUNDING_M)) * SHOP_ROUNDING_M
 
 
 class OutcomeKind(enum.StrEnum):
-    """How parts leave the bowl."""
+    """Way in which parts leave the bowl."""
 
     ANY = "any"
     LYING = "lying"
@@ -79,7 +108,7 @@ class Cut:
 
 @dataclass(frozen=True)
 class DesignConstraints:
-    """What a design may use, and how finely it is made."""
+    """Devices that a design may use, and how finely it is made."""
 
     outcome: OutcomeKind = OutcomeKind.ANY  # how parts leave
     without: tuple[str, ...] = ()  # kinds of devices that are not used
@@ -94,17 +123,26 @@ class DesignConstraints:
     isolating: bool = False  # a chain that does not isolate is of no use: none is looked for where none can
 
     def allows(self, *kinds: str) -> bool:
-        """Return whether some kinds of devices may all be used."""
+        """Tell whether some kinds of devices may all be used.
+
+        Parameters
+        ----------
+        *kinds : str
+
+        Returns
+        -------
+        bool
+        """
         return not set(kinds) & set(self.without)
 
     @property
     def sensed(self) -> bool:
-        """Whether a sensor may be used."""
+        """Tell whether a sensor may be used."""
         return any(self.allows(kind.kind) for kind in sensing_kinds())
 
     @property
     def clearing(self) -> bool:
-        """Whether a blade that clears itself may be used."""
+        """Tell whether a blade that clears itself may be used."""
         return any(self.allows(kind.kind) for kind in numeric_kinds() if kind.overhead)
 
 
@@ -124,10 +162,24 @@ def candidates(
 ) -> dict[Device, Floats]:
     """Return every device of one number that the wanted orientation passes by a margin.
 
-    Each with its value at which it returns the most, and the margins (M,) [m] of the orientations at it; NaN
-    of one that would come to stand there. What drops parts comes first, then what clears itself. ``wanted``
-    is a place among the orientations; those of the places ``same`` count as it: a device of one number lets
-    all of them pass. ``clearing``, ``air`` and ``sensed`` say what is tried beside what drops parts.
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    wanted : int
+        The place of the wanted one.
+    margin : float [m]
+    constraints : DesignConstraints, optional
+    clearing, air, sensed : bool, optional
+        Whether blades that clear themselves, jets and sensors are tried beside what drops parts.
+    same : sequence of int, optional
+        Places of those that count as the wanted one: a device of one number lets all of them pass.
+
+    Returns
+    -------
+    dict of Device to (M,) float [m]
+        Each with its value at which it returns the most, and the margins of the orientations at it; NaN of
+        one that would come to stand there. What drops parts comes first, then what clears itself.
     """
     devices: list[Device] = []
     constraints = constraints or DesignConstraints()
@@ -166,35 +218,80 @@ def candidates(
 def pivot(
     kind: type[Device], orientations: Sequence[Orientation], wanted: int, same: Sequence[int] = ()
 ) -> int:
-    """Return which of those that count as the wanted one a device of one number lets pass last."""
+    """Return which of those that count as the wanted one a device of one number lets pass last.
+
+    Parameters
+    ----------
+    kind : class of Device
+    orientations : sequence of Orientation
+    wanted : int
+    same : sequence of int, optional
+        Those that count as it.
+
+    Returns
+    -------
+    int
+    """
     values = limits(kind, orientations)
     rows = sorted({wanted, *same}, key=lambda k: k != wanted)
     return (max if kind.bound == "upper" else min)(rows, key=lambda k: values[k])
 
 
 def sensing_kinds() -> list[Any]:
-    """Return the kinds that a design tries with the wanted orientation's own outline."""
+    """Return the kinds that a design tries with the wanted orientation's own outline.
+
+    Returns
+    -------
+    list of class of Device
+    """
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
 
 
 def numeric_kinds() -> list[type[Device]]:
-    """Return the kinds of one number that a design tries, in the order of their ranks: drops first."""
+    """Return the kinds of one number that a design tries, in the order of their ranks: drops first.
+
+    Returns
+    -------
+    list of class of Device
+    """
     kinds = [kind for kind in KINDS.values() if kind.proposed and kind.bound]
     return sorted(kinds, key=lambda kind: kind.rank)
 
 
 def limits(kind: type[Device], orientations: Sequence[Orientation]) -> Floats:
-    """Return the value [m] of a device of one number that each orientation just passes, (M,).
+    """Return the value of a device of one number that each orientation just passes.
 
-    Source: own; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    kind : class of Device
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    (M,) float [m]
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     return np.array([kind.needed(orientation) for orientation in orientations])
 
 
 def margin_at(device: Device, orientation: Orientation, orientations: Sequence[Orientation]) -> float:
-    """Return the margin [m] of an orientation at a device; NaN of one that would come to stand there.
+    """Return the margin of an orientation at a device.
 
-    None, a hair below 0, of one that travels and may be held there, though it is not supported.
+    Parameters
+    ----------
+    device : Device
+    orientation : Orientation
+    orientations : sequence of Orientation
+        All of the part.
+
+    Returns
+    -------
+    float [m]
+        NaN of one that would come to stand there. A hair below 0 of one that travels and may be held there,
+        though it is not supported.
     """
     margin = verdict(device, orientation, orientations).margin
     if not margin < 0.0:
@@ -206,9 +303,16 @@ def margin_at(device: Device, orientation: Orientation, orientations: Sequence[O
 
 @functools.lru_cache(maxsize=2048)
 def margins_at(device: Device, orientations: tuple[Orientation, ...]) -> Floats:
-    """Return ``margin_at`` of each of a tuple of orientations, (M,) [m].
+    """Return ``margin_at`` of each orientation; it is remembered: designs of the next cost class ask again.
 
-    Remembered: designs of the next cost class try a device again.
+    Parameters
+    ----------
+    device : Device
+    orientations : tuple of Orientation
+
+    Returns
+    -------
+    (M,) float [m]
     """
     return check.frozen(np.array([margin_at(device, one, orientations) for one in orientations]))
 
@@ -221,8 +325,20 @@ def fewest(
 ) -> tuple[Device, ...]:
     """Return the fewest devices, in the order of ``candidates``, that return the most of some orientations.
 
-    ``competitors`` (M,) [1] is how much each of the orientations to be returned weighs, 0 for those that need
-    not be; a chain that leaves no more than ``enough`` [1] over is not made longer.
+    Parameters
+    ----------
+    margins : dict of Device to (M,) float [m]
+        As ``candidates`` returns them.
+    competitors : (M,) float [1]
+        How much each of the orientations to be returned weighs, 0 for those that need not be.
+    margin : float [m]
+        By which a device has to return one.
+    enough : float [1], optional
+        A chain that leaves no more over is not made longer.
+
+    Returns
+    -------
+    tuple of Device
     """
     best: tuple[Device, ...] = ()
     weight, total = 0.0, float(competitors.sum())
@@ -239,7 +355,22 @@ def fewest(
 
 
 def jams(margins: dict[Device, Floats], devices: Sequence[Device], weights: Floats, margin: float) -> bool:
-    """Return whether an orientation that weighs comes to stand at a device, not returned before it."""
+    """Tell whether an orientation that weighs comes to stand at a device, not returned before it.
+
+    Parameters
+    ----------
+    margins : dict of Device to (M,) float [m]
+        As ``candidates`` returns them.
+    devices : sequence of Device
+        The chain.
+    weights : (M,) float [1]
+    margin : float [m]
+        By which a device has to return one.
+
+    Returns
+    -------
+    bool
+    """
     gone = np.asarray(weights) <= 0.0
     for device in devices:
         if np.any(np.isnan(margins[device]) & ~gone):
@@ -259,10 +390,29 @@ def place_devices(
 ) -> tuple[Cut, ...]:
     """Return the cuts of a chain, each value in the middle of what it may be.
 
-    ``must`` says of each device which orientations (M,) bool it has to return; what leaves less of a foot
-    returns them by no more than ``least`` [m]: the wanted one has the rest. Values are whole multiples of
-    ``step`` [m]; ``same`` as for ``candidates``.
-    Source: own; docs/tooling.md, "6. Where it ends".
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    wanted : int
+    devices : sequence of Device
+        The chain.
+    must : sequence of (M,) bool
+        Which orientations each device has to return.
+    least : float [m], optional
+        By no more than that a device that leaves less of a foot returns them: the wanted one has the rest.
+    step : float [m], optional
+        Values are whole multiples of it.
+    same : sequence of int, optional
+        As for ``candidates``.
+
+    Returns
+    -------
+    tuple of Cut
+
+    References
+    ----------
+    docs/tooling.md, "6. Where it ends".
     """
     cuts = []
     for device, some in zip(devices, must):
@@ -340,7 +490,23 @@ def judge_cut(
     smallest: Device,
     largest: Device,
 ) -> Cut:
-    """Return a device as a Cut, with its true margins and what it returns."""
+    """Return a device as a Cut, with its true margins and what it returns.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    wanted : int
+    device : Device
+    must : (M,) bool
+        Which orientations it has to return.
+    smallest, largest : Device
+        With the least and the greatest value that do.
+
+    Returns
+    -------
+    Cut
+    """
     margins = np.array([verdict(device, orientation, orientations).margin for orientation in orientations])
     return Cut(
         device=device,
@@ -356,7 +522,17 @@ def judge_cut(
 
 
 def inseparable_reason(wanted: Orientation, other: Orientation, margin: float) -> str:
-    """Return in one sentence why a chain leaves another Orientation, and the smallest change that helps."""
+    """Return in one sentence why a chain leaves another orientation, and the smallest change that helps.
+
+    Parameters
+    ----------
+    wanted, other : Orientation
+    margin : float [m]
+
+    Returns
+    -------
+    str
+    """
     names = f"{wanted.name} and {other.name}"
     if wanted.mirror == other.name:
         return (
@@ -404,17 +580,39 @@ def inseparable_reason(wanted: Orientation, other: Orientation, margin: float) -
 
 
 def stands_on_all(orientation: Orientation, other: Orientation, margin: float) -> bool:
-    """Return whether one orientation stands on all that another stands on: no hole lets it fall alone."""
+    """Tell whether one orientation stands on all that another stands on: no hole lets it fall alone.
+
+    Parameters
+    ----------
+    orientation, other : Orientation
+    margin : float [m]
+
+    Returns
+    -------
+    bool
+    """
     foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (orientation, other))
     near = abs(orientation.distance - other.distance) < 2.0 * margin
     return bool(near and foot.buffer(margin).covers(within))
 
 
 def find_difference(wanted: Orientation, other: Orientation) -> tuple[float, str, tuple[float, float, float]]:
-    """Return how two Orientations differ on the track: how far, on which side, and in their centres of mass.
+    """Return how two orientations differ on the track.
 
-    The greatest distance [m] between the hulls, laid over each other as well as can be, the side where that
-    is, and by how much the centre of mass lies elsewhere within the hull [m]: ahead, inwards, up.
+    Their hulls are laid over each other as well as can be, by least squares over directions.
+
+    Parameters
+    ----------
+    wanted, other : Orientation
+
+    Returns
+    -------
+    distance : float [m]
+        The greatest between the hulls.
+    side : str
+        Where that is.
+    shift : (float, float, float) [m]
+        By which the centre of mass lies elsewhere within the hull: ahead, inwards, up.
     """
     first, second = (
         sameness.looks(o.posture, [o.heading])[0][0, 0]
@@ -437,7 +635,7 @@ def find_difference(wanted: Orientation, other: Orientation) -> tuple[float, str
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """What isolates one orientation, and what it does not."""
+    """Chain that isolates one orientation, and what it leaves over."""
 
     wanted: int  # its place among the orientations
     isolated: bool = False  # all others that come often enough are returned, to either side by the margin
@@ -467,7 +665,7 @@ class Design:
 
     @property
     def purity_is_least(self) -> bool:
-        """Whether the purity counts as leaving what no verdict is sure to return."""
+        """Tell whether the purity counts as leaving what no verdict is sure to return."""
         return self.hopeful is not None and self.hopeful > self.purity
 
     @property
@@ -477,7 +675,7 @@ class Design:
 
     @property
     def stands(self) -> bool:
-        """Whether some orientation comes to stand at one of its devices."""
+        """Tell whether some orientation comes to stand at one of its devices."""
         return any(cut.stops for cut in self.cuts)
 
     @property
@@ -523,7 +721,19 @@ class DesignTask:
         return self.allowed_beside(np.arange(len(self.orientations)) == self.wanted)
 
     def allowed_beside(self, same: Bools) -> float:
-        """Return the share of others [1] that may leave beside those (M,) bool that leave as wanted."""
+        """Return the share of others that may leave beside those that leave as wanted.
+
+        With the share s of the wanted ones and the purity p it is s (1 / p - 1).
+
+        Parameters
+        ----------
+        same : (M,) bool
+            Which leave as wanted.
+
+        Returns
+        -------
+        float [1]
+        """
         return float(self.coming[same].sum() * (1.0 / self.purity - 1.0))
 
 
@@ -537,7 +747,29 @@ def design_task(
     turners: Sequence[Cut] = (),
     constraints: DesignConstraints | None = None,
 ) -> DesignTask:
-    """Return what a design has to do behind the devices of the bowl and its own turning devices."""
+    """Return what a design has to do behind the devices of the bowl and its own turning devices.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    wanted : int
+    margin : float [m]
+        To either side.
+    purity : float [1]
+        That is asked for.
+    before : sequence of Device
+        Of the bowl.
+    turners : sequence of Cut, optional
+        Of its own, before all others.
+    constraints : DesignConstraints, optional
+
+    Returns
+    -------
+    DesignTask
+    """
     orientations = tuple(orientations)
     flow = course((*before, *(cut.device for cut in turners)), orientations)
     coming = (shares[:, None] * flow.leaving).sum(axis=0)[: len(orientations)]
@@ -546,7 +778,16 @@ def design_task(
 
 
 def weights(task: DesignTask) -> Floats:
-    """Return how much it matters to return each orientation, (M,) [1]: those that come often enough first."""
+    """Return how much it matters to return each orientation: those that come often enough first.
+
+    Parameters
+    ----------
+    task : DesignTask
+
+    Returns
+    -------
+    (M,) float [1]
+    """
     weight = np.where(task.often, 1.0 + task.coming, 1e-3 * task.coming)
     weight = np.where(task.coming < NEGLIGIBLE_SHARE, 0.0, weight)
     return np.where(task.stays, weight, 0.0)
@@ -555,8 +796,19 @@ def weights(task: DesignTask) -> Floats:
 def propose(task: DesignTask, cuts: Sequence[Cut], is_returned: Bools, same: Bools | None = None) -> Design:
     """Return the record of a chain, by what all of its devices do with every orientation.
 
-    ``cuts`` are those of a DesignTask without turning devices; ``is_returned`` (M,) bool is by the margin,
-    ``same`` which leave like the wanted one, hanging; only itself without it.
+    Parameters
+    ----------
+    task : DesignTask
+    cuts : sequence of Cut
+        Without turning devices.
+    is_returned : (M,) bool
+        Which are returned by the margin.
+    same : (M,) bool, optional
+        Which leave like the wanted one, hanging; those of the task without it.
+
+    Returns
+    -------
+    Design
     """
     orientations, shares, wanted = task.orientations, task.shares, task.wanted
     same = task.same if same is None else same
@@ -627,12 +879,33 @@ def _add_spacing(task: DesignTask, cuts: Sequence[Cut]) -> tuple[Cut, ...]:
 
 
 def plain_cut(device: Device) -> Cut:
-    """Return a stretch of track as a Cut: it passes all."""
+    """Return a stretch of track as a Cut: it passes all.
+
+    Parameters
+    ----------
+    device : Device
+
+    Returns
+    -------
+    Cut
+        Without margins.
+    """
     return Cut(device, np.nan, np.nan, device, device, ())
 
 
 def propose_nothing(task: DesignTask, why: str) -> Design:
-    """Return the record of an orientation that nothing isolates, and why."""
+    """Return the record of an orientation that nothing isolates, and why.
+
+    Parameters
+    ----------
+    task : DesignTask
+    why : str
+        The rest of a sentence that begins with its name.
+
+    Returns
+    -------
+    Design
+    """
     remark = f"{task.orientations[task.wanted].name} {why}"
     return Design(wanted=task.wanted, before=task.before, remarks=(remark,))
 
@@ -643,9 +916,25 @@ def propose_needed(
     """Return the record of a chain as ``propose`` does, without the devices that change nothing of it.
 
     Isolation, efficiency and purity [1] stay. The last ones are left out first: what drops parts stands
-    before what has to clear itself or to see. Rails are what parts leave in, and stay. ``is_returned`` (M,)
-    bool is by the track and the devices of the bowl too.
-    Source: own; docs/tooling.md, "What a design takes".
+    before what has to clear itself or to see. Rails are what parts leave in, and stay.
+
+    Parameters
+    ----------
+    task : DesignTask
+    cuts : sequence of Cut
+        Without turning devices.
+    is_returned : (M,) bool
+        Which are returned by the track and all devices, those of the bowl too.
+    same : (M,) bool, optional
+        As for ``propose``.
+
+    Returns
+    -------
+    Design
+
+    References
+    ----------
+    docs/tooling.md, "What a design takes".
     """
 
     def numbers(design: Design) -> Floats:

@@ -1,4 +1,4 @@
-"""Which devices, on which track, let one orientation leave and return all the others."""
+"""Search for the devices, and the track, that let one orientation leave and return all the others."""
 
 import itertools
 import math
@@ -79,12 +79,33 @@ def design(
 ) -> Design:
     """Return the chain of fewest devices that isolates an orientation.
 
-    ``orientations`` are those of the part on the track, ``shares`` (M,) [1] the probability of each,
-    ``wanted`` is the place of one, ``margin`` [m] to either side. ``search``, a HoleSearch, has seed and
-    limits of the search for holes. The chain is not made longer for more than the ``purity`` [1] of what
-    leaves; ways on are tried as long as the ``efficiency`` [1] of what is offered is missed. The design is
-    found behind the devices ``before``, those of the bowl itself.
-    Source: own; docs/tooling.md, "1. The method".
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        The M of the part on the track.
+    shares : (M,) float [1]
+        The probability of each.
+    wanted : int
+        The place of one.
+    margin : float [m], optional
+        To either side.
+    search : HoleSearch, optional
+        Seed and limits of the search for holes.
+    purity : float [1], optional
+        Of what leaves: the chain is not made longer for more.
+    efficiency : float [1], optional
+        Of what is offered: ways on are tried as long as it is missed.
+    before : sequence of Device, optional
+        Of the bowl itself; the design is found behind them.
+    constraints : DesignConstraints, optional
+
+    Returns
+    -------
+    Design
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
     """
     search = search or hole_search.HoleSearch()
     task = chain.design_task(orientations, shares, wanted, margin, purity, before, constraints=constraints)
@@ -207,9 +228,25 @@ def varied_devices(
     constraints: DesignConstraints,
     same: Sequence[int] = (),
 ) -> dict[Device, Floats]:
-    """Return blades of sweeps that are not tried first, with the margins at them, as ``chain.candidates``.
+    """Return blades of sweeps that are not tried first, with the margins at them.
 
-    Source: own; docs/tooling.md, "What a design takes".
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    wanted : int
+    margin : float [m]
+    constraints : DesignConstraints
+    same : sequence of int, optional
+        As for ``chain.candidates``.
+
+    Returns
+    -------
+    dict of Device to (M,) float [m]
+
+    References
+    ----------
+    docs/tooling.md, "What a design takes".
     """
     margins: dict[Device, Floats] = {}
     for kind in (kind for kind in chain.numeric_kinds() if kind.overhead and constraints.allows(kind.kind)):
@@ -248,9 +285,25 @@ def _add_holes(
 
 
 def place(orientations: Sequence[Orientation], aspect: str, heading: float | None, source: str) -> int:
-    """Return the place of an orientation of the part of a file by its aspect and, where given, heading [rad].
+    """Return the place of an orientation of the part of a file.
 
-    Raises ArgumentError if the part has no such orientation.
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    aspect : str
+    heading : float [rad] or None
+        None: the aspect's most frequent heading that stays on the track.
+    source : str
+        The file, for the fault.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    ArgumentError
+        If the part has no such orientation.
     """
     aspects = [orientation.aspect for orientation in orientations]
     aspect_rows = rows(aspects, aspect, f"aspect of {source}", ArgumentError)
@@ -390,7 +443,16 @@ def design_around_rails(
 
 
 def turning_chains(task: DesignTask) -> list[tuple[Cut, ...]]:
-    """Return the chains that bring most parts into the wanted orientation: single devices, then pairs."""
+    """Return the chains that bring most parts into the wanted orientation: single devices, then pairs.
+
+    Parameters
+    ----------
+    task : DesignTask
+
+    Returns
+    -------
+    list of tuple of Cut
+    """
     orientations = task.orientations
     own, often = orientations[task.wanted], np.array(task.often & task.stays)
     frequent = [orientation for orientation, some in zip(orientations, often) if some]
@@ -478,10 +540,27 @@ def design_with_track(
 ) -> Design:
     """Return the design of an orientation, on the track as it is or as it leans best.
 
-    ``steady``, given devices, orientations, a bowl and a margin [m], says whether the drive leaves them
-    lying; ``cache`` holds orientations on tracks that lean, for other designs of the same part. The
-    ``options`` are those of ``design``: margin, search, purity, efficiency, before and constraints.
-    Source: own; docs/tooling.md, "What a design takes".
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them, on the track as it is.
+    shares : (M,) float [1]
+    wanted : int
+    bowl : Bowl
+    steady : callable
+        Of devices, orientations, a bowl and a margin [m]: says whether the drive leaves them lying.
+    cache : dict, optional
+        Orientations on tracks that lean, for other designs of the same part.
+    **options : object
+        Of ``design``: margin, search, purity, efficiency, before and constraints.
+
+    Returns
+    -------
+    Design
+
+    References
+    ----------
+    docs/tooling.md, "What a design takes".
     """
     cache, constraints = {} if cache is None else cache, options["constraints"]
 
@@ -529,11 +608,26 @@ def design_with_track(
 def holding_stretches(
     orientation: Orientation, wall_friction: float, before: Sequence[Device], constraints: DesignConstraints
 ) -> Stretch:
-    """Return the stretches of track that hold an orientation which rolls on the level, devices in order.
+    """Return the stretches of track that hold an orientation which rolls on the level.
 
-    A bank; where it would have to be steep, a groove and a low bank behind it; none where the orientation, as
-    it comes, holds or a device ``before`` leans the track already.
-    Source: own; docs/tooling.md, "What a design takes".
+    They are a bank; where it would have to be steep, a groove and a low bank behind it.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    wall_friction : float [1]
+    before : sequence of Device
+        Of the bowl.
+    constraints : DesignConstraints
+
+    Returns
+    -------
+    tuple of Lean
+        Devices in order; empty where the orientation holds as it comes, or a device before leans the track.
+
+    References
+    ----------
+    docs/tooling.md, "What a design takes".
     """
     leans = orientation.track.bank > 0.0 or any(device.leans for device in before)
     if orientation.kind != "rolling" or leans:
@@ -545,10 +639,24 @@ def holding_stretches(
 def other_stretches(
     orientation: Orientation, proposal: Design, constraints: DesignConstraints
 ) -> list[Stretch]:
-    """Return other stretches of track, devices in order, that may give an orientation more than a Design.
+    """Return other stretches of track that may give an orientation more than a design.
 
     Where that isolates, only what may turn more parts into the orientation is worth another track.
-    Source: own; docs/tooling.md, "What a design takes".
+
+    Parameters
+    ----------
+    orientation : Orientation
+    proposal : Design
+    constraints : DesignConstraints
+
+    Returns
+    -------
+    list of tuple of Lean
+        Devices in order each, the fewest first.
+
+    References
+    ----------
+    docs/tooling.md, "What a design takes".
     """
     if orientation.track.bank > 0.0:
         return []
@@ -570,9 +678,22 @@ def _with_stretches(proposal: Design, stretch: Stretch) -> Design:
 
 
 def coming_shares(orientations: Sequence[Orientation], shares: Floats, stretch: Stretch) -> Floats:
-    """Return the share (M,) [1] of the parts that comes in each orientation behind stretches of track.
+    """Return the share of the parts that comes in each orientation behind stretches of track.
 
     What rolls back in a groove before it turns does not come.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) float [1]
+        Before the stretches.
+    stretch : tuple of Lean
+        Devices in order.
+
+    Returns
+    -------
+    (M,) float [1]
     """
     there = at_entry(orientations, stretch)
     flow, flat = course(stretch, there), stretch[0].grooved and stretch[0].angle < MAX_GROOVE_FACE_RAD - 1e-9
@@ -581,7 +702,18 @@ def coming_shares(orientations: Sequence[Orientation], shares: Floats, stretch: 
 
 
 def gains(other: Design | None, best: Design) -> bool:
-    """Return whether a design gives more than another: it isolates, is purer, or more efficient."""
+    """Tell whether a design gives more than another: it isolates, is purer, or more efficient.
+
+    Parameters
+    ----------
+    other : Design or None
+    best : Design
+        So far.
+
+    Returns
+    -------
+    bool
+    """
     if other is None or other.isolated != best.isolated:
         return other is not None and other.isolated
     pure, before = (np.nan_to_num(proposal.purity) for proposal in (other, best))
@@ -591,11 +723,27 @@ def gains(other: Design | None, best: Design) -> bool:
 
 
 def widths(orientations: Sequence[Orientation], shares: Floats, wanted: int, margin: float) -> list[float]:
-    """Return other widths [m] of the track that may give the wanted one more, the nearest to it first.
+    """Return other widths of the track that may give the wanted one more.
 
-    Wide enough for an orientation that falls off; so narrow that the pulse of a sorter carries off it what
-    stays on a wider one. ``shares`` (M,) [1] are those of the orientations.
-    Source: own; docs/tooling.md, "What a design takes".
+    They are wide enough for an orientation that falls off; so narrow that the pulse of a sorter carries off
+    it what stays on a wider one.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) float [1]
+    wanted : int
+    margin : float [m]
+
+    Returns
+    -------
+    list of float [m]
+        The wider one first.
+
+    References
+    ----------
+    docs/tooling.md, "What a design takes".
     """
     own, widths = orientations[wanted], []
     if own.falls_off:

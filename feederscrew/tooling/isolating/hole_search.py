@@ -42,7 +42,7 @@ ScoredHole = tuple[Points, list[float]]  # corners, and the margins [m] of the o
 
 @dataclass
 class HoleSearch:
-    """How long and from where holes are looked for: by a count of verdicts, the same on every machine."""
+    """Limits of the search for holes: by a count of verdicts, the same on every machine."""
 
     seed: int = 1
     verdicts: int = MAX_HOLE_VERDICTS  # for one orientation; then the best so far is taken
@@ -56,7 +56,7 @@ class HoleSearch:
         return replace(self, spent=0, late=False)
 
     def over(self) -> bool:
-        """Return whether one of the limits is reached."""
+        """Tell whether one of the limits is reached."""
         if self.spent >= self.verdicts:
             return True
         self.late = self.late or time.monotonic() > self.until
@@ -72,9 +72,22 @@ def cut_out(
 ) -> Hole | None:
     """Return the hole that the wanted orientation passes and that returns the most others.
 
-    A Cut, and the places of those of the ``competitors`` that it returns by the ``margin`` [m] to either
-    side; or None. ``wanted`` and ``competitors`` are places among the orientations, ``search`` is a
-    HoleSearch.
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    wanted : int
+        The place of the wanted one.
+    competitors : sequence of int
+        The places of others.
+    margin : float [m]
+        To either side.
+    search : HoleSearch
+        It counts what is spent.
+
+    Returns
+    -------
+    Hole or None
+        A Cut, and the places of those of the competitors that it returns by the margin.
     """
     judge = _Judge(orientations, wanted, competitors, margin, search)
     best = judge.find_best()
@@ -259,14 +272,34 @@ class _Judge:
 
 
 def device_of(corners: Points) -> Device:
-    """Return the hole of some corners (K, 2) [m]."""
+    """Return the hole of some corners as a device.
+
+    Parameters
+    ----------
+    corners : (K, 2) float [m]
+        Along the wall, and from it.
+
+    Returns
+    -------
+    CutOut
+    """
     return CutOut(DESIGN_KEY, corners=tuple((float(x), float(y)) for x, y in corners)).rewritten()
 
 
 def round_corners(task: DesignTask, hole: Hole, radius: float) -> Hole | None:
-    """Return a hole from ``cut_out`` with corners of a radius [m], as a cutter leaves them.
+    """Return a hole with round corners, as a cutter leaves them.
 
-    None where it then does not do by the margin of the DesignTask.
+    Parameters
+    ----------
+    task : DesignTask
+    hole : Hole
+        From ``cut_out``.
+    radius : float [m]
+
+    Returns
+    -------
+    Hole or None
+        None where it then does not do by the margin of the task.
     """
     cut, held = hole
     open_ = [(x, y if y > 0.0 else -BEYOND_HOLE_M) for x, y in cut.device.corners]  # it goes on into the wall

@@ -38,7 +38,7 @@ HIGHEST_BLADE_M = 4e-3  # [m] of the same: what is swept by its foot is not laid
 
 @dataclass(frozen=True)
 class RailSetting:
-    """What of rails is searched, beside what the part gives."""
+    """Values of rails that are searched, beside what the part gives."""
 
     offset: float = 0.0  # [m] of the slot, farther off the wall than usual
     play: float = 0.0  # [m] by which the slot is wider than usual
@@ -55,8 +55,17 @@ SETTINGS = (
 def find_head(orientation: Orientation) -> Neck | None:
     """Return head and shank of a part as it lies: along the track, or on its stem with shoulders over it.
 
-    None without a head that is wider than its neck by more than ``LEAST_STEP_M``. Whether a part that lies
-    so comes to hang between rails is a question for a trial: a short flanged part rolls, and yet hangs.
+    Whether a part that lies so comes to hang between rails is a question for a trial: a short flanged part
+    rolls, and yet hangs.
+
+    Parameters
+    ----------
+    orientation : Orientation
+
+    Returns
+    -------
+    Neck or None
+        None without a head that is wider than its neck by more than ``LEAST_STEP_M``.
     """
     found = neck(orientation) or shouldered_neck(orientation, PLAY)
     return found if found is not None and found.head - found.shank > LEAST_STEP_M else None
@@ -111,7 +120,21 @@ def place_rails(
 
 
 def slot_width(head: Neck, margin: float) -> float:
-    """Return the usual width [m] of a slot for a head; ``margin`` [m] is what the shank has of play."""
+    """Return the usual width of a slot for a head.
+
+    It is the shank and its play: the usual one or the margin, half of what the head is wider and ``MOST`` at
+    most.
+
+    Parameters
+    ----------
+    head : Neck
+    margin : float [m]
+        That the shank has of play at least.
+
+    Returns
+    -------
+    float [m]
+    """
     return head.shank + min(max(PLAY, margin), 0.5 * (head.head - head.shank), MOST)
 
 
@@ -190,7 +213,20 @@ def blade_behind(
 def device_returns(
     device: Wiper, orientation: Orientation, orientations: Sequence[Orientation], margin: float
 ) -> bool:
-    """Return whether a blade returns an orientation by a margin [m], as the static rule says."""
+    """Tell whether a blade returns an orientation by a margin, as the static rule says.
+
+    Parameters
+    ----------
+    device : Wiper
+    orientation : Orientation
+    orientations : sequence of Orientation
+        All of the part.
+    margin : float [m]
+
+    Returns
+    -------
+    bool
+    """
     outcome = verdict(device, orientation, orientations)
     fate = device.fate(DeviceEncounter(orientation, orientations))
     return bool(outcome.margin <= -margin and fate == RETURNED)

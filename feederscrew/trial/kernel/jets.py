@@ -84,7 +84,7 @@ def _add_jet(jet: Row, solid: TrueSolid, state: Floats, turn: Floats, loads: Flo
 
 @compiled
 def _first_facet(solid: TrueSolid, spot: Vec3, direction: Vec3) -> tuple[float, int]:
-    """How far along a ray it meets the body first, infinite where it does not, and which facet."""
+    """Return how far along a ray it meets the body first, infinite where not, and which facet."""
     best, facet, size = math.inf, 0, dot(direction, direction)
     for block in range(len(solid.face_blocks)):
         ahead = square = ball = 0.0

@@ -108,7 +108,7 @@ def rebuild_lists(surface: Surface, solid: TrueSolid, work: Workspace, n: int, r
 
 @compiled
 def _point_to_wall(surface: Surface, work: Workspace, n: int, p: Triple) -> float:
-    """How far a point of a body is from the wall."""
+    """Return how far a point of a body is from the wall."""
     state = work.states[n]
     x, y, z = rotate(work.turns[n], p)
     return distance_to_wall(surface, work.leans[n], state[X] + x, state[Y] + y, state[Z] + z)
@@ -155,7 +155,7 @@ def _list_plate(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: 
 
 @compiled
 def _comes_into(border: Row, box: Floats, margin: float) -> bool:
-    """Whether a border may come into a box (4,) of places along a plate, or so near to it."""
+    """Tell whether a border may come into a box (4,) of places along a plate, or so near to it."""
     p, q, u, v = border.start_x, border.start_y, border.end_x, border.end_y
     if min(p, u) > box[1] + margin or max(p, u) < box[0] - margin:
         return False
@@ -164,7 +164,7 @@ def _comes_into(border: Row, box: Floats, margin: float) -> bool:
 
 @compiled
 def _border_comes(solid: TrueSolid, work: Workspace, plate: Row, borders: Rows, margin: float) -> bool:
-    """Whether any border of a plate comes into the box of a ball around the part."""
+    """Tell whether any border of a plate comes into the box of a ball around the part."""
     box, far, comes = work.box, solid.radius, False
     for e in range(2):
         box[2 * e], box[2 * e + 1] = work.frame[9 + e] - far, work.frame[9 + e] + far
@@ -344,7 +344,7 @@ def _list_edges(
 
 @compiled
 def _line_distance(p: Triple, q: Triple, border: Row, level: float) -> float:
-    """How far apart an edge and a border, at a level of its plate, are."""
+    """Return how far apart an edge and a border, at a level of its plate, are."""
     a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     u, v = border.end_x - border.start_x, border.end_y - border.start_y
     x, y, z = p[0] - border.start_x, p[1] - border.start_y, p[2] - level
@@ -362,7 +362,7 @@ def _line_distance(p: Triple, q: Triple, border: Row, level: float) -> float:
 
 @compiled
 def _passes_start(p: Triple, q: Triple, border: Row, wide: float) -> bool:
-    """Whether an edge comes past the start of a border as near as that."""
+    """Tell whether an edge comes past the start of a border as near as that."""
     x, y, u, v = border.start_x - p[0], border.start_y - p[1], q[0] - p[0], q[1] - p[1]
     square = u * u + v * v
     share = min(max((x * u + y * v) / square, 0.0), 1.0) if square > 0.0 else 0.0

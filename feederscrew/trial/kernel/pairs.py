@@ -84,7 +84,7 @@ def find_pair_contacts(solid: TrueSolid, work: Workspace, i: int, j: int, reach:
 
 @compiled
 def _shift_of(solid: TrueSolid, now: Floats, before: Floats) -> float:
-    """How far [L] at most any point of a part near the other has moved, as either sees it (frames (12,))."""
+    """Return how far [L] at most a point of a part has moved, seen by either part (frames (12,))."""
     turned = moved = 0.0
     for e in range(9):
         turned += (now[e] - before[e]) ** 2
@@ -108,7 +108,7 @@ def may_meet(solid: TrueSolid, work: Workspace, i: int, j: int, reach: float) ->
 
 @compiled
 def _balls_are_apart(solid: TrueSolid, work: Workspace, i: int, j: int, reach: float) -> bool:
-    """Whether the balls around two parts are further than ``reach`` [L] from each other."""
+    """Tell whether the balls around two parts are further than ``reach`` [L] from each other."""
     square = 0.0
     for e in range(3):
         square += (work.states[i, X + e] - work.states[j, X + e]) ** 2
@@ -117,7 +117,7 @@ def _balls_are_apart(solid: TrueSolid, work: Workspace, i: int, j: int, reach: f
 
 @compiled
 def _boxes_meet(work: Workspace, reach: float) -> bool:
-    """Whether the box of one part comes to that of the other, along the other's axes, as ``work.frame``."""
+    """Tell whether the box of one part comes to the other's, along the other's axes, as ``work.frame``."""
     move = work.frame
     for p in range(3):
         middle, half = move[9 + p], reach
@@ -214,7 +214,7 @@ def _near_blocks(blocks: Floats, box: Floats, reach: float, near: Ints) -> int:
 
 @compiled
 def _may_come(work: Workspace, block: Floats, reach: float) -> bool:
-    """Whether a box of the first part, as ``work.frame`` places it, may come to the box of the second."""
+    """Tell whether a box of the first part, placed by ``work.frame``, may come to one of the second."""
     for e in range(3):
         low, high = extent_of(work.frame, block, e)
         if low > work.most[e] + reach + ROUNDING or high < work.least[e] - reach - ROUNDING:
@@ -411,7 +411,7 @@ def _add_edges(work: Workspace, solid: TrueSolid, i: int, j: int, reach: float, 
 
 @compiled
 def _edges_are_apart(ours: tuple[Vec3, Vec3], theirs: tuple[Vec3, Vec3], reach: float) -> bool:
-    """Whether the boxes of two edges are further than ``reach`` [L] from each other along an axis."""
+    """Tell whether the boxes of two edges are further than ``reach`` [L] from each other along an axis."""
     (p, q), (r, s) = ours, theirs
     for e in range(3):
         if min(p[e], q[e]) > max(r[e], s[e]) + reach or max(p[e], q[e]) < min(r[e], s[e]) - reach:

@@ -230,7 +230,7 @@ def keep_outermost(supports: Rows, best: Floats, count: int) -> int:
 
 @compiled
 def _is_foremost(solid: TrueSolid, k: int, direction: Vec3) -> bool:
-    """Whether a corner of the part is its foremost against a direction, as far as its neighbours tell."""
+    """Tell whether a corner is the part's foremost against a direction, as far as its neighbours tell."""
     for n in range(solid.firsts[k], solid.firsts[k + 1]):
         away = subtract(solid.corners[solid.neighbours[n]], solid.corners[k])
         ahead = dot(direction, away)
@@ -391,7 +391,7 @@ def _add_circles(
 
 @compiled
 def _is_on_top(surface: Surface, work: Workspace, n: int, k: int, place: Triple) -> bool:
-    """Whether a point lies on a plate's surface: over what is solid, and not at a side."""
+    """Tell whether a point lies on a plate's surface: over what is solid, and not at a side."""
     plate, (a, b, c), odd = surface.plates[k], place, False
     for e in range(work.ends[n, k].rounds, work.ends[n, k + 1].rounds):
         odd = odd != crosses(surface.borders[work.rounds[n, e]], a, b)
@@ -407,7 +407,7 @@ def _is_on_top(surface: Surface, work: Workspace, n: int, k: int, place: Triple)
 
 @compiled
 def _dip_of(surface: Surface, plate: Row, work: Workspace, k: int) -> float:
-    """How deep corners of the part come beside a border or one that goes on from it nearly straight."""
+    """Return how deep corners come beside a border or one that goes on from it nearly straight."""
     low, border = work.dips[k], surface.borders[k]
     if k + 1 < plate.end:
         after = surface.borders[k + 1]
@@ -419,7 +419,7 @@ def _dip_of(surface: Surface, plate: Row, work: Workspace, k: int) -> float:
 
 @compiled
 def _is_between_faces(solid: TrueSolid, k: int, normal: Triple) -> bool:
-    """Whether a normal in body axes lies between the faces of an edge of the part."""
+    """Tell whether a normal in body axes lies between the faces of an edge of the part."""
     side = solid.sides[k]
     return dot(normal, side[:3]) >= -NORMAL_SLACK and dot(normal, side[3:]) >= -NORMAL_SLACK
 
@@ -560,7 +560,7 @@ def _add_posts(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: i
 
 @compiled
 def _is_before_corner(border: Row, u: float, v: float) -> bool:
-    """Whether what is solid at a border's start lies behind a normal along the plate."""
+    """Tell whether what is solid at a border's start lies behind a normal along the plate."""
     along = -u * border.normal_y + v * border.normal_x
     behind = u * border.previous_y - v * border.previous_x
     return along <= NORMAL_SLACK and behind <= NORMAL_SLACK
@@ -610,7 +610,7 @@ def _against_face(frame: Floats, t: Floats) -> Triple:
 
 @compiled
 def _points_to_face(surface: Surface, solid: TrueSolid, work: Workspace, plate: Row, near: Row) -> bool:
-    """Whether a border's corner, in front or at the back, points to a face of the part."""
+    """Tell whether a border's corner, in front or at the back, points to a face of the part."""
     frame = work.frame
     u, v, w = _against_face(frame, solid.normals[near.face])
     out = -w if near.back else w
