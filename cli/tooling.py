@@ -3,11 +3,14 @@
 import dataclasses
 import time
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import heed_interrupts
 from feederscrew_cli.options import Output, Values
+
+if TYPE_CHECKING:
+    from feederscrew.studies.tooling import ToolingStudy
 
 
 @grouped.command(
@@ -47,6 +50,12 @@ from feederscrew_cli.options import Output, Values
     ["lying", "hanging", "any"],
     default="any",
     text="How parts must leave: as they lie, hanging between rails, or either.",
+)
+@options.choice(
+    "--class cost_class",
+    ["steel", "air", "sensor"],
+    "What the chain takes: steel alone, steady air, or a sensor with a valve.  "
+    "[default: the cheapest that isolates, in this order]",
 )
 @options.option(
     "--without", "KIND,...", "Kinds of devices that are not used: 'wiper,vision reject'.", default=""
@@ -115,7 +124,13 @@ def tooling(
     from feederscrew.output import marking
     from feederscrew.output import tooling as tables
     from feederscrew.solidbowl.exact import exact_body
-    from feederscrew.studies.tooling import ToolingSearch, check_named, tooling_without
+    from feederscrew.studies.tooling import (
+        ToolingSearch,
+        check_named,
+        may_be_left_out,
+        next_class,
+        tooling_without,
+    )
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.units import counted
 
@@ -134,14 +149,23 @@ def tooling(
         values = {"aspect_shares": aspect_shares.aspects, "search": ToolingSearch(**searched), **request}
         with progress.bar(out, "orientations") as bar:
             result = study(solid, record, progress=heed_interrupts(bar.reach), **values)
+
+        def propose(kinds: tuple[str, ...], cost_class: str | None) -> "ToolingStudy":
+            return tooling_without(kinds, solid, record, **values | {"cost_class": cost_class})
+
         if not (static or result.partial):
-            without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
+            own = {name: request[name] for name in ("cost_class", "efficiency", "outcome")}
+            own["without"] = may_be_left_out(request["without"])
             result = tooling_trials.try_designs(
-                result, without_kinds, before=lambda: progress.tell_compiling(out, "trial"), until=until
-            )
+                result, propose, kept_keys={s.key.name for s in settings if s.is_own}, until=until,
+                heading_given=request["heading"] is not None,
+                before=lambda: progress.tell_compiling(out, "trial"), **own,
+            )  # fmt: skip
             if time.monotonic() > until:
                 count = counted(len(result.trials), "proposal was", "proposals were")
                 out.warn(f"the time (--limit) is over: {count} sent through a trial, no other")
+        if not result.partial:
+            result = dataclasses.replace(result, dearer=next_class(result, partial(propose, ())))
         document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}
         denied, agreed = tables.trials(result)
         out.warn(*result.warnings, *denied)

@@ -23,6 +23,7 @@ from feederscrew.dropping.plate_test import throw_number
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
+from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
@@ -242,10 +243,7 @@ def _tracks(search: Search) -> list[BankedTrack]:
     if state.tracks:
         return state.tracks
     aspects = find_aspects(search.part) if state.shares is None else state.shares.aspects
-    # the steeper bank first where the part rolls
-    chances = np.nan_to_num(aspects.chances[search.request.rule])
-    rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
-    banks = calm_drive.STEEP_BANKS if rolling > policy.rolling_share * chances.sum() else calm_drive.BANKS
+    banks = likely_banks(aspects, search.request.rule, policy)
     if search.keeps("track.bank"):
         banks = (search.plain.track.bank,)
     for number, bank in enumerate(banks):
@@ -281,6 +279,26 @@ def _rows_to_try(orientations: Orientations, weights: Floats, search: Search) ->
         if aspects[row] not in {aspects[k] for k in chosen} and share >= search.policy.often_share:
             chosen.append(row)
     return chosen
+
+
+def likely_banks(aspects: Aspects, rule: str, policy: SearchPolicy) -> tuple[float, ...]:
+    """Return the banks [rad] of the track that are tried for a part, the likeliest first.
+
+    Parameters
+    ----------
+    aspects : Aspects
+    rule : str
+        Whose probabilities are taken.
+    policy : SearchPolicy
+
+    Returns
+    -------
+    tuple of float [rad]
+        The steeper ones where the part rolls.
+    """
+    chances = np.nan_to_num(aspects.chances[rule])
+    rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
+    return calm_drive.STEEP_BANKS if rolling > policy.rolling_share * chances.sum() else calm_drive.BANKS
 
 
 def _bound(search: Search, idea: _Idea) -> float:
@@ -486,6 +504,7 @@ def _try_and_mend(search: Search, track: BankedTrack, proposal: Proposal) -> Ite
     state, policy = search.state, search.policy
     plain_bowl, weights = track.plain_bowl, track.weights
     lost, before, nearly = 0, None, None
+    useless: tuple[str, ...] = ()  # kinds of drops that made no difference
     for _ in range(policy.mends + 1):
         yield from _others_first(search, track.orientations.lying[proposal.row].name)
         if search.is_spent:
@@ -505,11 +524,14 @@ def _try_and_mend(search: Search, track: BankedTrack, proposal: Proposal) -> Ite
             lost += 1
         attempt, lying = candidate.attempt, candidate.orientations.lying
         after = attempt.faults, attempt.efficiency, attempt.stopped
-        # what was changed made no difference, or nothing leaves
-        if after == before or lost == policy.lost_trials or search.is_spent:
+        if lost == policy.lost_trials or search.is_spent:  # nothing leaves
             break
+        if after == before:  # what was changed made no difference
+            changed = proposals.replace_drop(proposal, candidate.trial, lying, useless)
+            useless = (*useless, proposal.move.device)
+        else:
+            changed = proposals.mend_proposal(proposal, candidate.trial, lying, candidate.worst)
         before = after
-        changed = proposals.mend_proposal(proposal, candidate.trial, lying, candidate.worst)
         if changed is None or chain_key(plain_bowl.bowl.track, changed, lying) in state.chains:
             break
         proposal = changed

@@ -19,7 +19,7 @@ from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
+from feederscrew.tooling.devices.kinds import KINDS, CostClass, cost_class, dearer, names
 from feederscrew.tooling.devices.orientation_names import nearest
 from feederscrew.tooling.devices.orientation_names import rows as rows_of
 from feederscrew.tooling.devices.pneumatics import PULSE
@@ -33,7 +33,8 @@ from feederscrew.trial.wanted import aspects_at_any_heading, equivalent_rows, wa
 PROPOSED_ROWS = 6  # orientations for which chains are proposed, the most frequent first
 HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
 TOUCHING_KINDS = tuple(sorted(names(proposed=True, senses=False)))  # a sensor and air are left out
-COST_CLASSES = (1, 2, 3)  # steel alone, steady air, a sensor with a valve
+CLASSES = tuple(CostClass)
+COST_CLASSES = tuple(one.number for one in CLASSES)  # steel alone, steady air, a sensor with a valve
 SENSED = COST_CLASSES[-1]
 MARGINS = (5e-4, 2.5e-4)  # [m] to either side
 SWEEPS = (35, 20, 45, 30, 55)  # [deg] of a blade's face, in the order in which they are tried
@@ -219,7 +220,7 @@ def propose_chain(
     static_design = tooling(
         part, bowl, lying[row].aspect, heading=lying[row].heading, margin=recipe.margin,
         aspect_shares=aspects, outcome=recipe.outcome, without=without,
-        air=recipe.cost_class > COST_CLASSES[0],
+        cost_class=CLASSES[recipe.cost_class - 1],
         purity=ENOUGH_PURITY, up=request.up, play=0.0, tolerance=0.0,  # draws and the loop have them
         search=ToolingSearch(
             rule=request.rule, turn=recipe.turns, vary=False, seed=request.seed, verdicts=VERDICTS
@@ -403,18 +404,31 @@ def add_drop(
     reject_rows: Sequence[int],
     wanted_rows: Sequence[int],
     orientations: Sequence[Orientation],
+    excluded_kinds: Sequence[str] = (),
 ) -> Proposal | None:
     """Return the proposal with a drop before it, the one that tells most others from what is wanted.
 
-    ``reject_rows`` are to be dropped, ``wanted_rows`` are to stay. None where no drop tells any of them; what
-    no drop tells is left to the trial.
+    Parameters
+    ----------
+    proposal : Proposal
+    reject_rows, wanted_rows : sequence of int
+        Orientations to be dropped, and those that are to stay.
+    orientations : sequence of Orientation
+    excluded_kinds : sequence of str
+        Kinds of drops that are not taken.
+
+    Returns
+    -------
+    Proposal or None
+        None where no drop tells any of them; what no drop tells is left to the trial.
     """
     if not reject_rows or not wanted_rows:
         return None
-    best, chosen, own = (0, 0.0), None, {cut.device.kind for cut in proposal.cuts}
+    best, chosen, own = (0, 0.0), None, {*excluded_kinds, *(cut.device.kind for cut in proposal.cuts)}
     for kind in (kind for kind in numeric_kinds() if kind.carries):
         sign = 1.0 if kind.bound == "lower" else -1.0
-        values = sign * limits(kind, orientations)
+        # what no width of the track carries falls off as well from one that is as wide as the track
+        values = sign * np.minimum(limits(kind, orientations), orientations[0].track.width)
         least = values[wanted_rows].min()
         listed = [k for k in reject_rows if least - values[k] > LEAST_WINDOW]
         room = least - max((values[k] for k in listed), default=np.inf)
@@ -429,6 +443,37 @@ def add_drop(
     ends = [device.valued(limit + half) for half in (-0.5 * room, 0.5 * room)]
     cut = judge_cut(orientations, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), move=_move_of(MoveKind.DROP_BEFORE, device))
+
+
+def replace_drop(
+    proposal: Proposal,
+    trial: ShortTrial,
+    orientations: Sequence[Orientation],
+    excluded_kinds: Sequence[str] = (),
+) -> Proposal | None:
+    """Return the proposal with a drop of another kind in place of its first one, which made no difference.
+
+    Parameters
+    ----------
+    proposal : Proposal
+        Whose first device was added as a drop before the others.
+    trial : ShortTrial
+        That shows what leaves or stays all the same.
+    orientations : sequence of Orientation
+    excluded_kinds : sequence of str
+        Kinds of drops that made no difference before, beside the one that the proposal has.
+
+    Returns
+    -------
+    Proposal or None
+        None where no other drop tells what is left.
+    """
+    if proposal.move.kind is not MoveKind.DROP_BEFORE or not proposal.cuts:
+        return None
+    first, wanted = proposal.cuts[0].device.kind, trial.wanted
+    left = [k for n, k in enumerate(trial.rows) if (trial.wrong[n] or trial.held[n]) and k not in wanted]
+    without = replace(proposal, cuts=proposal.cuts[1:])
+    return add_drop(without, left, wanted, orientations, (*excluded_kinds, first))
 
 
 def lost_at(trial: ShortTrial, kind: str) -> bool:

@@ -1,26 +1,37 @@
-"""The trial of what the static rule proposes: both verdicts side by side."""
+"""The trial of what is proposed for ``feeder tooling``: both verdicts side by side, the cheapest class first.
+
+Beside the chain of the static rule, chains of each class come from the search that ``feeder design`` makes:
+``exploring.candidates``, on the bowl as it is.
+"""
 
 import functools
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from feederscrew.arrays import Floats, Ints
-from feederscrew.designing import short_trials, texts
+from feederscrew.designing import calm_drive, exploring, hanging, proposals, short_trials, texts
 from feederscrew.designing.findings import Fault, FaultKind
+from feederscrew.designing.policy import USUAL_POLICY
+from feederscrew.designing.progress import SearchProgress
 from feederscrew.designing.proposals import equivalent_rows
-from feederscrew.designing.short_trials import find_denials
+from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.search import BankedTrack, Candidate, Search
+from feederscrew.designing.short_trials import SELDOM_SHARE, find_denials
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.running import RunSettings
+from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling.devices.kinds import KINDS, names
-from feederscrew.tooling.isolating.chain import Design
+from feederscrew.tooling.devices.kinds import KINDS, CostClass, names
+from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
+from feederscrew.tooling.isolating import chain as static
+from feederscrew.tooling.isolating.chain import Design, DesignConstraints, OutcomeKind
 from feederscrew.trial.wanted import aspects_at_any_heading
 
 PARTS_OF_EACH = 2  # parts of each orientation
@@ -30,10 +41,19 @@ TRIES = 5  # designs of one orientation that are tried where the first ones are 
 SEARCHES = 8  # designs that are looked for after a denied one
 # stretches that reject nothing: to leave them out makes no other chain
 KEPT = tuple(name for name in names(leans=True) if not KINDS[name].grooved)
-OFTEN_SHARE = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
 RARE_SHARE = 1e-3  # [1] of the wanted share: what comes less often than that changes no purity
-FURTHER = 8  # orientations that come less often than OFTEN and may leave, and are tried as well
+FURTHER = 8  # orientations that come less often than that and may leave, and are tried as well
 SLIGHT = 1e-9  # [1] of rounding
+ANY_RATE = 1e-6  # [1/s] below any: the bowl and its drive are given, whatever they bring
+SEARCH_TRIALS = 25  # short trials at most: 10 of steel, as many as the rails of one head take
+POLICY = replace(USUAL_POLICY, budget_shares=(0.4, 0.6, 1.0))  # of them, after which each class had its turn
+# what of the bowl is kept: all but its bank, which is tried as ``feeder design`` does where it was not given
+OWN_KEYS = (
+    "track.climb", "track.radius", "track.width", "track.bank", "drive.amplitude", "drive.frequency",
+    "drive.vibration_angle", "drive.phase", "machine.leaves",
+)  # fmt: skip
+# returns a study without more kinds of devices, of a class
+Propose: TypeAlias = Callable[[tuple[str, ...], CostClass | None], ToolingStudy]
 
 
 @dataclass(frozen=True)
@@ -91,29 +111,76 @@ class TriedDesign:
 
 def try_designs(
     study: ToolingStudy,
-    without_kinds: Callable[[tuple[str, ...]], ToolingStudy] | None = None,
+    propose: Propose | None = None,
     *,
     seed: int = 1,
     jobs: int = 1,
+    cost_class: str | None = None,
+    efficiency: float = 0.0,
+    kept_keys: Collection[str] = (),
+    without: Sequence[str] = (),
+    outcome: str = OutcomeKind.ANY,
+    heading_given: bool = False,
     before: Callable[[], None] | None = None,
     until: float = math.inf,
 ) -> ToolingStudy:
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
-    ``without_kinds`` returns the same study without some kinds of devices: where the trial denies the chain
-    of the orientation that was asked for, others are tried, five in all, and the most efficient of those that
-    the trial confirms is taken. ``before`` is called before anything is compiled. No trial begins
-    after ``until``, a ``time.monotonic()`` [s]; one that has begun ends. The study has its
-    ``trials``: of a chain that the trial confirms where one is found, else of the first. Chains that isolate
-    nothing are not tried. After an interrupt from the keyboard it is ``partial``, with the trials that ended.
+    Of an orientation that was asked for, classes are tried in the order of cost, until the trial confirms a
+    chain: that of the static rule, what the search of ``feeder design`` finds, and what the static rule has
+    without some kinds of devices. Chains of the static rule that isolate nothing are not tried.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    propose : callable, optional
+        Returns the same study without some kinds of devices, of a class; without it nothing else is tried.
+    seed, jobs : int
+        Of the trials.
+    cost_class : str, optional
+        The one class that is asked for.
+    efficiency : float [1]
+        That is asked for: dearer classes are tried until a chain has it.
+    kept_keys : collection of str
+        Keys of the bowl file that the user gave: another bank is tried where 'track.bank' is none of them.
+    without : sequence of str
+        Kinds of devices that are not used.
+    outcome : str
+        How parts leave.
+    heading_given : bool
+        Whether the user asks for one heading: else parts of the aspect may hang by a head from any.
+    before : callable, optional
+        Called before anything is compiled.
+    until : float [s]
+        Of ``time.monotonic()``: no trial begins after it; one that has begun ends.
+
+    Returns
+    -------
+    ToolingStudy
+        With its ``trials``: first that of a chain that the trial confirms where one is found. After an
+        interrupt from the keyboard it is ``partial``, with the trials that ended.
     """
+    run = RunSettings(seed, jobs, before=before)
+    if study.wanted is None or propose is None:
+        return _try_table(study, run, until)
+    classes = tuple(CostClass) if cost_class is None else (CostClass(cost_class),)
+    may_use = tuple(without), OutcomeKind(outcome), heading_given
+    asked = AskedOrientation(study, propose, run, until, frozenset(kept_keys), *may_use)
+    for one in classes:
+        asked.try_class(one)
+        if asked.is_over or any(share >= efficiency for share in asked.confirmed):
+            break
+    return asked.answer(efficiency)
+
+
+def _try_table(study: ToolingStudy, run: RunSettings, until: float) -> ToolingStudy:
+    """The study with the trials of its best designs."""
     candidates = [
         design
         for design in study.designs
         if design is not None and design.devices and design.efficiency > 0.0
     ]
     best = sorted(candidates, key=lambda design: (-design.isolated, -design.efficiency, design.wanted))
-    run = RunSettings(seed, jobs, before=before)
     trials: tuple[TriedDesign, ...] = ()
     try:
         for proposed in best[:BEST]:
@@ -122,38 +189,239 @@ def try_designs(
             trials = (*trials, _try_design(study, proposed, run))
     except KeyboardInterrupt:
         return replace(study, trials=trials, partial=True)
-    first = replace(study, trials=trials)
-    if study.design is None or without_kinds is None or not trials or not trials[0].faults:
-        return first
-    studies, pending, searched, is_stopped = [study], _ways_on((), study.design), 0, False
-    while pending and searched < SEARCHES and len(trials) < TRIES and time.monotonic() <= until:
-        kinds, searched = pending.pop(0), searched + 1
+    return replace(study, trials=trials)
+
+
+class AskedOrientation:
+    """The trials of chains for one orientation, class by class."""
+
+    def __init__(
+        self,
+        study: ToolingStudy,
+        propose: Propose,
+        run: RunSettings,
+        until: float,
+        kept_keys: frozenset[str],
+        without: tuple[str, ...],
+        outcome: OutcomeKind,
+        heading_given: bool,
+    ) -> None:
+        self.study, self.propose, self.run, self.until = study, propose, run, until
+        self.kept_keys, self.without = kept_keys, without
+        self.outcome, self.heading_given = outcome, heading_given
+        self.tried: list[tuple[ToolingStudy, TriedDesign]] = []
+        self.in_vain: list[tuple[CostClass, int]] = []  # classes in which no chain held, and short trials
+        self.is_stopped = False
+        self._found: list[Search] = []
+
+    def searches(self, cost_class: CostClass) -> Iterator[Search]:
+        """Yield the searches of a design on this bowl, begun once for all classes.
+
+        That of the orientation itself; of steel then that of parts that hang from other headings.
+        """
+        if not self._found:
+            self._found.append(_search_on(self))
+        yield self._found[0]
+        if self.heading_given or cost_class is not CostClass.STEEL or self.outcome is OutcomeKind.LYING:
+            return
+        hanging_too = _search_on(self, only_hanging=True)
+        if any(track.rows for track in hanging_too.state.tracks):
+            self._found.append(hanging_too)
+            yield hanging_too
+
+    @property
+    def count(self) -> int:
+        """How many trials were made."""
+        return len(self.tried) + sum(len(search.state.attempts) for search in self._found)
+
+    @property
+    def confirmed(self) -> list[float]:
+        """The static efficiencies [1] of the chains that the trial confirms, in the order tried."""
+        return [tried.static_efficiency for _, tried in self.tried if not tried.faults]
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing more is to be tried."""
+        return self.is_stopped or time.monotonic() > self.until
+
+    def try_class(self, cost_class: CostClass) -> None:
+        """Try chains of a class until one is confirmed."""
+        begun, before = len(self.tried), self.count
         try:
-            other = without_kinds(kinds)
+            self._try_class(cost_class)
         except KeyboardInterrupt:
-            is_stopped = True
-            break
-        if other.partial:
-            is_stopped = True
-            break
-        design = other.design
-        if design is None or not (design.isolated and design.cuts and design.efficiency > 0.0):
+            self.is_stopped = True
+            return
+        if all(tried.faults for _, tried in self.tried[begun:]) and not self.is_over:
+            self.in_vain.append((cost_class, self.count - before))
+
+    def _try_class(self, cost_class: CostClass) -> None:
+        design, first = self.study.design, self.study
+        own = CostClass.of(design.devices) if design is not None else cost_class
+        if own is not cost_class and own.number < cost_class.number:
+            first = self.propose((), cost_class)
+            design = first.design
+        is_static = own.number <= cost_class.number and _may_isolate(design, cost_class)
+        if is_static and design is not None and not self._try(first, design).faults:
+            return
+        for found in search_chains(self, cost_class):
+            if found.design is not None and not self._try(found, found.design).faults:
+                return
+            if self.is_over:
+                return
+        if is_static and design is not None:
+            self._try_ways_on(cost_class, design)
+
+    def _try(self, study: ToolingStudy, design: Design) -> TriedDesign:
+        tried = _try_design(study, design, self.run)
+        self.tried.append((study, tried))
+        return tried
+
+    def _try_ways_on(self, cost_class: CostClass, design: Design) -> None:
+        """Try chains without one or more kinds of devices of one that the trial denies."""
+        pending, searched, begun = _ways_on((), design), 0, len(self.tried)
+        while pending and searched < SEARCHES and len(self.tried) - begun < TRIES - 1 and not self.is_over:
+            kinds, searched = pending.pop(0), searched + 1
+            other = self.propose(kinds, cost_class)
+            if other.partial:
+                raise KeyboardInterrupt
+            changed = other.design
+            if changed is None or not _may_isolate(changed, cost_class):
+                continue
+            if _devices(changed) in [tried.devices for _, tried in self.tried]:
+                continue
+            tried = self._try(other, changed)
+            if not tried.faults and changed.efficiency >= design.efficiency:
+                break
+            pending += _ways_on(kinds, changed) if tried.faults else []
+
+    def answer(self, efficiency: float) -> ToolingStudy:
+        """Return the study of the cheapest chain that is confirmed; else the first, as it is denied."""
+        partial = self.is_stopped or self.study.partial
+        if not self.tried:
+            return replace(self.study, in_vain=tuple(self.in_vain), partial=partial)
+        holds = [k for k, (_, tried) in enumerate(self.tried) if not tried.faults]
+
+        def merit(k: int) -> tuple[bool, int, float]:
+            study, tried = self.tried[k]
+            cost = cost_class_of(study.design.devices) if study.design is not None else 0
+            return tried.static_efficiency >= efficiency, -cost, tried.static_efficiency
+
+        taken = max(holds, key=merit, default=0)
+        study, first = self.tried[taken]
+        others = [tried for k, (_, tried) in enumerate(self.tried) if k != taken]
+        return replace(study, trials=(first, *others), in_vain=tuple(self.in_vain), partial=partial)
+
+
+def search_chains(asked: AskedOrientation, cost_class: CostClass) -> Iterator[ToolingStudy]:
+    """Yield the studies with chains of a class that the search of a design finds clean in short trials.
+
+    Parameters
+    ----------
+    asked : AskedOrientation
+    cost_class : CostClass
+
+    Yields
+    ------
+    ToolingStudy
+        None where the bowl does not convey, or the part does not fit.
+    """
+    try:
+        for search in asked.searches(cost_class):
+            for candidate in exploring.candidates(search, cost_class.number):
+                found = _study_of(asked.study, candidate)
+                if found is not None and found.design is not None and has_margin(found, found.design):
+                    yield found
+    except FeederError:  # the static rule has said so
+        return
+
+
+def has_margin(study: ToolingStudy, design: Design) -> bool:
+    """Return whether a chain that the trial finds clean has the margin that a study asks for.
+
+    The usual one is what the search of a design begins with: by how much a trial has then moved a value, the
+    margins of the cuts say. More than that is asked of the static rule as well.
+    """
+    usual = study.margin <= min(proposals.MARGINS) + SLIGHT
+    return usual or not design.margin < study.margin - SLIGHT
+
+
+def _may_isolate(design: Design | None, cost_class: CostClass) -> bool:
+    """Whether the static rule has a chain of a class, or a cheaper one, that is worth a trial."""
+    if design is None or not design.devices or not design.efficiency > 0.0:
+        return False
+    return design.isolated and cost_class_of(design.devices) <= cost_class.number
+
+
+def _search_on(asked: AskedOrientation, *, only_hanging: bool = False) -> Search:
+    """The search of a design on the bowl of a study, for the orientation that is asked for.
+
+    Or for parts of its aspect that hang from other headings.
+    """
+    study = asked.study
+    own = study.orientations[study.wanted or 0]
+    request = DesignRequest(
+        target=ANY_RATE, aspect=own.aspect, heading=None if only_hanging else own.heading, up=study.up,
+        outcome=OutcomeKind.HANGING if only_hanging else asked.outcome,
+        without=(*asked.without, *names(turns=True)), rule=study.rule, budget=SEARCH_TRIALS, draws=0,
+        seed=asked.run.seed, jobs=asked.run.jobs,
+    )  # fmt: skip
+
+    def tell(_: str) -> None:
+        if time.monotonic() > asked.until:
+            search.state.most_trials = 0
+
+    search = Search.begin(
+        study.part, request, study.bowl, OWN_KEYS, shares=Shares(study.aspects),
+        progress=SearchProgress(before=asked.run.before, tell=tell), policy=POLICY,
+    )  # fmt: skip
+    banks: tuple[float, ...] = (study.bowl.track.bank,)
+    if not (banks[0] > 0.0 or "track.bank" in asked.kept_keys or study.bowl.devices):
+        likely = exploring.likely_banks(study.aspects, study.rule, POLICY)
+        banks = tuple(dict.fromkeys((*likely, *banks)))
+    for number, bank in enumerate(banks):
+        bare = replace(study.bowl, track=replace(study.bowl.track, bank=bank), devices=())
+        plain_bowl = calm_drive.PlainBowl(bare, frozenset(OWN_KEYS))
+        start = replace(bare, devices=study.bowl.devices)
+        orientations, weights = exploring.weigh_orientations(search, start)
+        rows = proposals.promising_rows(orientations, weights, request)
+        if only_hanging:
+            lying = orientations.lying
+            rows = [k for k in hanging.head_rows(lying, weights, rows) if lying[k].name != own.name]
+        rank = search.policy.bank_rank**number
+        search.state.tracks.append(BankedTrack(plain_bowl, orientations, weights, rows, rank))
+    return search
+
+
+def _study_of(study: ToolingStudy, candidate: Candidate) -> ToolingStudy | None:
+    """The study with the chain of a candidate on its own bank; None where the orientation is none there."""
+    bank = candidate.bowl.track.bank
+    on_bank = study.on_bank(bank)
+    name = candidate.orientations.lying[candidate.proposal.row].name
+    places = [k for k, one in enumerate(on_bank.orientations) if one.name == name]
+    if not places:
+        return None
+    task = static.design_task(
+        on_bank.orientations, on_bank.shares, places[0], study.margin, 1.0, study.bowl.devices,
+        constraints=DesignConstraints(up=study.up),
+    )  # fmt: skip
+    cuts, trial = candidate.proposal.cuts, candidate.trial
+    rejecting = [static.margins_at(cut.device, on_bank.orientations) <= -study.margin for cut in cuts]
+    is_returned = np.any([~task.stays, *rejecting], axis=0)
+    rows = {one.name: k for k, one in enumerate(on_bank.orientations)}
+    shown = {candidate.orientations.lying[k].name: n for n, k in enumerate(trial.rows.tolist())}
+    same = task.same.copy()
+    for name, n in shown.items():  # what the trial shows stands above the rule
+        if name not in rows:
             continue
-        if _devices(design) in [trial.devices for trial in trials]:
-            continue
-        try:
-            tried = _try_design(other, design, run)
-        except KeyboardInterrupt:
-            is_stopped = True
-            break
-        studies, trials = [*studies, other], (*trials, tried)
-        if not trials[-1].faults and design.efficiency >= study.design.efficiency:
-            break
-        pending += _ways_on(kinds, design) if trials[-1].faults else []
-    holds = [k for k, trial in enumerate(trials) if not trial.faults]
-    taken = max(holds, key=lambda k: trials[k].static_efficiency, default=0)
-    sorted_trials = trials[taken], *trials[:taken], *trials[taken + 1 :]
-    return replace(studies[taken], trials=sorted_trials, partial=is_stopped)
+        is_returned[rows[name]] = not (trial.right[n] or trial.wrong[n] or trial.held[n])
+        same[rows[name]] |= candidate.proposal.hangs and 2 * trial.right[n] > trial.parts[n]
+    design = static.propose(task, cuts, is_returned, same)
+    if bank != study.bowl.track.bank:
+        design = replace(design, bank=bank)
+    designs: list[Design | None] = [None] * len(on_bank.orientations)
+    designs[places[0]] = design
+    return replace(on_bank, designs=tuple(designs), wanted=places[0])
 
 
 def _ways_on(excluded_kinds: tuple[str, ...], design: Design) -> list[tuple[str, ...]]:
@@ -177,7 +445,7 @@ def _try_design(study: ToolingStudy, design: Design, run: RunSettings) -> TriedD
     shares = study.shares / total if total > 0.0 else np.full(len(study.shares), 1.0 / len(study.shares))
     # those that come often, and of the others those that may leave
     order = np.argsort(-shares, kind="stable")
-    often = [k for k in order if shares[k] >= OFTEN_SHARE or k == design.wanted]
+    often = [k for k in order if shares[k] >= SELDOM_SHARE or k == design.wanted]
     may = (oriented.may_leave > 0.0) & (shares >= RARE_SHARE * shares[design.wanted]) & (shares > 0.0)
     seldom = [k for k in order if may[k] and k not in often]
     rows = [int(k) for k in (*often, *seldom[:FURTHER])]

@@ -17,10 +17,11 @@ from feederscrew.studies.rate import PassagesStudy
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.kinds import CostClass
 from feederscrew.tooling.isolating.chain import LEAST_SHARE, Design, in_mm
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.tooled_track import TooledTrack, lay_out
-from feederscrew.units import MM
+from feederscrew.units import MM, counted
 
 if TYPE_CHECKING:
     from feederscrew.designing.tooling_trials import TriedDesign
@@ -41,6 +42,9 @@ TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the 
     ("height_mm", "track_width_mm"), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",),
     ("left_over",),
 )  # fmt: skip
+CLASS_NAMES = {  # what a chain takes, as the trade says it
+    CostClass.STEEL: "steel", CostClass.AIR: "steady air", CostClass.SENSOR: "a camera or another sensor",
+}  # fmt: skip
 NOT_PROVED = "not proved"
 STOPPED = f"{NOT_PROVED}: stopped before all was searched and tried"
 QUASI_STATIC = "quasi-static, until a trial confirms it"
@@ -80,9 +84,12 @@ def document(study: ToolingStudy) -> dict[str, Any]:
         "leaves_as": study.leaves_as,
         "isolated": study.isolates(wanted_row),
         "status": status(study, wanted_row),
+        "class": study.class_of(wanted_row),
+        "next_class": _next_class(study),
         "isolated_static": design.isolated,
         "steady": design.steady,
         "track_width_mm": study.bowl.track.width / MM,
+        "track_bank_deg": float(np.degrees(study.bowl.track.bank)),
         **efficiency_and_purity(design, study.trial_of(wanted_row)),
         "before": [f"{device.kind}: {device.text}" for device in design.before],
         "chain": chain,
@@ -110,12 +117,13 @@ def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
             **row_of(item, "canyon_mm gap_mm"),
             "mirror": item.mirror or None,
         }
-        names = ("isolated", "status", "devices", "track_width_mm", "margin_mm", "steady")
+        names = ("isolated", "status", "class", "devices", "track_width_mm", "margin_mm", "steady")
         row |= dict.fromkeys((*names, *LEAVING, "left_over", "reasons"))
         if design is not None:
             row |= {
                 "isolated": study.isolates(place),
                 "status": status(study, place),
+                "class": study.class_of(place),
                 "devices": [cut.device.kind for cut in design.cuts],
                 **row_of(design, "track_width_mm=width margin_mm"),
                 "steady": design.steady if design.cuts else None,
@@ -125,6 +133,32 @@ def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
             }
         rows.append(row)
     return rows
+
+
+def _next_class(study: ToolingStudy) -> dict[str, Any] | None:
+    """The chain of the next dearer class by the static rule; None without one."""
+    design = study.dearer
+    if design is None:
+        return None
+    return {
+        "class": CostClass.of(design.devices),
+        "devices": [cut.device.kind for cut in design.cuts],
+        "efficiency_static": design.efficiency,
+        "purity_static": design.purity,
+    }
+
+
+def next_class_words(study: ToolingStudy) -> str:
+    """Say what the next dearer class would let leave, and how to ask for it; empty without one."""
+    design = study.dearer
+    if design is None or study.wanted is None or study.design is None:
+        return ""
+    own = efficiency_and_purity(study.design, study.trial_of(study.wanted))["efficiency"]
+    word = CostClass.of(design.devices)
+    return (
+        f"{CLASS_NAMES[word]} would let {100.0 * design.efficiency:.3g} % leave for {100.0 * own:.3g} %, "
+        f"as the static rule says: --class {word}"
+    )
 
 
 def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> dict[str, Any]:
@@ -224,11 +258,19 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
         lead = f"{orientation.name} is {'' if study.isolates(wanted_row) else 'not '}isolated: {leave}"
     else:
         lead = (
-            f"{orientation.name} is {'' if design.isolated else 'not '}isolated: of {tried.parts} parts "
-            f"tried {tried.figures}; by the static rule {100.0 * design.efficiency:.3g} % of those offered "
-            f"leave {as_what}, and {tried.verdict}"
+            f"{orientation.name} is isolated: of {tried.parts} parts tried {tried.figures}; "
+            f"by the static rule {100.0 * design.efficiency:.3g} % of those offered leave {as_what}, "
+            f"and {tried.verdict}"
         )
-    return [*stopped, lead, *design.reasons]
+    reasons = list(design.reasons)
+    if tried is not None and not tried.faults and not design.isolated:  # the trial has the last word
+        reasons = [f"by the static rule: {reason}" for reason in reasons]
+    cheaper = [
+        f"no chain of {CLASS_NAMES[one]} held in {counted(n, 'trial')}" for one, n in study.in_vain if n
+    ]
+    if design.bank is not None:
+        lead = f"{lead}; the track has to lean {np.degrees(design.bank):.3g} deg towards the wall"
+    return [*stopped, lead, *cheaper, *filter(None, [next_class_words(study)]), *reasons]
 
 
 def trials(study: ToolingStudy) -> tuple[list[str], list[str]]:
@@ -276,7 +318,9 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
     design, wanted_row = _asked_for(study)
     tried, orientation, width = study.trial_of(wanted_row), study.orientations[wanted_row], design.width
     check_written(design.devices, "tooling.yaml")
-    left_out = (DEVICES_SECTION,) if width is None else (DEVICES_SECTION, "track.width")
+    asked = {"width": width and in_mm(width), "bank": design.bank and f"{np.degrees(design.bank):.4g} deg"}
+    track = {name: text for name, text in asked.items() if text}
+    left_out = (DEVICES_SECTION, *(f"track.{name}" for name in track))
     own = [s for s in settings if s.is_own and s.key.field not in left_out]
     heading = orientation.name.partition("@")[2]
     lines = [
@@ -294,8 +338,8 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
     else:
         lines.append(f"# Of {tried.parts} parts tried {tried.figures}.")
     sections: dict[str, list[str]] = {s.key.section: [] for s in own if s.key.section}
-    if width is not None:
-        sections["track"] = [f"  width: {in_mm(width)}  # as the design asks for"]
+    if track:
+        sections["track"] = [f"  {name}: {text}  # as the design asks for" for name, text in track.items()]
     lines += settings_lines(own, sections)
     lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in design.before]

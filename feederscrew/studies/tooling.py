@@ -24,7 +24,7 @@ from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import Shares, arriving, the_shares
-from feederscrew.tooling.devices.kinds import KINDS, find_kind, leaning, names
+from feederscrew.tooling.devices.kinds import KINDS, CostClass, cheaper, dearer, find_kind, leaning, names
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import design as designing
@@ -161,6 +161,8 @@ class ToolingStudy(ReadableRecord):
     trials: tuple[Any, ...] = ()  # of TriedDesign: what was tried, that of `design` first
     partial: bool = False  # stopped by the user before all was searched and tried
     state: str = ""  # what leaves, as a design that was tried says it: 'hanging', 'A@2 or B'
+    in_vain: tuple[tuple[CostClass, int], ...] = ()  # cheaper classes, and in how many trials no chain held
+    dearer: Design | None = None  # of the next class that isolates the orientation asked for too
 
     @property
     def leaves_as(self) -> str:
@@ -183,11 +185,14 @@ class ToolingStudy(ReadableRecord):
         Where no trial was made, what no verdict is sure to return counts as leaving.
         """
         design, tried = self.designs[place], self.trial_of(place)
-        if design is None or not design.isolated:
-            return False
-        if tried is not None:
+        if tried is not None:  # no rule overrules it
             return not tried.faults
-        return not design.purity < design.least_purity  # also where nothing that comes leaves
+        return design is not None and design.surely_isolates
+
+    def class_of(self, place: int) -> CostClass | None:
+        """Return what the chain takes that isolates an orientation; None where nothing does."""
+        design = self.designs[place]
+        return CostClass.of(design.devices) if design is not None and self.isolates(place) else None
 
     @property
     def design(self) -> Design | None:
@@ -201,6 +206,17 @@ class ToolingStudy(ReadableRecord):
             return self
         bowl = replace(self.bowl, track=replace(self.bowl.track, width=design.width))
         return replace(self, bowl=bowl, orientations=_coming(self.part, self.aspects, bowl))
+
+    def on_bank(self, bank: float) -> "ToolingStudy":
+        """Return the study without designs on a track of another bank [rad]; itself on its own."""
+        if bank == self.bowl.track.bank:
+            return self
+        bowl = replace(self.bowl, track=replace(self.bowl.track, bank=bank))
+        coming = _coming(self.part, self.aspects, bowl)
+        shares = np.nan_to_num([orientation.chances[self.rule] for orientation in coming])
+        return replace(
+            self, bowl=bowl, orientations=coming, shares=shares, designs=(None,) * len(coming), wanted=None
+        )
 
     @property
     def answer(self) -> str:
@@ -248,7 +264,7 @@ def tooling(
     up: str | Sequence[str] = DesignConstraints.up,
     outcome: str = DesignConstraints.outcome,
     without: str | Sequence[str] = DesignConstraints.without,
-    air: bool = DesignConstraints.air,
+    cost_class: str | None = None,
     margin: Quantity = DESIGN_MARGIN_M,
     play: Quantity = designing.PLAY_M,
     tolerance: Quantity = designing.TOLERANCE_M,
@@ -275,8 +291,9 @@ def tooling(
         How parts leave: 'lying', 'hanging' or 'any'.
     without : str or sequence of str
         Kinds of devices that are not used, 'wiper, cut-out'.
-    air : bool
-        Whether air that blows all the time may be used, where cuts and blades are not enough.
+    cost_class : str, optional
+        What the chain takes: 'steel', 'air' or 'sensor'. Without it the cheapest class that isolates, in this
+        order; holes of several corners, which take by far the longest, are then searched for last.
     margin : str or float [m]
         By which the wanted orientation passes and the others fail, at least.
     play, tolerance : str or float [m]
@@ -339,7 +356,6 @@ def tooling(
         up=may_be_up(part, aspects, up),
         vary=bool(looked.vary),
         turn=looked.turn,
-        air=air,
         step=arguments.amount("step", looked.step, "length", SHOP_ROUNDING_M),
         cutter=arguments.amount("cutter", looked.cutter, "length", 0.0),
     )
@@ -353,6 +369,7 @@ def tooling(
             break
     request = {"purity": purity, "efficiency": efficiency, "before": bowl.devices, "constraints": may_use}
     request |= {"margin": clear, "search": holes}
+    asked = None if cost_class is None else CostClass(check.choice("cost_class", cost_class, CostClass))
     places = range(len(coming)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(coming)
     if progress is not None:
@@ -361,14 +378,14 @@ def tooling(
     is_stopped = False
     for done, k in enumerate(places):
         try:
-            designs[k] = best = _best(part, aspects, shares, k, tracks, request)
+            designs[k] = best = _cheapest(part, aspects, shares, k, tracks, request, asked)
             if progress is not None:
                 progress(done + 1, len(places))
         except KeyboardInterrupt:
             is_stopped = True
             if done == 0 and designs[k] is None:  # the first chain there is, without a search for holes
                 request["search"] = replace(holes, until=-math.inf)
-                designs[k] = best = _best(part, aspects, shares, k, tracks, request)
+                designs[k] = best = _cheapest(part, aspects, shares, k, tracks, request, asked)
         if designs[k] is not None:
             check_written(best.devices, "tooling.yaml")
         if is_stopped:
@@ -391,10 +408,71 @@ def tooling(
     return study if wanted is None else study.on_its_width(wanted)
 
 
+def next_class(study: ToolingStudy, of_class: Callable[[CostClass], ToolingStudy]) -> Design | None:
+    """Return the chain of the next dearer class that isolates the orientation that a study asks for.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+        Of one orientation.
+    of_class : callable
+        Returns the study of the same orientation with a chain of a class.
+
+    Returns
+    -------
+    Design or None
+        As the static rule says; None where no dearer class isolates, or the study isolates nothing.
+    """
+    own = None if study.wanted is None else study.class_of(study.wanted)
+    if own is None:
+        return None
+    for cost_class in list(CostClass)[own.number :]:
+        design = of_class(cost_class).design
+        if design is not None and design.isolated and CostClass.of(design.devices) is cost_class:
+            return design
+    return None
+
+
 @functools.lru_cache(maxsize=32)
 def _coming(part: Part, aspects: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
     coming, _ = marked(name_mirror_images(orientations(part, aspects, bowl.track)), bowl)
     return at_entry(coming, bowl.devices)
+
+
+def _cheapest(
+    part: Part,
+    aspects: Aspects,
+    shares: Floats,
+    wanted: int,
+    tracks: Tracks,
+    request: dict[str, Any],
+    asked: CostClass | None,
+) -> Design:
+    """The design of the class that is asked for, or of the cheapest that isolates; else the purest."""
+    constraints: DesignConstraints = request["constraints"]
+
+    def designed(cost_class: CostClass, without: Sequence[str] = (), at_rest: bool = True) -> Design:
+        kinds = dict.fromkeys((*constraints.without, *dearer(cost_class.number), *without))
+        air = cost_class is not CostClass.STEEL
+        own = replace(constraints, without=tuple(kinds), air=air, at_rest=at_rest)
+        return _best(part, aspects, shares, wanted, tracks, request | {"constraints": own})
+
+    if asked is not None:
+        design = designed(asked)
+        if design.isolated and CostClass.of(design.devices) is not asked:  # cheaper devices do without it
+            design = designed(asked, cheaper(asked.number))
+        return design
+    # holes are for one orientation alone, and by far the longest search: where nothing simpler isolates. So
+    # are chains that are known to isolate parts at rest alone
+    best = designed(CostClass.STEEL, names(searched=True), at_rest=False)
+    for cost_class in (CostClass.AIR, CostClass.SENSOR):
+        if best.surely_isolates and best.efficiency >= request["efficiency"]:
+            break
+        is_last = cost_class is CostClass.SENSOR
+        if is_last or any(constraints.allows(kind) for kind in names(cost_class=cost_class.number)):
+            other = designed(cost_class, () if is_last else names(searched=True), is_last)
+            best = other if designing.isolates_more(other, best) else best
+    return best
 
 
 def _best(

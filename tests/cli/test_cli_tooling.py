@@ -40,10 +40,11 @@ def test_the_chain_of_one_orientation(run_json, block):
     assert tried["efficiency_static"] == pytest.approx(document["efficiency_static"])
     assert static["trial"] == [] and static["status"] == "static"
     assert {row["aspect"] for row in static["orientations"]} == {row["aspect"] for row in states}
-    for cut in (*document["chain"], *static["chain"]):
+    # a trial may have moved a value of its chain: what is asked for the static rule's has
+    for cut, least in [(cut, 0.2) for cut in document["chain"]] + [(cut, 0.25) for cut in static["chain"]]:
         assert set(cut) >= (CUT - {"value_mm"} if cut.keys() & {"outline_mm", "angle_deg"} else CUT)
         margins = [cut[name] for name in ("margin_pass_mm", "margin_reject_mm") if cut[name] is not None]
-        assert min(margins, default=1.0) >= 0.25
+        assert min(margins, default=1.0) >= least
 
 
 @pytest.mark.parametrize("where", ["search", "trial"])

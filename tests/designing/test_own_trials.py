@@ -11,7 +11,7 @@ from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling as tables
 from feederscrew.studies.tooling import ToolingSearch, tooling, tooling_without
-from feederscrew.tooling.devices.kinds import make_device
+from feederscrew.tooling.devices.kinds import CostClass, make_device
 from feederscrew.tooling.isolating import chain
 
 
@@ -31,27 +31,38 @@ class Verdicts:
         return tooling_trials.TriedDesign(name, one.wanted, devices, one.efficiency, 0.0, np.nan, 6, faults)
 
 
-def searched(study, kinds):
-    return tooling_without(kinds, study.part, study.bowl, "A", search=ToolingSearch(rule="csa", verdicts=1))
+def searched(study, kinds, cost_class=None):
+    own = {"search": ToolingSearch(rule="csa", verdicts=1), "cost_class": cost_class}
+    return tooling_without(kinds, study.part, study.bowl, "A", **own)
+
+
+@pytest.fixture
+def try_static(monkeypatch, study):
+    """Try chains of the static rule alone, of its own class or of all."""
+    monkeypatch.setattr(tooling_trials, "search_chains", lambda *_: iter(()))
+    own = CostClass.of(study.design.devices)
+    return lambda again, **asked: tooling_trials.try_designs(study, again, **{"cost_class": own} | asked)
 
 
 @pytest.mark.parametrize("denials", [0, 1, 3])
-def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monkeypatch, study, denials):
+def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(
+    monkeypatch, study, try_static, denials
+):
     monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(denials))
 
-    def again(kinds):
-        found = searched(study, kinds)
+    def again(kinds, cost_class):
+        found = searched(study, kinds, cost_class)
         assert not {cut.device.kind for cut in found.design.cuts} & set(kinds)
         return found
 
-    found = tooling_trials.try_designs(study, again)
+    found = try_static(again, cost_class=None)
     told, said = tables.document(found), tables.remarks(found)[0]
     if denials < 3:
         assert (told["status"], told["isolated"]) == ("confirmed", True) and said.endswith("the trial agrees")
         assert (found.design.devices != study.design.devices) == (denials > 0)
         assert [bool(one.faults) for one in found.trials][: 1 + denials] == [False, True][: 1 + denials]
         return
-    assert found.design is study.design and 2 <= len(found.trials) <= tooling_trials.TRIES
+    assert found.design is study.design and 2 <= len(found.trials) <= 3 * tooling_trials.TRIES
     assert (told["status"], told["isolated"], told["isolated_static"]) == ("denied", False, True)
     assert found.isolates(found.wanted) is False
     assert said.startswith(f"{found.orientations[found.wanted].name} is not isolated: the")
@@ -73,11 +84,11 @@ def ways_on(monkeypatch):
     monkeypatch.setattr(tooling_trials, "_ways_on", lambda *_: [("wiper",)] * 3)
 
 
-def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study, ways_on):
+def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study, ways_on, try_static):
     """After the first is denied, what is tried holds: 50, 90 and then 70 % of what the first promised."""
     shares, asked = iter([0.5, 0.9, 0.7]), []
 
-    def again(kinds):
+    def again(kinds, _):
         found = searched(study, kinds)
         share = next(shares, None)
         if share is None:
@@ -87,24 +98,26 @@ def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study, ways
         return replace(found, designs=(less,) * len(found.designs))
 
     monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(1))
-    found = tooling_trials.try_designs(study, again)
+    found = try_static(again)
     assert len(asked) == 3 and len(found.trials) == 4
     assert found.design.efficiency == pytest.approx(0.9 * study.design.efficiency)
     assert [bool(one.faults) for one in found.trials] == [False, True, False, False]
 
 
 @pytest.mark.parametrize(("limit", "tries", "searches"), [("TRIES", 3, 2), ("SEARCHES", 4, 3)])
-def test_the_search_for_another_chain_has_an_end(monkeypatch, study, ways_on, limit, tries, searches):
+def test_the_search_for_another_chain_has_an_end(
+    monkeypatch, study, ways_on, try_static, limit, tries, searches
+):
     asked = []
 
-    def again(kinds):
+    def again(kinds, _):
         asked.append(kinds)
         found = searched(study, kinds[:1])
         return replace(found, designs=(with_wiper(study.design, len(asked)),) * len(found.designs))
 
     monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(99))
     monkeypatch.setattr(tooling_trials, limit, 3)
-    found = tooling_trials.try_designs(study, again)
+    found = try_static(again)
     assert (len(found.trials), len(asked)) == (tries, searches)
 
 

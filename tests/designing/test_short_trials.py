@@ -296,6 +296,38 @@ def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows)
     assert both.efficiency == pytest.approx((1.0 + 1.0 + 1.0 / 7.0) / len(ways.lying))
 
 
+def test_a_drop_that_makes_no_difference_gives_way_to_one_of_another_kind(rows, dropped):
+    """A canyon that let a bolt through was moved and tried again; no narrowed track was."""
+    ways, *_ = rows
+    proposal, seen = dropped
+    first = proposal.cuts[0].device.kind
+    other = proposals.replace_drop(proposal, seen, ways.lying)
+    assert len(other.cuts) == 1 and other.cuts[0].device.kind != first and "A@90" in other.cuts[0].returns
+    kinds = [first, other.cuts[0].device.kind]
+    third = proposals.replace_drop(other, seen, ways.lying, kinds)
+    assert third is None or third.cuts[0].device.kind not in kinds
+    bare = replace(proposal, move=Move(MoveKind.PROPOSED))  # its first device is none that a trial asked for
+    assert proposals.replace_drop(bare, seen, ways.lying) is None
+
+
+def test_what_no_width_of_the_track_carries_is_dropped_by_a_narrowed_track(monkeypatch, rows):
+    """Its value is infinite, and counted as no value at all: a canyon was taken, which it crosses."""
+    ways, along, across = rows
+    values, true_limits = {"narrowed track": np.inf, "canyon": 0.0, "gap": 0.0}, proposals.limits
+
+    def limits(kind, orientations):
+        own = true_limits(kind, orientations)
+        own[across] = values.get(kind.kind, own[across])
+        return own
+
+    monkeypatch.setattr(proposals, "limits", limits)
+    proposal = proposals.Proposal(along, (), (), Move(MoveKind.NO_DEVICE))
+    cut = proposals.add_drop(proposal, [across], [along], ways.lying).cuts[0]
+    width, own = ways.lying[along].track.width, ways.lying[along].balcony
+    assert cut.device.kind == "narrowed track"
+    assert cut.device.limit == pytest.approx(0.5 * (width + own), abs=proposals.VALUE_STEP_M)
+
+
 @pytest.mark.parametrize("cost_class, dearer", [(1, {"air jet", "vision reject"}), (3, set())])
 def test_a_cost_class_is_without_dearer_devices_and_the_widest_margin_comes_first(cost_class, dearer):
     ways = proposals.recipes_of(cost_class, DesignRequest(target=1.0))

@@ -59,7 +59,8 @@ def test_a_jet_over_what_lies_flat_blows_off_what_stands():
     own = {"margin": 2.5e-4, "without": others, "play": 0.0, "tolerance": 0.0, "up": FLAT.aspect}
     own["heading"] = FLAT.heading
     with_air, without = (
-        tooling_study.tooling(block(), BOWL, FLAT.aspect, **own, air=air).design for air in (True, False)
+        tooling_study.tooling(block(), BOWL, FLAT.aspect, **own, cost_class=one).design
+        for one in ("air", "steel")
     )
     assert [cut.device.kind for cut in with_air.cuts] == ["air jet"] and not without.cuts
     assert TALL.name in with_air.cuts[0].returns and FLAT.name not in with_air.cuts[0].returns

@@ -52,7 +52,9 @@ def mirrored(every):
 
 def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
     monkeypatch.setattr(hole_search, "STARTS", 20)
-    study = tooling(block(), ROOMY, search=ToolingSearch(verdicts=2000, vary=False), without="vision reject")
+    study = tooling(
+        block(), ROOMY, search=ToolingSearch(verdicts=2000, vary=False), without="vision reject,air jet"
+    )
     reasons = [one.reasons[0] for one in study.designs if not one.isolated]
     assert len(reasons) == 4  # what stands tall on a small foot goes wherever the block lying flat goes
     assert sum("which stands on a larger foot and is no higher" in one for one in reasons) >= 2
@@ -383,6 +385,7 @@ def test_no_device_of_these_parts_is_idle(name):
     whole = propose(task, own, nothing)
     for one in own:
         rest = propose(task, [other for other in own if other is not one], nothing)
-        assert abs(rest.purity - whole.purity) + abs(rest.efficiency - whole.efficiency) > 1e-3
+        less = np.nan_to_num(rest.purity)  # NaN where nothing leaves without it
+        assert abs(less - whole.purity) + abs(rest.efficiency - whole.efficiency) > 1e-3
     rows = tables.document(study)["chain"]
     assert all(bool(row["returns"] or row.get("stops")) != bool(row["serves"]) for row in rows)

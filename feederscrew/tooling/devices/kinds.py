@@ -1,5 +1,6 @@
 """Every kind of device, found in the modules of this folder: a new one is a class in a module here."""
 
+import enum
 import importlib
 import pkgutil
 import re
@@ -14,6 +15,24 @@ from feederscrew.tooling.devices.leans import Lean
 KINDS: dict[str, type[Device]] = {}
 _BY_SPELLING: dict[str, type[Device]] = {}  # the same by every name, as ``_spelling`` writes it
 _ADDED = re.compile(r"\s*\([^()]*\)\s*$")  # what a full name says more: '(camera from above)'
+
+
+class CostClass(enum.StrEnum):
+    """What a chain takes, the dearest of its devices; members in the order in which chains are proposed."""
+
+    STEEL = "steel"  # cuts, blades and rails alone
+    AIR = "air"  # air that blows all the time as well
+    SENSOR = "sensor"  # a camera or another sensor, with a valve
+
+    @property
+    def number(self) -> int:
+        """Its place in the order of cost, from 1: the ``cost_class`` of a device."""
+        return 1 + list(CostClass).index(self)
+
+    @classmethod
+    def of(cls, devices: Sequence[Device]) -> "CostClass":
+        """Return the class of a chain of devices; steel of none at all."""
+        return list(cls)[cost_class(devices) - 1]
 
 
 def register_kinds() -> dict[str, type[Device]]:
@@ -124,6 +143,15 @@ def dearer(cost: int) -> tuple[str, ...]:
     tuple of str
     """
     return tuple(name for name, kind in KINDS.items() if kind.cost_class > cost)
+
+
+def cheaper(cost: int) -> tuple[str, ...]:
+    """Return the names of the kinds below a cost class that reject parts or let them hang: a tuple of str.
+
+    What leans or spaces parts rejects none, and is not among them.
+    """
+    rejecting = {*names(proposed=True), *names(hangs=True), *names(searched=True)}
+    return tuple(name for name, kind in KINDS.items() if kind.cost_class < cost and name in rejecting)
 
 
 def leaning() -> tuple[type[Lean], ...]:

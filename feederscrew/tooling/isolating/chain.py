@@ -120,6 +120,7 @@ class DesignConstraints:
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
     turn: bool = False  # devices that turn parts over, where returning them wastes too much
     air: bool = False  # air that blows all the time, where cuts and blades are not enough
+    at_rest: bool = True  # one for parts that are placed counts, where none isolates what travels
     isolating: bool = False  # a chain that does not isolate is of no use: none is looked for where none can
 
     def allows(self, *kinds: str) -> bool:
@@ -202,7 +203,7 @@ def candidates(
     blowing: list[Any] = [
         kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)
     ]
-    for kind in blowing if air else ():
+    for kind in (kind for kind in blowing if air and constraints.allows(kind.kind)):
         devices += kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY)
 
     def unlike(view: str) -> list[Orientation]:
@@ -651,6 +652,7 @@ class Design:
     # [1] purity where a trial confirms what is not sure to be returned; None where nothing leaves
     hopeful: float | None = None
     width: float | None = None  # [m] of the track, where it is another than the bowl's
+    bank: float | None = None  # [rad] the same
     least_purity: float = ISOLATED_PURITY  # [1] from which it is said to isolate
     surely: float = 0.0  # [1] of the efficiency, what does not roll or rock on its way: the least of it
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
@@ -662,6 +664,11 @@ class Design:
             f"{' '.join(cut.stops)} come to stand at the {cut.device.kind}" for cut in self.cuts if cut.stops
         )
         return (*stops, *(inseparable_reason(*pair) for pair in self.inseparable), *self.remarks)
+
+    @property
+    def surely_isolates(self) -> bool:
+        """Whether it isolates though what no verdict is sure to return counts as leaving."""
+        return self.isolated and not self.purity < self.least_purity  # also where nothing that comes leaves
 
     @property
     def purity_is_least(self) -> bool:

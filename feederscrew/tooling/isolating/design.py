@@ -459,7 +459,7 @@ def turning_chains(task: DesignTask) -> list[tuple[Cut, ...]]:
     longest = max((max(orientation.length, orientation.height) for orientation in frequent), default=0.0)
     # steps and ledges, one between each two values at which what they do changes, and one above them all
     encounters = [DeviceEncounter(orientation, orientations) for orientation in frequent]
-    kinds: list[Any] = [kind for kind in KINDS.values() if kind.turns]
+    kinds: list[Any] = [kind for kind in KINDS.values() if kind.turns and task.constraints.allows(kind.kind)]
     changes = {kind: kind.changes(encounters) for kind in kinds}
     matrices = {}  # of each device, with what momentum may decide counted as lost
     for kind in kinds:
@@ -722,6 +722,31 @@ def gains(other: Design | None, best: Design) -> bool:
     return other.efficiency > LEAN_GAIN * best.efficiency
 
 
+def isolates_more(other: Design, best: Design) -> bool:
+    """Return whether a dearer design is worth it beside the best so far.
+
+    Parameters
+    ----------
+    other : Design
+        Of a dearer class.
+    best : Design
+        That does not isolate, or leaves less than is asked for.
+
+    Returns
+    -------
+    bool
+        Whether it alone isolates; of two that both do, whether more parts leave; of two that do not, whether
+        what leaves is purer by ``PURITY_GAIN``.
+    """
+    ranks = [(design.surely_isolates, design.isolated) for design in (other, best)]
+    if ranks[0] != ranks[1]:
+        return ranks[0] > ranks[1]
+    if other.isolated:
+        return other.efficiency > best.efficiency
+    pure, before = (np.nan_to_num(design.purity) for design in (other, best))
+    return bool(pure > before + PURITY_GAIN)
+
+
 def widths(orientations: Sequence[Orientation], shares: Floats, wanted: int, margin: float) -> list[float]:
     """Return other widths of the track that may give the wanted one more.
 
@@ -799,7 +824,8 @@ def _isolate(
 ) -> Design:
     """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""
     proposal = design(orientations, shares, wanted, **options)
-    if proposal.isolated or not any(orientation.carry > 0.0 for orientation in orientations):
+    travels = any(orientation.carry > 0.0 for orientation in orientations)
+    if proposal.isolated or not travels or not options["constraints"].at_rest:
         return proposal
     options = options | {"constraints": replace(options["constraints"], vary=False, isolating=True)}
     still = design(placed(tuple(orientations)), shares, wanted, **options)
