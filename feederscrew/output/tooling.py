@@ -51,16 +51,7 @@ QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 
 def document(study: ToolingStudy) -> dict[str, Any]:
-    """Return a tooling study as the JSON document, ``tooling.json``.
-
-    Parameters
-    ----------
-    study : ToolingStudy
-
-    Returns
-    -------
-    dict
-    """
+    """Return a ToolingStudy as the JSON document."""
     values = {
         **part_facts.part(study.part, (*study.aspects.warnings, *study.of_size)),
         "rule": study.rule,
