@@ -250,7 +250,7 @@ class AskedOrientation:
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more is to be tried."""
+        """Tell whether nothing more is to be tried."""
         return self.is_stopped or time.monotonic() > self.until
 
     def try_class(self, cost_class: CostClass) -> None:
