@@ -171,6 +171,10 @@ def lines_of_fill(queue: FilledQueue, target: float, agreed_jams: float = AGREED
         Good parts that are asked for.
     agreed_jams : float [1/s]
         Jams that the buyer tolerates.
+
+    Returns
+    -------
+    list of SheetLine
     """
     low, high = queue.ends
     good = 100.0 * queue.right / queue.left if queue.left else None

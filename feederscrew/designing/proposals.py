@@ -69,8 +69,16 @@ class Recipe:
 def recipes_of(cost_class: int, request: DesignRequest) -> list[Recipe]:
     """Return the ways of proposing chains of a cost class, the most robust first.
 
-    Of a sensor alone, and of one with devices that parts meet; none of a class of which no kind of device may
-    be used.
+    Parameters
+    ----------
+    cost_class : int
+    request : DesignRequest
+
+    Returns
+    -------
+    list of Recipe
+        Of a sensor alone, and of one with devices that parts meet; empty for a class of which no kind of
+        device may be used.
     """
     left_out = (*dearer(cost_class), *request.without)
     if not set(names(cost_class=cost_class, proposed=True)) - set(left_out):
@@ -125,11 +133,29 @@ class Proposal:
         return (self.row, *self.equivalents)
 
     def states(self, orientations: Orientations) -> tuple[int, ...]:
-        """Return the states in which what is wanted leaves, its own first."""
+        """Return the states in which what is wanted leaves, its own first.
+
+        Parameters
+        ----------
+        orientations : Orientations
+
+        Returns
+        -------
+        tuple of int
+        """
         return wanted_states(orientations, self.rows)
 
     def wanted_name(self, orientations: Orientations) -> str:
-        """Return what leaves by name: 'A@188'; 'A' of an aspect that counts at any heading; 'hanging'."""
+        """Return what leaves by name: 'A@188'; 'A' of an aspect that counts at any heading; 'hanging'.
+
+        Parameters
+        ----------
+        orientations : Orientations
+
+        Returns
+        -------
+        str
+        """
         state = orientations.states[orientations.leaves_as[self.row]]
         free = not isinstance(state, Hanging) and state.aspect in self.any_heading
         return state.aspect if free else state.name
@@ -150,14 +176,40 @@ class Proposal:
         return ", ".join(f"{device.kind}: {device.short}" for device in self.devices) or "no device"
 
     def with_cut(self, place: int, cut: Cut, move: Move) -> "Proposal":
-        """Return the proposal with another cut at a place of its chain."""
+        """Return the proposal with another cut at a place of its chain.
+
+        Parameters
+        ----------
+        place : int
+            In the chain, from 0.
+        cut : Cut
+        move : Move
+            What is changed by it.
+
+        Returns
+        -------
+        Proposal
+        """
         return replace(self, cuts=(*self.cuts[:place], cut, *self.cuts[place + 1 :]), move=move)
 
 
 def find_equivalents(
     orientations: Sequence[Orientation], row: int, request: DesignRequest
 ) -> tuple[tuple[int, ...], tuple[str, ...]]:
-    """Return the rows that count as a wanted one beside it, and the aspects that do so at any heading."""
+    """Return the rows that count as a wanted one beside it, and the aspects that do so at any heading.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+    row : int
+        The wanted one.
+    request : DesignRequest
+
+    Returns
+    -------
+    rows : tuple of int
+    aspects : tuple of str
+    """
     one_heading = request.heading is not None
     free = aspects_at_any_heading(orientations, row, request.up, heading_given=one_heading)
     return equivalent_rows(orientations, row, request.up), free
@@ -170,7 +222,17 @@ def _fold_case(texts: Iterable[str]) -> set[str]:
 def promising_rows(orientations: Orientations, shares: Floats, request: DesignRequest) -> list[int]:
     """Return rows of the orientations worth a try: those asked for, the most frequent first.
 
-    Shares are those (M,) [1] in which orientations come.
+    Parameters
+    ----------
+    orientations : Orientations
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    request : DesignRequest
+
+    Returns
+    -------
+    list of int
     """
     rows = [k for k in short_trials.frequent_rows(shares) if not orientations.lying[k].returned]
     named = _fold_case([request.aspect] if request.aspect is not None else request.up)
@@ -187,9 +249,22 @@ def promising_rows(orientations: Orientations, shares: Floats, request: DesignRe
 def propose_no_device(
     orientations: Orientations, shares: Floats, request: DesignRequest, devices: Iterable[Device]
 ) -> Proposal | None:
-    """Return the proposal of no further device, where nearly all that comes is one way up; else None.
+    """Return the proposal of no further device, where nearly all that comes is one way up.
 
-    Shares are those (M,) [1] in which orientations come.
+    Parameters
+    ----------
+    orientations : Orientations
+        M of them.
+    shares : (M,) float [1]
+        In which they come.
+    request : DesignRequest
+    devices : iterable of Device
+        Of the user.
+
+    Returns
+    -------
+    Proposal or None
+        None elsewhere.
     """
     rows = promising_rows(orientations, shares, request)
     if not rows or request.outcome == OutcomeKind.HANGING:
@@ -211,9 +286,24 @@ def propose_chain(
     request: DesignRequest,
     recipe: Recipe,
 ) -> Proposal | None:
-    """Return the static rule's chain for a row, or None where it isolates nothing or is not what was asked.
+    """Return the static rule's chain for a row. What would stand at a device is returned before it by a drop.
 
-    The bowl has the devices of the user. What would stand at a device is returned before it by a drop.
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With the devices of the user.
+    aspects : Aspects
+    row : int
+        Of the orientations, the wanted one.
+    orientations : Orientations
+    request : DesignRequest
+    recipe : Recipe
+
+    Returns
+    -------
+    Proposal or None
+        None where it isolates nothing or is not what was asked.
     """
     lying = orientations.lying
     without = tuple(dict.fromkeys((*request.without, *recipe.excluded_kinds, *ON_THE_TRACK)))
@@ -250,12 +340,37 @@ def propose_chain(
 
 
 def round_cut(cut: Cut, orientations: Sequence[Orientation], row: int) -> Cut:
-    """Return a cut whose value a shop can make, where that keeps what it returns."""
+    """Return a cut whose value a shop can make, where that keeps what it returns.
+
+    Parameters
+    ----------
+    cut : Cut
+    orientations : sequence of Orientation
+    row : int
+        The wanted one.
+
+    Returns
+    -------
+    Cut
+    """
     return move_cut(cut, cut.device.limit, orientations, row) if np.isfinite(cut.device.limit) else cut
 
 
 def move_cut(cut: Cut, limit: float, orientations: Sequence[Orientation], row: int) -> Cut:
-    """Return a cut of one number at another value [m], in steps of a shop, with its margins there."""
+    """Return a cut of one number at another value, in steps of a shop, with its margins there.
+
+    Parameters
+    ----------
+    cut : Cut
+    limit : float [m]
+    orientations : sequence of Orientation
+    row : int
+        The wanted one.
+
+    Returns
+    -------
+    Cut
+    """
     device = cut.device.valued(float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M))
     return _judge(cut, device, orientations, row)
 
@@ -295,7 +410,20 @@ def _slips(cut: Cut, trial: ShortTrial, orientations: Sequence[Orientation]) -> 
 def sweep_blade(
     proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orientation]
 ) -> Proposal | None:
-    """Return the proposal with another sweep of a blade at which parts stay; None where none is left."""
+    """Return the proposal with another sweep of a blade at which parts stay.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    trial : ShortTrial
+        Of the proposal.
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where none is left.
+    """
     stays_at = {end.kind for n in range(len(trial.rows)) if trial.held[n] for end in trial.ends[n]}
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device  # a blade, where it is overhead
@@ -322,9 +450,21 @@ def mend_proposal(
     orientations: Sequence[Orientation],
     worst: Fault | None = None,
 ) -> Proposal | None:
-    """Return the proposal changed where its trial, or draws, deny it; None where nothing is left to change.
+    """Return the proposal changed where its trial, or draws, deny it.
 
-    ``worst`` is what draws show most often that deny what the trial itself does not.
+    Parameters
+    ----------
+    proposal : Proposal
+    trial : ShortTrial
+        Of the proposal.
+    orientations : sequence of Orientation
+    worst : Fault, optional
+        That draws show most often, and that deny what the trial itself does not.
+
+    Returns
+    -------
+    Proposal or None
+        None where nothing is left to change.
     """
     if worst is not None:
         match worst.kind:
@@ -367,9 +507,18 @@ def _cut_more(
 
 
 def purify(candidate: Any, left_instead: LeavingCounts) -> Proposal | None:
-    """Return the proposal of a Candidate that cuts more of what left queues instead of what is wanted.
+    """Return the proposal of a candidate that cuts more of what left queues instead of what is wanted.
 
-    None without one. ``left_instead`` are the poses in which parts left, the most frequent first.
+    Parameters
+    ----------
+    candidate : Candidate
+    left_instead : LeavingCounts
+        Poses in which parts left, the most frequent first.
+
+    Returns
+    -------
+    Proposal or None
+        None without one.
     """
     lying = candidate.orientations.lying
     rows = {orientation.name: row for row, orientation in enumerate(lying)}
@@ -382,9 +531,16 @@ def purify(candidate: Any, left_instead: LeavingCounts) -> Proposal | None:
 
 
 def add_pressure_break(candidate: Any) -> Proposal | None:
-    """Return the proposal of a Candidate with a pressure break before its devices, where parts back up.
+    """Return the proposal of a candidate with a pressure break before its devices, where parts back up.
 
-    None where it has one, or a wanted orientation does not reach over any.
+    Parameters
+    ----------
+    candidate : Candidate
+
+    Returns
+    -------
+    Proposal or None
+        None where it has one, or a wanted orientation does not reach over any.
     """
     proposal, lying = candidate.proposal, candidate.orientations.lying
     if any(device.relieves for device in proposal.devices):
@@ -477,20 +633,53 @@ def replace_drop(
 
 
 def lost_at(trial: ShortTrial, kind: str) -> bool:
-    """Return whether the wanted orientation ends at a device of a kind."""
+    """Tell whether the wanted orientation ends at a device of a kind.
+
+    Parameters
+    ----------
+    trial : ShortTrial
+    kind : str
+
+    Returns
+    -------
+    bool
+    """
     return any(end.kind == kind for n in trial.wanted_places for end in trial.ends[n])
 
 
 @functools.lru_cache(maxsize=16)
 def follow_orientations(part: Part, aspects: Aspects, bowl: Bowl) -> Orientations:
-    """Return what becomes of every orientation on the track and through the devices of a bowl."""
+    """Return what becomes of every orientation on the track and through the devices of a bowl.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+    bowl : Bowl
+
+    Returns
+    -------
+    Orientations
+    """
     return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
 
 
 def shorten_pulse(cut: Cut, orientations: Sequence[Orientation]) -> Cut:
     """Return a cut whose pulse is the shortest that blows off what it returns, with a reserve.
 
-    Itself where its pulse is as short, or it has none. Source: own; docs/design.md, "The loop".
+    Parameters
+    ----------
+    cut : Cut
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    Cut
+        The one given where its pulse is as short, or it has none.
+
+    References
+    ----------
+    docs/design.md, "The loop".
     """
     device: Any = cut.device  # a sorter, where it senses
     if not device.senses:
@@ -516,7 +705,17 @@ def lengthen_pulse(
 ) -> Proposal | None:
     """Return a proposal with a longer pulse where something is carried through that it should blow off.
 
-    None where nothing is, or the pulse is as long as it was proposed.
+    Parameters
+    ----------
+    proposal : Proposal
+    trial : ShortTrial
+        Of the proposal.
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where nothing is, or the pulse is as long as it was proposed.
     """
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device

@@ -218,6 +218,15 @@ class AskedOrientation:
         """Yield the searches of a design on this bowl, begun once for all classes.
 
         That of the orientation itself; of steel then that of parts that hang from other headings.
+
+        Parameters
+        ----------
+        cost_class : CostClass
+            For which they are asked.
+
+        Yields
+        ------
+        Search
         """
         if not self._found:
             self._found.append(_search_on(self))
@@ -241,11 +250,18 @@ class AskedOrientation:
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more is to be tried."""
+        """Tell whether nothing more is to be tried."""
         return self.is_stopped or time.monotonic() > self.until
 
     def try_class(self, cost_class: CostClass) -> None:
-        """Try chains of a class until one is confirmed."""
+        """Try chains of a class until one is confirmed.
+
+        An interrupt from the keyboard ends it: ``is_stopped`` is set.
+
+        Parameters
+        ----------
+        cost_class : CostClass
+        """
         begun, before = len(self.tried), self.count
         try:
             self._try_class(cost_class)
@@ -296,7 +312,17 @@ class AskedOrientation:
             pending += _ways_on(kinds, changed) if tried.faults else []
 
     def answer(self, efficiency: float) -> ToolingStudy:
-        """Return the study of the cheapest chain that is confirmed; else the first, as it is denied."""
+        """Return the study of the cheapest chain that is confirmed; else the first, as it is denied.
+
+        Parameters
+        ----------
+        efficiency : float [1]
+            That is asked for.
+
+        Returns
+        -------
+        ToolingStudy
+        """
         partial = self.is_stopped or self.study.partial
         if not self.tried:
             return replace(self.study, in_vain=tuple(self.in_vain), partial=partial)
@@ -337,10 +363,19 @@ def search_chains(asked: AskedOrientation, cost_class: CostClass) -> Iterator[To
 
 
 def has_margin(study: ToolingStudy, design: Design) -> bool:
-    """Return whether a chain that the trial finds clean has the margin that a study asks for.
+    """Tell whether a chain that the trial finds clean has the margin that a study asks for.
 
     The usual one is what the search of a design begins with: by how much a trial has then moved a value, the
     margins of the cuts say. More than that is asked of the static rule as well.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    design : Design
+
+    Returns
+    -------
+    bool
     """
     usual = study.margin <= min(proposals.MARGINS) + SLIGHT
     return usual or not design.margin < study.margin - SLIGHT
@@ -493,11 +528,22 @@ def _try_design(study: ToolingStudy, design: Design, run: RunSettings) -> TriedD
 
 
 def further_parts(shares: Floats) -> Ints:
-    """Return how many (R,) of MORE_PARTS are of each orientation, of shares (R,) [1].
+    """Return how many of MORE_PARTS are of each orientation, as the interval of a sum of shares asks for.
 
-    As the interval of a sum of shares asks for. Its width is the root of the sum of the squares of share
-    times proportion's interval, which is least where parts go with the shares (J. Neyman, J. R. Statist. Soc.
-    97, 558-625, 1934, for even spreads).
+    Its width is the root of the sum of the squares of share times proportion's interval, which is least where
+    parts go with the shares, for even spreads.
+
+    Parameters
+    ----------
+    shares : (R,) float [1]
+
+    Returns
+    -------
+    (R,) int
+
+    References
+    ----------
+    J. Neyman, J. R. Statist. Soc. 97, 558-625, 1934.
     """
     total = float(shares.sum())
     return (
@@ -508,12 +554,23 @@ def further_parts(shares: Floats) -> Ints:
 def shares_leaving(
     trial: short_trials.ShortTrial,
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """Return efficiency and purity [1] of a short trial, each as value, low and high end.
+    """Return efficiency and purity of a short trial, shares of all parts offered, with 95 % intervals.
 
     What was not tried counts as the static rule says; what that is not sure to return, as wrong at the lower
-    end. The intervals are those of 95 %, of shares of all parts offered; purity is NaN where nothing leaves.
+    end.
 
-    Source of the sums of shares: G. Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008.
+    Parameters
+    ----------
+    trial : ShortTrial
+
+    Returns
+    -------
+    efficiency, purity : (float, float, float) [1]
+        Value, low and high end; the purity is NaN where nothing leaves.
+
+    References
+    ----------
+    G. Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008, for the sums of shares.
     """
     orientations, shares = trial.orientations, trial.shares / max(trial.shares.sum(), 1e-300)
     rest = np.setdiff1d(np.arange(len(shares)), trial.rows)
@@ -544,7 +601,16 @@ def _sum_shares(shares: Floats, counts: Ints, parts: Ints) -> tuple[float, float
 
 
 def document(designs: Iterable[TriedDesign]) -> list[dict[str, Any]]:
-    """Return TriedDesigns as a list of dicts."""
+    """Return designs that were tried as documents of JSON.
+
+    Parameters
+    ----------
+    designs : iterable of TriedDesign
+
+    Returns
+    -------
+    list of dict of str to object
+    """
     return [
         {
             "orientation": design.name,

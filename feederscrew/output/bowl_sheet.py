@@ -313,7 +313,7 @@ def _draw_springs(drawing: Drawing, bowl: Bowl, outlet: float) -> None:
 
 
 def _list_beside(beside: beside_bowl.Beside, sheet: int) -> list[tuple[str, str]]:
-    """What stands beside the bowl, as quantity and what, for the parts list: details are on its sheet."""
+    """List what stands beside the bowl, as quantity and what, for the parts list; its sheet has details."""
     listed = []
     for station in beside.vision:
         what = SEEN_BY[station.sees][0]

@@ -149,7 +149,17 @@ def _next_class(study: ToolingStudy) -> dict[str, Any] | None:
 
 
 def next_class_words(study: ToolingStudy) -> str:
-    """Say what the next dearer class would let leave, and how to ask for it; empty without one."""
+    """Say what the next dearer class would let leave, and how to ask for it.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+
+    Returns
+    -------
+    str
+        '' without one.
+    """
     design = study.dearer
     if design is None or study.wanted is None or study.design is None:
         return ""
@@ -162,10 +172,20 @@ def next_class_words(study: ToolingStudy) -> str:
 
 
 def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> dict[str, Any]:
-    """Return efficiency and purity [1] of an orientation's design, by the names of ``LEAVING``.
+    """Return efficiency and purity of an orientation's design.
 
     Of its trial where one was made, with the 95 % interval. Else the least by the static rule: without what
     may roll or rock on its way, and with what no verdict is sure to return counted as leaving.
+
+    Parameters
+    ----------
+    design : Design
+    trial : TriedDesign or None
+
+    Returns
+    -------
+    dict of str to float or None [1]
+        By the names of ``LEAVING``.
     """
     if trial is not None:
         pure = (None, None) if np.isnan(trial.purity) else (trial.purity, trial.purity_ends[0])
@@ -176,9 +196,19 @@ def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> dict[s
 
 
 def status(study: ToolingStudy, place: int) -> str:
-    """Return 'confirmed' or 'denied' by its trial, 'static' without one, 'none' where nothing isolates it.
+    """Return how far the design of an orientation is shown.
 
-    'not proved' where the run was stopped before its trial.
+    Parameters
+    ----------
+    study : ToolingStudy
+    place : int
+        Row of the orientation.
+
+    Returns
+    -------
+    str
+        'confirmed' or 'denied' by its trial, 'static' without one, 'none' where nothing isolates it, 'not
+        proved' where the run was stopped before its trial.
     """
     tried = study.trial_of(place)
     if tried is not None and tried.faults:
@@ -191,7 +221,18 @@ def status(study: ToolingStudy, place: int) -> str:
 
 
 def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
-    """Return the rows as a table; for people with devices as the trade names them."""
+    """Return the rows as a table.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    people : bool, optional
+        Whether devices are named as the trade does.
+
+    Returns
+    -------
+    Frame
+    """
     rows = _rows(study)
     for row, design in zip(rows, study.designs):
         if people and design is not None:
@@ -204,8 +245,16 @@ def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
 def summary(study: ToolingStudy, format: str = "csv") -> Frame:
     """Return what is printed: every orientation, or the chain that isolates the one asked for.
 
-    A table names devices as the trade does, has values in words, headings that say whose margin it is, and
-    the first names of many that are returned.
+    Parameters
+    ----------
+    study : ToolingStudy
+    format : str, optional
+        'csv', or 'table', which names devices as the trade does, has values in words, headings that say whose
+        margin it is, and the first names of many that are returned.
+
+    Returns
+    -------
+    Frame
     """
     people, rows = format == "table", []
     if study.design is None:
@@ -237,7 +286,18 @@ def summary(study: ToolingStudy, format: str = "csv") -> Frame:
 
 
 def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
-    """Return what a reader should know: of one orientation first what becomes of it."""
+    """Return what a reader should know: of one orientation first what becomes of it.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    efficiency : float [1], optional
+        That is asked for, as for ``isolation_words``.
+
+    Returns
+    -------
+    list of str
+    """
     stopped = [STOPPED] if study.partial else []
     if study.design is None:
         return [*stopped, isolation_words(study, efficiency)]
@@ -274,7 +334,17 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
 
 
 def trials(study: ToolingStudy) -> tuple[list[str], list[str]]:
-    """Return what the trials of other chains, or of a table's best, said: two lists, denied and confirmed."""
+    """Return what the trials of other chains, or of a table's best, said.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+
+    Returns
+    -------
+    list of str, list of str
+        Denied and confirmed, a sentence each.
+    """
     sentences: tuple[list[str], list[str]] = [], []
     for trial in study.trials if study.design is None else study.trials[1:]:
         chain = "; ".join(trial.devices_words or trial.devices)
@@ -284,7 +354,18 @@ def trials(study: ToolingStudy) -> tuple[list[str], list[str]]:
 
 
 def isolation_words(study: ToolingStudy, efficiency: float = 0.0) -> str:
-    """Say how many of the orientations that come often enough to matter can be isolated."""
+    """Say how many of the orientations that come often enough to matter can be isolated.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    efficiency : float [1], optional
+        Designs of less do not count.
+
+    Returns
+    -------
+    str
+    """
     often = np.flatnonzero(study.shares >= LEAST_SHARE).tolist()
     designs = [(k, design) for k in often if (design := study.designs[k]) is not None]
     good = [study.isolates(k) and design.efficiency >= efficiency for k, design in designs]
@@ -296,7 +377,17 @@ def isolation_words(study: ToolingStudy, efficiency: float = 0.0) -> str:
 
 
 def passages(study: PassagesStudy) -> Frame:
-    """Return one row an orientation of a PassagesStudy: its margin at each device, and what becomes of it."""
+    """Return the margin of each orientation at each device, and what becomes of it.
+
+    Parameters
+    ----------
+    study : PassagesStudy
+
+    Returns
+    -------
+    Frame
+        A row for each orientation.
+    """
     names = [orientation.name for orientation in study.orientations]
     table = {"orientation": names, "p_of all parts": study.shares}
     for place, device in enumerate(study.devices):
@@ -314,7 +405,19 @@ def passages(study: PassagesStudy) -> Frame:
 
 
 def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
-    """Return a bowl file: ``settings`` (Setting) that the user gave, and the devices of a ToolingStudy."""
+    """Return a bowl file with the devices of a tooling study.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+        Of one orientation.
+    settings : sequence of Setting
+        That the user gave: they are kept.
+
+    Returns
+    -------
+    str
+    """
     design, wanted_row = _asked_for(study)
     tried, orientation, width = study.trial_of(wanted_row), study.orientations[wanted_row], design.width
     check_written(design.devices, "tooling.yaml")
@@ -350,7 +453,19 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
 
 
 def settings_lines(settings: Sequence[Setting], sections: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return lines of a bowl file: ``settings`` (Setting) as they were, below them a section's own lines."""
+    """Return lines of a bowl file.
+
+    Parameters
+    ----------
+    settings : sequence of Setting
+        Written as they were.
+    sections : mapping of str to sequence of str
+        A section's own lines, which stand below its settings.
+
+    Returns
+    -------
+    list of str
+    """
     lines = [f"{s.key.word}: {s.text}" for s in settings if not s.key.section]
     for section in dict.fromkeys((*sections, *(s.key.section for s in settings if s.key.section))):
         lines += [f"{section}:", *(f"  {s.key.word}: {s.text}" for s in settings if s.key.section == section)]
@@ -362,11 +477,26 @@ def offers(
     study: ToolingStudy, settings: Sequence[Setting], step: bool = False, mark: str = "",
     fields: marking.SheetFields | None = None,
 ) -> list[offer.Offer]:  # fmt: skip
-    """Offer the files of a ToolingStudy, whose bowl has these ``settings``: table, document and picture.
+    """Offer the files of a tooling study: table, document and picture.
 
-    Of one orientation with devices that isolate it the bowl file and the drawings as well, with ``step`` the
-    section of track as STEP too, which needs OpenCASCADE; of a run that was stopped no drawings. ``mark``
-    stands on every drawing, picture and solid, ``fields`` (SheetFields) are date and revision of the drawing.
+    Of one orientation with devices that isolate it the bowl file and the drawings as well; of a run that was
+    stopped no drawings.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    settings : sequence of Setting
+        Of its bowl.
+    step : bool, optional
+        Whether the section of track is offered as STEP too, which needs OpenCASCADE.
+    mark : str, optional
+        Stands on every drawing, picture and solid.
+    fields : SheetFields, optional
+        Date and revision of the drawing.
+
+    Returns
+    -------
+    list of Offer
     """
     what = "Orientations and what isolates them"
     files = [offer.table("tooling.csv", frame, study), offer.document("tooling.json", document, study)]
@@ -402,7 +532,20 @@ def offers(
 def chain_picture(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats
 ) -> offer.Offer:
-    """Offer the picture of a bowl's own devices; ``shares`` are those (M,) [1] of the orientations."""
+    """Offer the picture of a bowl's own devices.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) array [1]
+        In which they come.
+
+    Returns
+    -------
+    Offer
+    """
     alt = "Each orientation where each device supports it least"
     return offer.picture("tooling.png", alt, lambda: tooling_figures.chain(devices, orientations, shares))
 
@@ -410,7 +553,21 @@ def chain_picture(
 def solid_picture(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> offer.Offer:
-    """Offer the picture of a part over the cuts, in three dimensions."""
+    """Offer the picture of a part over the cuts, in three dimensions.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+    orientations : sequence of Orientation
+        M of them.
+    shares : (M,) array [1]
+        In which they come.
+    wanted_row : int
+
+    Returns
+    -------
+    Offer
+    """
     alt, chain = "The part over the cut: what passes, and the nearest that falls", (devices, orientations)
     return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain, shares, wanted_row))
 

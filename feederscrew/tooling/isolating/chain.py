@@ -667,7 +667,7 @@ class Design:
 
     @property
     def surely_isolates(self) -> bool:
-        """Whether it isolates though what no verdict is sure to return counts as leaving."""
+        """Tell whether it isolates though what no verdict is sure to return counts as leaving."""
         return self.isolated and not self.purity < self.least_purity  # also where nothing that comes leaves
 
     @property
