@@ -32,7 +32,7 @@ def short_queues():
         patch.setattr(loop, "longest_time", lambda target: 8.0)
         patch.setattr(fill_verdicts, "FIRST_LOOK_S", 2.0)
         for module in (fill_verdicts, import_module("feederscrew.bowl.verified")):
-            patch.setattr(module, "SHOWN_PURITY", 0.0)  # which the parts of two seconds do not show
+            patch.setattr(module, "SHOWN_PURITY", 1e-3)  # which the parts of two seconds do not show
         yield
 
 
