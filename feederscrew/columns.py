@@ -146,6 +146,8 @@ def in_unit(value: Any, unit: UnitName) -> Any:
     size = UNITS[unit].size
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]  # a number
+    if isinstance(value, dict):
+        return {name: in_unit(entry, unit) for name, entry in value.items()}
     if value is None or size == 1.0:
         return value
     return 100.0 * value if unit == "%" else value / size
