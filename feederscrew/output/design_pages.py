@@ -59,6 +59,7 @@ from feederscrew.output.page.blocks import (
 from feederscrew.output.style import png
 from feederscrew.output.tables import Frame
 from feederscrew.output.trial import rides
+from feederscrew.output.trial.tables import queues_table
 from feederscrew.resting.aspects import find
 from feederscrew.studies.bowl import MachineSheet
 
@@ -163,7 +164,7 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
             proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
         worst = f"; most often: {study.robust.worst_text}" if study.robust.worst else ""
         draws = Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")
-        proof.append(Table(tables.of_rows(d["queues"])))
+        proof.append(Table(queues_table(d["queues"])))
         if d["differences"]:
             proof.append(Notes(tuple(item["text"] for item in d["differences"]), loud=True))
         proof.append(draws)

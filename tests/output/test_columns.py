@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import feederscrew
-from feederscrew.columns import UNITS, Column, ColumnHead, of_arrays, of_pieces, of_records, values
+from feederscrew.columns import UNITS, Column, ColumnHead, Frame, of_arrays, of_pieces, of_records, values
 from feederscrew.output import tables
 
 ROOT = Path(feederscrew.__file__).parent
@@ -75,6 +75,11 @@ def test_people_read_shares_and_their_ends_in_percent_files_as_fractions():
     heads, units, first, _ = tables.text(table.for_people(), "table").splitlines()
     assert "0.2990" in first and "[%]" in units and units.count("[1/min]") == 3 and "seen" not in heads
     assert tables.text(table, "csv").splitlines()[1] == "first,12,0.00299,60,30,120,"
+
+
+def test_a_name_says_nothing_of_a_unit_that_is_not_declared():
+    table = Frame.of({"purity": [0.5], "height_mm": [2.0]})
+    assert tables.text(table, "table").split() == ["purity", "height", "mm", "0.5000", "2.000"]
 
 
 def test_single_values_stand_in_every_row_of_a_piece():
