@@ -19,6 +19,7 @@ from feederscrew.bowl.verified import (
     Status,
     Verified,
 )
+from feederscrew.columns import ColumnHead, Frame, share_head
 from feederscrew.designing import texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
@@ -57,7 +58,6 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.style import png
-from feederscrew.output.tables import Frame
 from feederscrew.output.trial import rides
 from feederscrew.output.trial.tables import queues_table
 from feederscrew.resting.aspects import find
@@ -515,7 +515,9 @@ def family_page(study: FamilyStudy) -> str:
                 "page": f"{name}/design.html",
             }
         )  # fmt: skip
-    answer: list[Block] = [Text(status), Table(tables.of_rows(rows))]
+    paces = ("asked_per_minute", "delivered_per_minute", "at_least_per_minute")
+    above = {name: ColumnHead.of_name(name, "1/min") for name in paces} | {"purity": share_head("purity")}
+    answer: list[Block] = [Text(status), Table(Frame.of_rows(rows).headed(above))]
     answer += [Text("The machine that each part asks for:"), Notes(tuple(machines))]
     answer += [Notes(tuple(lines), loud=True) for lines in (warned, risks) if lines]
     changes, changed = _changes(study), tables.frame(changeover(study))
