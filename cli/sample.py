@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from feederscrew.columns import Frame
+from feederscrew.columns import of_records
 from feederscrew_cli import grouped, options
 from feederscrew_cli.options import Output
 
@@ -49,12 +49,11 @@ def sample(
     bracket 25x10x12 (lengths in mm); t-shape takes --ratio. Bolts, screws, nuts and washers have the nominal
     sizes of their standard. A thread is a cylinder as thick as its major diameter.
     """
-    from feederscrew.output import tables
     from feederscrew.samples import catalogue
 
     out = Output.of_call(format=format, quiet=quiet)
     if name is None and not everything:
-        frame = Frame.of(tables.table_of(catalogue.samples(), "call file meaning"))
+        frame = of_records(catalogue.SAMPLE_COLUMNS, catalogue.samples())
         out.show(frame, {"samples": list(frame.rows())})
         out.say("Write one with its call: feeder sample washer_m6")
         return

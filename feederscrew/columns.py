@@ -76,6 +76,11 @@ class ColumnHead(NamedTuple):
         return f"{self.heading} [{self.unit}]" if self.unit else self.heading
 
 
+def share_head(name: str) -> ColumnHead:
+    """Return what people read above a share that is a fraction in files: its name, in percent."""
+    return ColumnHead.of_name(name, "%", 100.0)
+
+
 @dataclass(frozen=True)
 class Column(Generic[R]):
     """One column of a table, or one entry of a document.
@@ -146,6 +151,8 @@ def in_unit(value: Any, unit: UnitName) -> Any:
     size = UNITS[unit].size
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]  # a number
+    if isinstance(value, dict):
+        return {name: in_unit(entry, unit) for name, entry in value.items()}
     if value is None or size == 1.0:
         return value
     return 100.0 * value if unit == "%" else value / size
@@ -266,6 +273,21 @@ def values(columns: Iterable[Column[R]], record: R) -> dict[str, Any]:
     return {name: value for column in columns for name, value in column.values(record).items()}
 
 
+def heads(columns: Iterable[Column[R]]) -> dict[str, ColumnHead]:
+    """Return what people read above columns, by their names in files.
+
+    Parameters
+    ----------
+    columns : iterable of Column
+
+    Returns
+    -------
+    dict of str to ColumnHead
+        Three of an interval.
+    """
+    return {name: head for column in columns for name, head in column.heads.items()}
+
+
 def of_records(columns: Sequence[Column[R]], records: Iterable[R]) -> Frame:
     """Return a table with a row for each record.
 
@@ -330,9 +352,8 @@ def _is_column(cell: Any) -> bool:
 
 
 def _declared(columns: Sequence[Column[R]], cells: Mapping[str, Any]) -> Frame:
-    heads = {name: head for column in columns for name, head in column.heads.items()}
     hidden = [name for column in columns if column.hidden for name in column.heads]
-    return Frame(Frame.of(cells), heads, hidden)
+    return Frame(Frame.of(cells), heads(columns), hidden)
 
 
 def quantities(rows: Iterable[Sequence[Any]]) -> Frame:

@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import quote
 
 from feederscrew.batch.task import DONE, NOT_COMPUTED, PARTS, THUMBNAIL, Request
-from feederscrew.columns import Frame
+from feederscrew.columns import ColumnHead, Frame, share_head
 from feederscrew.output.batch import ACROSS, DOWN
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture
 from feederscrew.units import counted
@@ -43,6 +43,14 @@ SUMMARY_COLUMNS = (
     "warnings",
 )
 Rows = tuple[dict[str, Any], ...]
+SUMMARY_HEADS = {  # of a table for people
+    **{name: share_head(name) for name in ("passes_devices",)},
+    **{f"p_{name}": share_head(name) for name in ("orientation", "drop")},
+    **{name: ColumnHead.of_name(name, unit) for name, unit in {
+        "mass_g": "g", "heading_deg": "deg", "velocity_mm_s": "mm/s", "pitch_mm": "mm",
+        "parts_per_minute": "1/min", "parts_per_minute_low": "1/min", "parts_per_minute_high": "1/min",
+    }.items()},
+}  # fmt: skip
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 TILES = ACROSS * DOWN
 HIDDEN_SUMMARY_COLUMNS = (  # from a table for people; reasons stand above it, a line each
@@ -132,7 +140,7 @@ def frame(rows: Rows) -> Frame:
     def marked(value: object) -> object:
         return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
-    return Frame.of({name: [marked(row[name]) for row in rows] for name in SUMMARY_COLUMNS})
+    return Frame.of({name: [marked(row[name]) for row in rows] for name in SUMMARY_COLUMNS}, SUMMARY_HEADS)
 
 
 def sheets(store: Any, rows: Rows) -> Iterator[list[tuple[bytes | None, str, str]]]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Unpack, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from feederscrew.columns import Column
 from feederscrew.records import ReadableRecord
 from feederscrew.tooling.devices.base import Device
 
@@ -42,6 +43,12 @@ class Drive:
         return self.second_harmonic_angle - self.vibration_angle
 
 
+DRIVE_PHASE_COLUMNS: tuple[Column[Drive], ...] = (  # of documents
+    Column("phase_deg", lambda drive: drive.phase, "deg"),
+    Column("frequency_hz", lambda drive: drive.frequency, "Hz"),
+)
+
+
 @dataclass(frozen=True)
 class Friction:
     """Coulomb coefficients between part and bowl."""
@@ -72,6 +79,13 @@ class Track:
     def extent(self) -> float:
         """Return how far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
         return min(self.width, MAX_TRACK_WIDTH_SHARE * self.radius)
+
+
+TRACK_SIZE_COLUMNS: tuple[Column[Track], ...] = (  # of documents
+    Column("track_width_mm", lambda track: track.width, "mm"),
+    Column("bank_deg", lambda track: track.bank, "deg"),
+    Column("climb_deg", lambda track: track.climb, "deg"),
+)
 
 
 @dataclass(frozen=True)

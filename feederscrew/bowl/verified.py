@@ -14,6 +14,7 @@ import numpy as np
 
 from feederscrew import documents, units
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.part.record import Part
 from feederscrew.tooling.devices.base import Device
 
@@ -173,6 +174,25 @@ class Verified:
             f"{self.jams} jams in {self.queue_seconds:.3g} s of queue, "
             f"{self.held} of {self.draws} draws sort: {self.status}"
         )
+
+
+VERIFIED_COLUMNS: tuple[Column[Verified], ...] = (  # who it is of
+    Column("status", lambda trial: trial.status),
+    Column("wanted", lambda trial: trial.wanted),
+    Column("up", lambda trial: trial.up),
+)
+VERIFIED_RATE_COLUMNS: tuple[Column[Verified], ...] = (
+    Column("parts_per_minute", lambda trial: trial.delivered, "1/min"),
+    Column("parts_per_minute_low", lambda trial: trial.low, "1/min"),
+    Column("parts_per_minute_high", lambda trial: trial.high, "1/min"),
+)
+VERIFIED_FIGURE_COLUMNS: tuple[Column[Verified], ...] = (
+    Column("purity", lambda trial: trial.purity, "share"),
+    Column("jams", lambda trial: trial.jams),
+    Column("queue_seconds", lambda trial: trial.queue_seconds, "s"),
+    Column("draws", lambda trial: trial.draws),
+    Column("draws_held", lambda trial: trial.held),
+)
 
 
 LATER_KEYS = ("second_harmonic_angle",)  # since version 0.2.0

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.conveying.answer import LEAST_ACCELERATION_RATIO, settings
 from feederscrew.conveying.operating_point import FLIGHT, OperatingPoint, law, throw_number
 from feederscrew.conveying.point_motion import TALLY, TRAVEL, at_rest, step
@@ -29,6 +30,13 @@ class Hop:
     def text(self) -> str:
         """Return height and length in words."""
         return f"{1e3 * self.height:.2g} mm high and {1e3 * self.flight:.2g} mm far"
+
+
+HOP_COLUMNS: tuple[Column[Hop], ...] = (
+    Column("hop_height_mm", lambda leap: leap.height, "mm"),
+    Column("hop_flight_mm", lambda leap: leap.flight, "mm"),
+    Column("hop", lambda leap: leap.text),
+)
 
 
 def hop(bowl: Bowl) -> Hop:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from feederscrew.bowl.verified import PURE, RATE_KEPT, SHOWN_PURITY
+from feederscrew.columns import Column
 from feederscrew.designing import evidence
 from feederscrew.heavy import heavy
 from feederscrew.trial.fills import BARE_TRACK, FilledQueue, LeavingPose, PoseKind
@@ -176,6 +177,20 @@ class FillDifference:
     pose: LeavingPose | None = None  # in which most parts leave wrong there
     count: int = 0  # of these parts; or of those that came as wanted and fell back at the device
     device: str = ""  # name of the one that they pass, or at which they fall back; '' the bare track
+
+
+DIFFERENCE_COLUMNS: tuple[Column[FillDifference], ...] = (
+    Column("fill", lambda item: item.fill),
+    Column("kind", lambda item: item.kind),
+    Column("right", lambda item: item.right),
+    Column("of", lambda item: item.total),
+    Column("right_elsewhere", lambda item: item.right_elsewhere),
+    Column("of_elsewhere", lambda item: item.total_elsewhere),
+    Column("chance", lambda item: item.chance),
+    Column("leaves_instead", lambda item: None if item.pose is None else item.pose.text),
+    Column("parts", lambda item: item.count),
+    Column("device", lambda item: item.device),
+)
 
 
 def differing_fills(queues: Sequence[FilledQueue], cuts: Iterable = ()) -> tuple[FillDifference, ...]:

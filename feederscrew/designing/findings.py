@@ -7,6 +7,7 @@ import enum
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from feederscrew.columns import Column
 from feederscrew.trial.course import Fate
 
 
@@ -157,6 +158,17 @@ class SeldomPart:
         return self.break_even is not None and self.share_high >= self.break_even
 
 
+SELDOM_COLUMNS: tuple[Column[SeldomPart], ...] = (
+    Column("orientation", lambda seldom: seldom.orientation),
+    Column("parts", lambda seldom: seldom.parts),
+    Column("left", lambda seldom: seldom.left),
+    Column("held", lambda seldom: seldom.held),
+    Column("share", lambda seldom: seldom.share, "share"),
+    Column("share_high", lambda seldom: seldom.share_high, "share"),
+    Column("break_even", lambda seldom: seldom.break_even),
+)
+
+
 @dataclass(frozen=True)
 class Hooking:
     """Two parts of one kind that hold each other."""
@@ -165,3 +177,11 @@ class Hooking:
     held: int  # of them that do not part the two
     opening: float  # [m] the mouth through which they come to hook; NaN of none
     section: float  # [m] the thinnest limb of the part
+
+
+HOOKING_COLUMNS: tuple[Column[Hooking], ...] = (
+    Column("pulls", lambda hooking: hooking.pulls),
+    Column("held", lambda hooking: hooking.held),
+    Column("opening_mm", lambda hooking: hooking.opening, "mm"),
+    Column("thinnest_mm", lambda hooking: hooking.section, "mm"),
+)

@@ -12,6 +12,7 @@ from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import shank_remarks
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import AGREED_JAMS, DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
+from feederscrew.columns import Column, in_unit, values
 from feederscrew.designing import texts
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.evidence import rate_at_most, share_at_least
@@ -124,6 +125,25 @@ class Attempt:
         return self.efficiency > 0.0 and not self.faults
 
 
+ATTEMPT_COLUMNS: tuple[Column[tuple[int, Attempt]], ...] = (  # a row a short trial, numbered from 1
+    Column("trial", lambda tried: tried[0]),
+    Column("wanted", lambda tried: tried[1].wanted),
+    Column("chain", lambda tried: ", ".join(tried[1].chain) or "none"),
+    Column("why", lambda tried: tried[1].step),
+    Column("bank_deg", lambda tried: tried[1].bank, "deg"),
+    Column("velocity_mm_s", lambda tried: tried[1].velocity, "mm/s"),
+    Column("parts", lambda tried: tried[1].parts),
+    Column("efficiency", lambda tried: tried[1].efficiency, "share"),
+    Column("purity", lambda tried: tried[1].purity, "share"),
+    Column("stopped", lambda tried: tried[1].stopped, "share"),
+    Column("peak_to_peak_mm", lambda tried: tried[1].peak_to_peak, "mm"),
+    Column("throw_number", lambda tried: tried[1].throw_number),
+    Column("rate_per_minute", lambda tried: tried[1].rate, "1/min"),
+    Column("denied", lambda tried: "; ".join(texts.fault_texts(tried[1].faults))),
+    Column("cause", lambda tried: tried[1].cause),
+)
+
+
 @dataclass(frozen=True)
 class RobustRun:
     """Draws of part, friction, drive and cuts; each tried with some parts."""
@@ -145,6 +165,13 @@ class RobustRun:
         return self.held / self.draws if self.draws else 0.0
 
 
+ROBUST_COLUMNS: tuple[Column[RobustRun], ...] = (
+    Column("draws", lambda robust: robust.draws),
+    Column("held", lambda robust: robust.held),
+    Column("worst", lambda robust: robust.worst_text),
+)
+
+
 @dataclass(frozen=True)
 class Alternative:
     """The best design of a cost class: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
@@ -163,6 +190,17 @@ class Alternative:
     def why(self) -> str:
         """The same in one line."""
         return "; ".join(self.reasons)
+
+
+ALTERNATIVE_COLUMNS: tuple[Column[Alternative], ...] = (
+    Column("class", lambda option: option.cost_class),
+    Column("status", lambda option: option.status),
+    Column("delivered_per_minute", lambda option: option.delivered and option.delivered[0], "1/min"),
+    Column("delivered_low", lambda option: option.delivered and option.delivered[1], "1/min"),
+    Column("purity", lambda option: option.purity, "share"),
+    Column("yield", lambda option: option.efficiency, "share"),
+    Column("chain", lambda option: list(option.chain)),
+)
 
 
 @dataclass(frozen=True)
@@ -215,6 +253,16 @@ class QuickAnswer:
     clean: bool  # whether only what is wanted left that trial
 
 
+QUICK_COLUMNS: tuple[Column[QuickAnswer], ...] = (
+    Column("wanted", lambda quick: quick.wanted),
+    Column("share", lambda quick: quick.share, "share"),
+    Column("fastest_mm_s", lambda quick: quick.fastest, "mm/s"),
+    Column("at_most_per_minute", lambda quick: quick.rate_at_most, "1/min"),
+    Column("short_trial_per_minute", lambda quick: quick.short_trial, "1/min"),
+    Column("clean", lambda quick: quick.clean),
+)
+
+
 @dataclass(frozen=True)
 class NearestDesign:
     """Nearest design that holds where a design does not, as it was tried; or that nothing tried holds."""
@@ -256,6 +304,22 @@ class NearestDesign:
             f"{counted(self.parts_left, 'part')} left {self.queue_seconds:.3g} s of queue as wanted"
         )
         return f"{60.0 * self.rate:.3g}/min with {self.change} ({figures}){also}"
+
+
+NEAREST_TRIED_COLUMNS: tuple[Column[NearestDesign], ...] = (
+    Column("short_trials", lambda near: near.trials),
+    Column("proofs", lambda near: near.proofs),
+    Column("draws", lambda near: near.draws),
+    Column("draws_held", lambda near: near.draws_held),
+    Column("queue_seconds", lambda near: near.queue_seconds),
+    Column("parts_left", lambda near: near.parts_left),
+    Column("parts_right", lambda near: near.parts_right),
+)
+NEAREST_COLUMNS: tuple[Column[NearestDesign], ...] = (
+    Column("frequency_hz", lambda near: near.frequency, "Hz"),
+    Column("peak_to_peak_mm", lambda near: near.peak_to_peak, "mm"),
+    Column("throw_number", lambda near: near.throw_number),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -652,6 +716,33 @@ class DesignStudy(ReadableRecord):
 
     def _is_wanted_heading_off(self, pose: LeavingPose) -> bool:
         return pose.kind is PoseKind.HEADING_OFF and pose.aspect == self.wanted_aspect
+
+
+DESIGN_STATUS_COLUMNS: tuple[Column[DesignStudy], ...] = (
+    Column("status", lambda study: study.status),
+    Column("wanted", lambda study: study.wanted),
+    Column("up", lambda study: list(study.request.up)),
+    Column("outcome", lambda study: study.outcome),
+    Column("drive_asked_for", lambda study: study.request.drive),
+    Column("target_per_minute", lambda study: study.request.target, "1/min"),
+)
+DESIGN_PROOF_COLUMNS: tuple[Column[DesignStudy], ...] = (
+    Column("static_per_minute", lambda study: study.static_rate, "1/min"),
+    Column("queue_seconds", lambda study: study.queue_seconds),
+    Column(
+        "robust",
+        lambda study: (
+            values(ROBUST_COLUMNS, study.robust) | {"tolerance_mm": in_unit(study.request.tolerance, "mm")}
+        ),
+    ),
+    Column("chain", lambda study: [{"device": item.kind, "value": item.text} for item in study.devices]),
+)
+DESIGN_RUN_COLUMNS: tuple[Column[DesignStudy], ...] = (
+    Column("trial_parts", lambda study: study.trial_parts),
+    Column("answer", lambda study: study.source),
+    Column("seed", lambda study: study.request.seed),
+    Column("partial", lambda study: study.partial),
+)
 
 
 def _instead(study: DesignStudy, queue: FilledQueue) -> str:

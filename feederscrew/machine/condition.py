@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from feederscrew import units
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column, values
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.springs import FULL_TURN_RAD, gain
@@ -38,6 +39,27 @@ class MeasuredMachine:
     velocity: float  # [m/s] of a part now; NaN where it is not known
     velocity_should: float  # [m/s]
     causes: tuple[str, ...]  # what is likely, a sentence each
+
+
+MEASURED_COLUMNS: tuple[Column[MeasuredMachine], ...] = (  # what was measured
+    Column("stroke_mm", lambda condition: condition.stroke, "mm"),
+    Column("acceleration_m_s2", lambda condition: condition.acceleration, "m/s2"),
+    Column("frequency_hz", lambda condition: condition.frequency, "Hz"),
+    Column("velocity_mm_s", lambda condition: condition.velocity, "mm/s"),
+)
+SHOULD_COLUMNS: tuple[Column[MeasuredMachine], ...] = (  # the same of the machine as it is drawn
+    Column("stroke_mm", lambda condition: condition.should["stroke"], "mm"),
+    Column("acceleration_m_s2", lambda condition: condition.should["acceleration"], "m/s2"),
+    Column("frequency_hz", lambda condition: condition.should["frequency"], "Hz"),
+    Column("velocity_mm_s", lambda condition: condition.velocity_should, "mm/s"),
+)
+CONDITION_COLUMNS: tuple[Column[MeasuredMachine], ...] = (  # of the document
+    Column("fill_percent", lambda condition: condition.fill, "%"),
+    Column("measured", lambda condition: values(MEASURED_COLUMNS, condition)),
+    Column("should", lambda condition: values(SHOULD_COLUMNS, condition)),
+    Column("natural_frequency_hz", lambda condition: condition.natural_frequency, "Hz"),
+    Column("causes", lambda condition: list(condition.causes)),
+)
 
 
 def read(text: str) -> dict[str, float]:

@@ -16,6 +16,7 @@ from feederscrew.bowl import schema
 from feederscrew.bowl.reading import Setting, default
 from feederscrew.bowl.record import UNBALANCE_UNKNOWN, Bowl, Drive, Machine, Sizing, shares, vibration_angle
 from feederscrew.bowl.schema import BY_NAME
+from feederscrew.columns import Column
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
 from feederscrew.machine import sizing, springs
@@ -217,6 +218,15 @@ class DriveFigures:
             f"{np.degrees(self.spring_angle):.3g} deg at the springs, {np.degrees(self.track_angle):.3g} deg "
             f"to the track{phase}, throw number {self.throw_number:.3g}, {travels}"
         )
+
+
+DRIVE_FIGURE_COLUMNS: tuple[Column[DriveFigures], ...] = (
+    Column("vibration_angle_at_the_springs_deg", lambda drive: drive.spring_angle, "deg"),
+    Column("vibration_angle_at_the_track_deg", lambda drive: drive.track_angle, "deg"),
+    Column("phase_deg", lambda drive: drive.phase, "deg"),
+    Column("throw_number", lambda drive: drive.throw_number),
+    Column("velocity_mm_s", lambda drive: drive.velocity, "mm/s"),
+)
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl, Machine, Sizing, Track, direction, shares
+from feederscrew.columns import Column
 from feederscrew.errors import FeederError
 from feederscrew.geometry.vectors import cross, determinant, dot
 from feederscrew.part.mass import shift_inertia
@@ -29,6 +30,12 @@ class Rocking:
     greatest: float  # [1]
     angle: float  # [rad] about Z where it is greatest
     effective_mass: float  # [kg]
+
+
+ROCKING_COLUMNS: tuple[Column[Rocking], ...] = (
+    Column("stroke_round_least", lambda rocking: rocking.least),
+    Column("stroke_round_greatest", lambda rocking: rocking.greatest),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -515,6 +522,18 @@ class LeafSet:
     stress: float  # [Pa] amplitude, at the stroke in use
 
 
+LEAF_SET_COLUMNS: tuple[Column[LeafSet], ...] = (
+    Column("change", lambda leaves: leaves.name),
+    Column("leaf_thickness_mm", lambda leaves: leaves.thickness, "mm"),
+    Column("leaves", lambda leaves: leaves.leaves),
+    Column("natural_frequency_hz", lambda leaves: leaves.natural_frequency, "Hz"),
+    Column("by_t_squared_hz", lambda leaves: leaves.by_square, "Hz"),
+    Column("above_drive_percent", lambda leaves: leaves.detuning, "%"),
+    Column("gain", lambda leaves: leaves.gain),
+    Column("leaf_stress_mpa", lambda leaves: leaves.stress, "MPa"),
+)
+
+
 def leaf_set(
     machine: Machine,
     frequency: float,
@@ -660,6 +679,14 @@ class Stroke:
     rms: float  # [m/s2] of the same
     horizontal: float  # [m/s2] peak
     vertical: float  # [m/s2] peak
+
+
+ACCELEROMETER_COLUMNS: tuple[Column[Stroke], ...] = (  # what an accelerometer on the bowl shows
+    Column("peak", lambda stroke: stroke.acceleration, "m/s2"),
+    Column("rms", lambda stroke: stroke.rms, "m/s2"),
+    Column("peak_horizontal", lambda stroke: stroke.horizontal, "m/s2"),
+    Column("peak_vertical", lambda stroke: stroke.vertical, "m/s2"),
+)
 
 
 def stroke(bowl: Bowl) -> Stroke:

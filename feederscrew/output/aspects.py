@@ -89,7 +89,8 @@ def check_columns(study: AspectsStudy, choice: str) -> None:
         If there is no such column.
     """
     frame = study.table()
-    select_columns(frame.taking(dict.fromkeys(DROP_COLUMNS, frame["aspect"])), choice)
+    dropped = frame.taking(dict.fromkeys(DROP_COLUMNS, frame["aspect"]))
+    select_columns(dropped.with_headings({DROP_COLUMNS[0]: "drop"}), choice)
 
 
 def document(study: AspectsStudy) -> dict[str, Any]:

@@ -7,13 +7,14 @@ from typing import Any, Literal
 import numpy as np
 
 from feederscrew.arrays import Floats
-from feederscrew.columns import Frame
+from feederscrew.columns import Frame, of_arrays, of_records, values
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
-from feederscrew.output.tables import row_of
-from feederscrew.resting.deviation import Comparison
+from feederscrew.output import style
+from feederscrew.resting.deviation import PAIR_COLUMNS, Comparison
+from feederscrew.resting.profiles import PROFILE_COLUMNS
 from feederscrew.resting.rules import registry
+from feederscrew.resting.rules.recommended import RECOMMENDED_COLUMNS
 from feederscrew.studies import compare as studies
 from feederscrew.units import MM_S
 
@@ -24,22 +25,13 @@ TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, 
 
 def _pair_frame(comparisons: Iterable[Comparison]) -> Frame:
     """Pairs of profiles, a row each: ``compare.csv``; the test is empty where neither holds counts."""
-    fields = (
-        "first=first.name second=second.name deviation total_variation chi_square=chi_square.statistic",
-        "degrees_of_freedom=chi_square.degrees_of_freedom p_value=chi_square.p_value",
-    )
-    return _without_zero_degrees(tables.table_of(comparisons, *fields))
-
-
-def _without_zero_degrees(table: Frame) -> Frame:
-    """The table with an empty cell where a test has no degrees of freedom."""
-    return Frame.of(table | {TESTS[1]: [degrees or None for degrees in table[TESTS[1]]]})
+    return of_records(PAIR_COLUMNS, comparisons)
 
 
 def offers(study: studies.CompareStudy | studies.FeedingStudy) -> list[offer.Offer]:
     """Offer the table of a CompareStudy and its picture, or the table of a FeedingStudy."""
     if isinstance(study, studies.FeedingStudy):
-        return [offer.table(FEEDING_FILE, _feedings, [study])]
+        return [offer.table(FEEDING_FILE, studies.feedings_table, [study])]
     alt = "What was measured beside each rule, and how far every two profiles are apart"
     measured, rules = ({p.name: p.fractions for p in some} for some in (study.measured.profiles, study.rules))
     pairs = {(pair.first.name, pair.second.name): pair.deviation for pair in study.comparisons}
@@ -58,18 +50,18 @@ def printout(
     With the ``format`` 'table' each measured profile stands with the rules, the nearest one first; else all
     pairs stand in the order of the study, as in the document.
     """
-    if isinstance(study, studies.FeedingStudy):  # hidden are the file, and what the rules predict
-        hidden = ["set", *(f"p_{rule}" for rule in study.answers if rule != "recommended")]
-        return _feedings([study]), _feeding_document(study), hidden
+    if isinstance(study, studies.FeedingStudy):
+        return studies.feedings_table([study]), _feeding_document(study), ()
+    comparisons = _pair_frame(study.comparisons)
     document = {
-        **row_of(study, "part=part.name"),
+        "part": study.part.name,
         "aspects": list(study.aspects.names),
-        "profiles": [row_of(profile, "name kind values fractions") for profile in study.profiles],
-        "comparisons": _pair_frame(study.comparisons),
+        "profiles": [values(PROFILE_COLUMNS, profile) for profile in study.profiles],
+        "comparisons": comparisons,
     }
     is_tested = any(pair.chi_square.degrees_of_freedom for pair in study.comparisons)
     if format != "table":
-        return document["comparisons"], document, ()
+        return comparisons, document, ()
     order = [profile.name for profile in study.measured.profiles]
     own = [pair for pair in study.comparisons if pair.first.name in order]
     against_rules = [pair for pair in own if pair.second.name not in order]
@@ -83,36 +75,13 @@ def printout(
 FEEDING_FILE = "devices.csv"
 
 
-def _feedings(tests: Iterable[studies.FeedingStudy]) -> Frame:
-    """What passed of the parts that came to each device, measured and predicted: ``devices.csv``."""
-    rows = [
-        {
-            "set": study.measured.source,
-            "device": station,
-            "passed": int(study.measured.passed[k]),
-            "rejected": int(study.measured.rejected[k]),
-            "measured": float(study.measured.shares[k]),
-            **dict(zip(("measured_low", "measured_high"), study.ends[k])),
-            "predicted": float(study.answers["recommended"][k]),
-            "predicted_low": float(study.low[k]),
-            "predicted_high": float(study.high[k]),
-            "agrees": bool(study.agrees[k]),
-            **{f"p_{rule}": float(p[k]) for rule, p in study.answers.items() if rule != "recommended"},
-        }
-        for study in tests
-        for k, station in enumerate(study.stations)
-    ]
-    names = dict.fromkeys(name for row in rows for name in row)
-    return Frame.of({name: [row.get(name) for row in rows] for name in names})
-
-
 def _feeding_document(study: studies.FeedingStudy) -> dict[str, Any]:
     return {
         "part": study.part.name,
         "file": study.measured.source,
         **{key: value for key, value in vars(study.measured.head).items() if value and key != "part"},
         "answer": study.answer,
-        "devices": _feedings([study]),
+        "devices": studies.feedings_table([study]),
     }
 
 
@@ -128,14 +97,14 @@ def sets_offers(study: studies.SetsStudy) -> list[offer.Offer]:
         offer.table("compare.csv", _sets_frame, study),
         offer.picture("compare.png", alt, _sets_figure, study),
     ]
-    tested = [offer.table(FEEDING_FILE, _feedings, study.feedings)]
+    tested = [offer.table(FEEDING_FILE, studies.feedings_table, study.feedings)]
     return (offered if study.sets else []) + (tested if study.feedings else [])
 
 
 def sets_printout(study: studies.SetsStudy, form: str) -> list[Frame]:
     """Return what is printed: for people both tables, else that of the sets or of the feeding tests."""
     if form != "table":
-        return [_sets_frame(study) if study.sets else _feedings(study.feedings)]
+        return [_sets_frame(study) if study.sets else studies.feedings_table(study.feedings)]
     frames = []
     if study.sets:
         whole = _sets_frame(study)
@@ -150,7 +119,7 @@ def sets_printout(study: studies.SetsStudy, form: str) -> list[Frame]:
             columns[name] = [None if np.isnan(value) else f"{value:.3f}" for value in values]
         frames.append(Frame.of(columns))
     if study.feedings:
-        rows = _feedings(study.feedings)
+        rows = studies.feedings_table(study.feedings)
         columns = rows.only(("set", "device", "passed", "rejected"))
         columns["set"] = [Path(name).name for name in rows["set"]]
         for name in ("measured", "predicted"):
@@ -198,13 +167,14 @@ def sets_document(study: studies.SetsStudy) -> dict[str, Any]:
     """Return many measured sets and every answer for them as one JSON document."""
     sets = [
         {
-            **row_of(item, "file=measured.source name=profile.name"),
+            **values(studies.SET_COLUMNS, item),
             **{key: value for key, value in vars(item.measured.head).items() if value},
             "kind": item.profile.kind,
             "aspects": list(item.aspects.names),
-            **row_of(item.profile, "values fractions"),
+            "values": item.profile.values,
+            "fractions": item.profile.fractions,
             "answers": {name: answer.fractions for name, answer in item.answers.items()},
-            "recommended": item.recommended and row_of(item.recommended, "rule low high"),
+            "recommended": item.recommended and values(RECOMMENDED_COLUMNS, item.recommended),
             "total_variation": item.distances,
         }
         for item in study.sets
@@ -286,19 +256,19 @@ def bars(
     of some; ``room`` [in] is the width of paper that a bar has.
     """
     places, width = np.arange(len(names)), 1.0 / (len(profiles) + 0.9)
-    for place, (name, values) in enumerate(profiles.items()):
+    for place, (name, shares) in enumerate(profiles.items()):
         label, colour = look(name, place)
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
-        axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
+        axes.bar(x, 100.0 * shares, 0.92 * width, color=colour, label=label)
         if room >= LEAST_ROOM:
-            style.numbers(axes, x, 100.0 * values, 100.0 * values, room < UPRIGHT_BAR_IN)
+            style.numbers(axes, x, 100.0 * shares, 100.0 * shares, room < UPRIGHT_BAR_IN)
         if printed_shares and name in printed_shares:
             ends = x - 0.46 * width, x + 0.46 * width
             axes.hlines(100.0 * printed_shares[name], *ends, color=style.INK, linewidth=1.1, zorder=3)
     style.named_ticks(axes, places, names)
     axes.set_xlim(-0.55, len(names) - 0.45)
     above = 132.0 if LEAST_ROOM <= room < UPRIGHT_BAR_IN else 114.0  # upright numbers are kept off the title
-    axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))
+    axes.set_ylim(0.0, above * max(shares.max() for shares in profiles.values()))
 
 
 def comparison(
@@ -349,17 +319,12 @@ def comparison(
 
 def fit_quantities(study: studies.BowlFit) -> Frame:
     """Return friction, restitution and stroke that explain the velocities of a BowlFit, one a row."""
-    columns = row_of(study, "bowl_file=assumed fitted=values low high")
-    decided = ["not decided by these velocities" if is_open else "yes" for is_open in study.open_ended]
-    return Frame.of({"quantity": list(studies.QUANTITIES), **columns, "decided": decided})
+    return of_arrays(studies.FIT_QUANTITY_COLUMNS, study)
 
 
 def fit_velocities(study: studies.BowlFit) -> Frame:
     """Return each measured velocity of a BowlFit, ours beside it, and what remains."""
-    settings = [setting or "as the bowl file" for setting in study.settings]
-    names = "measured_mm_s doubt_mm_s bowl_file_mm_s=file fitted_mm_s"
-    remains = (study.measured - study.fitted) / MM_S
-    return Frame.of({"setting": settings, **row_of(study, names), "remains_mm_s": remains})
+    return of_arrays(studies.FIT_VELOCITY_COLUMNS, study)
 
 
 def fit_document(study: studies.BowlFit) -> dict[str, Any]:
@@ -394,13 +359,7 @@ def fit_offers(study: studies.BowlFit) -> list[offer.Offer]:
 
 def exponents(study: studies.CalibrateStudy) -> Frame:
     """Return the exponents of a CalibrateStudy, a row for each column of counts, as in ``calibrate.csv``."""
-    fields = (
-        "counts=name parts exponent=calibration.exponent exponent_low=calibration.low",
-        "exponent_high=calibration.high chi_square=calibration.chi_square.statistic",
-        "degrees_of_freedom=calibration.chi_square.degrees_of_freedom",
-        "p_value=calibration.chi_square.p_value",
-    )
-    return _without_zero_degrees(tables.table_of(study.fits, *fields))
+    return of_records(studies.FIT_COLUMNS, study.fits)
 
 
 def calibration_document(study: studies.CalibrateStudy) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from feederscrew.bowl.verified import (
     Status,
     Verified,
 )
+from feederscrew.columns import ColumnHead, Frame, share_head
 from feederscrew.designing import texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
@@ -57,8 +58,8 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.style import png
-from feederscrew.output.tables import Frame
 from feederscrew.output.trial import rides
+from feederscrew.output.trial.tables import queues_table
 from feederscrew.resting.aspects import find
 from feederscrew.studies.bowl import MachineSheet
 
@@ -163,7 +164,7 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
             proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
         worst = f"; most often: {study.robust.worst_text}" if study.robust.worst else ""
         draws = Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")
-        proof.append(Table(tables.of_rows(d["queues"])))
+        proof.append(Table(queues_table(d["queues"])))
         if d["differences"]:
             proof.append(Notes(tuple(item["text"] for item in d["differences"]), loud=True))
         proof.append(draws)
@@ -514,7 +515,9 @@ def family_page(study: FamilyStudy) -> str:
                 "page": f"{name}/design.html",
             }
         )  # fmt: skip
-    answer: list[Block] = [Text(status), Table(tables.of_rows(rows))]
+    paces = ("asked_per_minute", "delivered_per_minute", "at_least_per_minute")
+    above = {name: ColumnHead.of_name(name, "1/min") for name in paces} | {"purity": share_head("purity")}
+    answer: list[Block] = [Text(status), Table(Frame.of_rows(rows).headed(above))]
     answer += [Text("The machine that each part asks for:"), Notes(tuple(machines))]
     answer += [Notes(tuple(lines), loud=True) for lines in (warned, risks) if lines]
     changes, changed = _changes(study), tables.frame(changeover(study))

@@ -14,19 +14,42 @@ from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl import devices, reading, schema
 from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.reading import Setting
-from feederscrew.bowl.record import Bowl, Drive, Machine, Sizing, Track
+from feederscrew.bowl.record import (
+    DRIVE_PHASE_COLUMNS,
+    TRACK_SIZE_COLUMNS,
+    Bowl,
+    Drive,
+    Machine,
+    Sizing,
+    Track,
+)
 from feederscrew.bowl.verified import NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
+from feederscrew.columns import ColumnHead, Frame, heads, of_records, values
 from feederscrew.conveying.answer import answer, throw_number
-from feederscrew.conveying.hop import hop
+from feederscrew.conveying.hop import HOP_COLUMNS, hop
 from feederscrew.designing import acceptance_sheet, texts
 from feederscrew.designing.acceptance_sheet import SheetLine
-from feederscrew.designing.record import Alternative, DesignStudy, Pair, Risk
+from feederscrew.designing.fill_verdicts import DIFFERENCE_COLUMNS
+from feederscrew.designing.findings import HOOKING_COLUMNS, SELDOM_COLUMNS
+from feederscrew.designing.record import (
+    ALTERNATIVE_COLUMNS,
+    ATTEMPT_COLUMNS,
+    DESIGN_PROOF_COLUMNS,
+    DESIGN_RUN_COLUMNS,
+    DESIGN_STATUS_COLUMNS,
+    NEAREST_COLUMNS,
+    NEAREST_TRIED_COLUMNS,
+    QUICK_COLUMNS,
+    Alternative,
+    DesignStudy,
+    Pair,
+    Risk,
+)
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import next_tries, part_facts, style, tables
-from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
@@ -49,11 +72,11 @@ PROOF = (  # what a design has shown: none of it of one that is not proved
     "delivered_per_minute", "delivered_low", "delivered_high", "worst_friction_per_minute", "purity",
     "purity_low", "jams", "jams_per_hour_high",
 )  # fmt: skip
-ATTEMPT_COLUMNS = (
-    "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
-    "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
-)  # fmt: skip
-SELDOM = "orientation parts left held share share_high break_even"
+BOWL_UNITS = {  # of the entry ``bowl`` of the document
+    "phase_deg": "deg", "diameter_mm": "mm", "track_width_mm": "mm", "bank_deg": "deg", "climb_deg": "deg",
+    "frequency_hz": "Hz", "peak_to_peak_mm": "mm", "vibration_angle_deg": "deg",
+    "vibration_angle_at_the_track_deg": "deg", "vibration_angle_at_the_springs_deg": "deg",
+}  # fmt: skip
 LOWER_BOUND, UPPER_BOUND = (f"{side} bound (95 %, one-sided)" for side in ("lower", "upper"))
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
 
@@ -74,9 +97,9 @@ def document(study: DesignStudy) -> dict[str, Any]:
     if is_proved:  # the figures that its queues have shown
         (purity, purity_low), high = study.purity, study.jams_per_hour_high
         rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
-        values = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
-        proof = dict(zip(PROOF, (*values, high if np.isfinite(high) else None), strict=True))
-    request, robust, facts = study.request, study.robust, machine_facts(study)
+        figures = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
+        proof = dict(zip(PROOF, (*figures, high if np.isfinite(high) else None), strict=True))
+    facts = machine_facts(study)
     findings = []  # of two parts how the second lies to the first, in the axes of the file
     for risk in study.risks:
         pair: dict[str, Any] | None = None
@@ -84,7 +107,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
             pair = {"turn": risk.pair.turn.tolist(), "place_mm": (risk.pair.place / MM).tolist()}
         elif risk.pair is not None:
             pair = {"walls_mm": risk.pair.walls / MM}
-        seldom = None if risk.seldom is None else row_of(risk.seldom, SELDOM)
+        seldom = None if risk.seldom is None else values(SELDOM_COLUMNS, risk.seldom)
         findings.append({"kind": risk.kind, "text": risk.text, "pair": pair, "seldom": seldom})
     bowl = None
     if study.bowl is not None and facts is not None:
@@ -95,7 +118,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
             "drive_of_the_springs": None if other is None else other.machine.text,
             "phase_deg": facts["phase_deg"],
             "diameter_mm": 2.0 * track.radius / MM,
-            **row_of(track, "track_width_mm=width bank_deg climb_deg"),
+            **values(TRACK_SIZE_COLUMNS, track),
             "frequency_hz": facts["frequency_hz"],
             "peak_to_peak_mm": facts["stroke_peak_to_peak_mm"],
             "vibration_angle_deg": facts["vibration_angle_at_the_track_deg"],
@@ -104,14 +127,9 @@ def document(study: DesignStudy) -> dict[str, Any]:
         }
     return {
         **part_facts.part(study.part, study.warnings),
-        **row_of(study, "status wanted"),
-        "up": list(request.up),
-        "outcome": study.outcome,
-        **row_of(request, "drive_asked_for=drive target_per_minute"),
+        **values(DESIGN_STATUS_COLUMNS, study),
         **proof,
-        **row_of(study, "static_per_minute=static_rate queue_seconds"),
-        "robust": row_of(robust, "draws held worst=worst_text") | row_of(request, "tolerance_mm"),
-        "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
+        **values(DESIGN_PROOF_COLUMNS, study),
         "alternatives": [_alternative(item) for item in study.alternatives],
         "why": study.why,
         "condition": _condition(study),
@@ -121,19 +139,12 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "quick": _quick(study),
         "left_instead": texts.leaving_texts(study.left_instead),
         "differences": [
-            {
-                **row_of(
-                    item, "fill kind right of=total right_elsewhere of_elsewhere=total_elsewhere chance"
-                ),
-                "leaves_instead": None if item.pose is None else item.pose.text,
-                **row_of(item, "parts=count device"),
-                "text": texts.difference_text(item),
-            }
+            {**values(DIFFERENCE_COLUMNS, item), "text": texts.difference_text(item)}
             for item in study.differences
         ],
         "risks": [item.text for item in study.risks],
         "findings": findings,
-        **row_of(study, "trial_parts answer=source seed=request.seed partial"),
+        **values(DESIGN_RUN_COLUMNS, study),
         "proved_so_far": [] if is_proved else list(study.proved_so_far),
         "machine": facts,
         "bowl": bowl,
@@ -148,10 +159,7 @@ def _quick(study: DesignStudy) -> dict[str, Any] | None:
     """Return what a quick look says of the rate as a dict; None of a design that was to be proved."""
     if study.quick is None:
         return None
-    names = "wanted share fastest_mm_s=fastest at_most_per_minute=rate_at_most"
-    quick = study.quick
-    short = None if quick.short_trial is None else quick.short_trial / PER_MINUTE
-    return {**row_of(quick, names), "short_trial_per_minute": short, "clean": quick.clean}
+    return values(QUICK_COLUMNS, study.quick)
 
 
 def _quick_rows(quick: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -169,7 +177,7 @@ def _condition(study: DesignStudy) -> dict[str, Any] | None:
     if not study.condition or study.hooking is None:
         return None
     return {
-        **row_of(study.hooking, "pulls held opening_mm=opening thinnest_mm=section"),
+        **values(HOOKING_COLUMNS, study.hooking),
         "separate_by": list(texts.SEPARATORS),
         "change_the_part": texts.change_text(study.hooking),
         "text": study.condition,
@@ -177,14 +185,9 @@ def _condition(study: DesignStudy) -> dict[str, Any] | None:
 
 
 def _alternative(option: Alternative) -> dict[str, Any]:
-    value, low, _ = (end and end / PER_MINUTE for end in option.delivered or (None, None, None))
     cameras = [CAMERAS[view] for view in option.sees]
     return {
-        **row_of(option, "class=cost_class status"),
-        "delivered_per_minute": value,
-        "delivered_low": low,
-        **row_of(option, "purity yield=efficiency"),
-        "chain": list(option.chain),
+        **values(ALTERNATIVE_COLUMNS, option),
         "needs": [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[option.cost_class]),  # beside steel
         "why": option.why or None,
     }
@@ -205,8 +208,8 @@ def alternatives(study: DesignStudy) -> Frame:
     for d in map(_alternative, study.alternatives):
         chain, needs = ", ".join(d["chain"]) or "none", ", ".join(d["needs"]) or "nothing more"
         rows.append(d | {"chain": chain, "needs": needs})
-    names = "class status delivered_per_minute delivered_low purity yield chain needs why"
-    return tables.of_rows(rows, names.split())
+    above = heads(ALTERNATIVE_COLUMNS)
+    return Frame.of_rows(rows, (*above, "needs", "why")).headed(above)
 
 
 def short_alternatives(study: DesignStudy) -> Frame:
@@ -221,7 +224,7 @@ def short_alternatives(study: DesignStudy) -> Frame:
     Frame
     """
     chains = ["; ".join(option.chain_words or option.chain) or "none" for option in study.alternatives]
-    return tables.frame(alternatives(study) | {"chain": chains})
+    return alternatives(study).taking({"chain": chains})
 
 
 def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
@@ -260,14 +263,14 @@ def nearest(study: DesignStudy) -> dict[str, Any] | None:
     near = study.nearest
     if near is None:
         return None
-    tried = row_of(near, "short_trials=trials proofs draws draws_held queue_seconds parts_left parts_right")
+    tried = values(NEAREST_TRIED_COLUMNS, near)
     return {
         # without the digits that dividing by a unit has left
         "rate_per_minute": None if near.rate is None else float(f"{near.rate / PER_MINUTE:.12g}"),
         "change": near.change or None,
         "wanted": near.wanted,
         "chain": list(near.chain),
-        **row_of(near, "frequency_hz peak_to_peak_mm throw_number"),
+        **values(NEAREST_COLUMNS, near),
         "tried": tried | {"denied": list(near.denied)},
         "helps": list(near.helps),
         "text": near.text,
@@ -297,14 +300,14 @@ def machine_facts(study: DesignStudy) -> dict[str, Any] | None:
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
         "drive_needs": TWO_MAGNETS if two_axis else needs,
-        **row_of(drive, "phase_deg frequency_hz"),
+        **values(DRIVE_PHASE_COLUMNS, drive),
         "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
         "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
         "vibration_angle_at_the_springs_deg": (
             study.bowl.machine.spring_angle / DEG if study.machine_drawn else None
         ),
         "throw_number": float(throw_number(study.bowl)),
-        **row_of(leap, "hop_height_mm=height hop_flight_mm=flight hop=text"),
+        **values(HOP_COLUMNS, leap),
         "velocity_mm_s": float(velocity) / MM_S if np.isfinite(velocity) else None,
         "cameras": len(sensing),
         "cameras_see": [device.sees for device in sensing],
@@ -355,15 +358,7 @@ def _machine_words(facts: Mapping[str, Any]) -> tuple[str, str, str]:
 
 def attempts(study: DesignStudy) -> Frame:
     """Return the history of the loop: one short trial a row."""
-    names = (
-        "wanted why=step bank_deg velocity_mm_s parts efficiency purity stopped peak_to_peak_mm throw_number",
-        "rate_per_minute cause",
-    )
-    rows = []
-    for place, item in enumerate(study.attempts, start=1):
-        chain, denied = ", ".join(item.chain) or "none", "; ".join(texts.fault_texts(item.faults))
-        rows.append({"trial": place, "chain": chain, "denied": denied, **row_of(item, *names)})
-    return tables.of_rows(rows, ATTEMPT_COLUMNS)
+    return of_records(ATTEMPT_COLUMNS, enumerate(study.attempts, start=1))
 
 
 def short_attempts(study: DesignStudy) -> Frame:
@@ -380,9 +375,7 @@ def short_attempts(study: DesignStudy) -> Frame:
     chains = [", ".join(attempt.chain_brief) or "none" for attempt in study.attempts]
     history = attempts(study).without(["peak_to_peak_mm"])  # the throw number says as much
     named = {"why": "what is new", "denied": "what goes wrong"}
-    return tables.frame(
-        {named.get(name, name): cells for name, cells in (history | {"chain": chains}).items()}
-    )
+    return history.taking({"chain": chains}).with_headings(named)
 
 
 def summary(study: DesignStudy) -> Frame:
@@ -507,7 +500,7 @@ def dimensions(d: Mapping[str, Any]) -> list[tuple[str, str]]:
         Of values that its answer does not give yet; empty where there is no bowl.
     """
     return [
-        (tables.title(name), f"{value:.4g}")
+        (ColumnHead.of_name(name, BOWL_UNITS.get(name, "")).title, f"{value:.4g}")
         for name, value in (d["bowl"] or {}).items()
         if name not in SAID_FIRST and value is not None
     ]
@@ -757,10 +750,17 @@ def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
         low, high = (float(end) if np.isfinite(end) else None for end in line.demand)
         rows.append(
             {
-                **row_of(line, "quantity fill unit computed computed_low computed_high"),
+                "quantity": line.quantity,
+                "fill": line.fill,
+                "unit": line.unit,
+                "computed": line.computed,
+                "computed_low": line.computed_low,
+                "computed_high": line.computed_high,
                 "low": low,
                 "high": high,
-                **row_of(line, "measured sample agrees"),
+                "measured": line.measured,
+                "sample": line.sample,
+                "agrees": line.agrees,
                 "verdict": verdict.value,
                 "why": why or None,
             }

@@ -24,7 +24,7 @@ from feederscrew.mechanics.floor_balance import (
 )
 from feederscrew.mechanics.track_balance import TrackMotion
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
+from feederscrew.output import style
 from feederscrew.resting.posture import Posture
 from feederscrew.studies.floor import FLOOR_COLUMNS, FloorStudy
 from feederscrew.studies.track import TrackStudy
@@ -53,16 +53,16 @@ OUTSIDE = "line of action of N outside the contact"  # at that instant; over the
 STATE_WORDS = {"tip": "line of action outside the contact", "stick": "held by friction"}  # else as it is
 SAMPLE_STEP = 5  # of the samples of a cycle, in tables and documents
 FLOOR_LABELS = {  # what people read
-    "normal_force_N": "normal force N",
-    "alignment_acceleration_rad_s2": "alignment acceleration theta''",
-    "stable_heading_deg": "stable heading",
+    "normal_force_N": "normal force N [N]",
+    "alignment_acceleration_rad_s2": "alignment acceleration theta'' [rad/s2]",
+    "stable_heading_deg": "stable heading [deg]",
     "limiting_friction": "limiting friction",
-    "acceleration_y_m_s2": "acceleration across the heading, V'_y",
-    "acceleration_z_m_s2": "acceleration along the heading, V'_z",
-    "friction_N": "friction",
-    "greatest_friction_N": "greatest static friction, mu N",
-    "normal_line_offset_mm": "line of action of N, d along the heading",
-    "normal_line_offset_y_mm": "line of action of N, across the heading",
+    "acceleration_y_m_s2": "acceleration across the heading, V'_y [m/s2]",
+    "acceleration_z_m_s2": "acceleration along the heading, V'_z [m/s2]",
+    "friction_N": "friction [N]",
+    "greatest_friction_N": "greatest static friction, mu N [N]",
+    "normal_line_offset_mm": "line of action of N, d along the heading [mm]",
+    "normal_line_offset_y_mm": "line of action of N, across the heading [mm]",
     "tips": OUTSIDE,
 }
 
@@ -234,8 +234,7 @@ def label_values(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict
     dict
     """
     now = document["instant"]
-    units = {name: tables.heading(name)[1] for name in labels}
-    rows = {f"{text} {units[name]}".rstrip(): now[name] for name, text in labels.items() if name in now}
+    rows = {text: now[name] for name, text in labels.items() if name in now}
     states = (("state at the upper reversal", now["state"]), ("regime over the cycle", document["regime"]))
     return rows | {name: STATE_WORDS.get(state, state) for name, state in states}
 

@@ -4,10 +4,15 @@ from typing import Any, TypeGuard
 
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
-from feederscrew.bowl.verified import Verified, VoidTrial
-from feederscrew.output.tables import row_of
+from feederscrew.bowl.verified import (
+    VERIFIED_COLUMNS,
+    VERIFIED_FIGURE_COLUMNS,
+    VERIFIED_RATE_COLUMNS,
+    Verified,
+    VoidTrial,
+)
+from feederscrew.columns import values
 from feederscrew.part.record import Part
-from feederscrew.units import PER_MINUTE
 
 FileTrial = Verified | VoidTrial | None  # that a bowl file tells of
 
@@ -94,12 +99,11 @@ def with_trial(
 
 
 def _rates(trial: Verified) -> dict[str, float]:
-    ends = {"": trial.delivered, "_low": trial.low, "_high": trial.high}
-    return {f"parts_per_minute{end}": rate / PER_MINUTE for end, rate in ends.items()}
+    return values(VERIFIED_RATE_COLUMNS, trial)
 
 
 def block(trial: Verified) -> dict[str, Any]:
     """Return what a trial has shown as a dict."""
-    figures = row_of(trial, "purity jams queue_seconds draws draws_held=held")
+    figures = values(VERIFIED_FIGURE_COLUMNS, trial)
     condition = {"condition": trial.condition} if trial.condition else {}
-    return row_of(trial, "status wanted up") | condition | _rates(trial) | figures
+    return values(VERIFIED_COLUMNS, trial) | condition | _rates(trial) | figures

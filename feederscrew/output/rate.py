@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
-from feederscrew.columns import Frame, quantities, values
+from feederscrew.columns import ColumnHead, Frame, quantities, values
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, tables
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
@@ -240,7 +240,7 @@ def tune_printed(study: TuneStudy, format: str) -> Frame:
         return frame
     target = f"{study.target / PER_MINUTE:.6g}/min {TARGET_FRICTION[study.worst].replace(' the ', ' ')}"
     table: dict[str, Any] = {target: [], "per min": frame["parts_per_minute"], "mu +-20 %": []}
-    table |= {"velocity_mm_s": frame["velocity_mm_s"], "impact_mm_s": frame["hardest_impact_mm_s"]}
+    table |= {"velocity": frame["velocity_mm_s"], "impact": frame["hardest_impact_mm_s"]}
     table["regime"] = []
     for row in frame.rows():
         ends = (row["parts_per_minute_low"], row["parts_per_minute_high"])
@@ -251,7 +251,7 @@ def tune_printed(study: TuneStudy, format: str) -> Frame:
     for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop")):
         texts = ("-" if math.isnan(value) else f"{value:.2f}" for value in frame[f"margin_{name}"])
         table[f"to {short}"] = [text.rjust(len(f"to {short}")) for text in texts]  # right under its heading
-    return Frame.of(table)
+    return Frame.of(table, {name: ColumnHead(name, "mm/s") for name in ("velocity", "impact")})
 
 
 def tune_remarks(study: TuneStudy) -> list[str]:

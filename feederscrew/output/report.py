@@ -62,7 +62,6 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.shading import short
-from feederscrew.output.tables import row_of
 from feederscrew.output.trial import rides
 from feederscrew.output.trial import tables as trial_tables
 from feederscrew.part.record import Part
@@ -515,13 +514,21 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
 
 def bowl_values(bowl: Bowl) -> dict[str, float]:
     """Return a bowl as the script computes with it, in SI units: one setting, no arrays."""
-    values = row_of(
-        bowl,
-        "amplitude=drive.amplitude frequency=drive.frequency angle=drive.vibration_angle phase=drive.phase",
-        "climb=track.climb bank=track.bank static=friction.static kinetic=friction.kinetic",
-    )
-    values |= dict(zip(("staticBack", "kineticBack"), bowl.friction.backward))
-    values |= row_of(bowl, "wall=friction.wall restitution gravity")
+    drive, track, friction = bowl.drive, bowl.track, bowl.friction
+    values = {
+        "amplitude": drive.amplitude,
+        "frequency": drive.frequency,
+        "angle": drive.vibration_angle,
+        "phase": drive.phase,
+        "climb": track.climb,
+        "bank": track.bank,
+        "static": friction.static,
+        "kinetic": friction.kinetic,
+        **dict(zip(("staticBack", "kineticBack"), friction.backward)),
+        "wall": friction.wall,
+        "restitution": bowl.restitution,
+        "gravity": bowl.gravity,
+    }
     return {name: float(value) for name, value in values.items()}
 
 
@@ -670,13 +677,12 @@ def bowl(case: ReportStudy) -> Chapter | None:
     except FeederError as fault:
         views = [Notes(tuple(f"the bowl as a solid: {line}" for line in fault.lines))]
     # velocities at the strokes of a bowl that empties, which are not that of the bowl file
-    emptying = machine.emptying(sheet)
-    renamed = {"velocity_mm_s": "velocity_as_it_empties_mm_s"}
+    emptying = sheet.emptying_table().with_headings({"velocity_mm_s": "velocity as it empties"})
     frames = (
         machine.summary(sheet),
         machine.leaf_sets(sheet.changes),
         machine.leaf_sets(sheet.sets),
-        Frame.of({renamed.get(name, name): column for name, column in emptying.items()}),
+        emptying,
     )
     if sheet.order is None:
         lead = "The springs, the tuning and the drift of the machine of the bowl file."

@@ -5,11 +5,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from feederscrew.columns import values
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import row_of
 from feederscrew.solidbowl import segments
-from feederscrew.units import DEG, MM
+from feederscrew.solidbowl.closed_body import SOLID_COLUMNS
+from feederscrew.solidbowl.segments import SEGMENTS_COLUMNS
+from feederscrew.units import MM
 
 if TYPE_CHECKING:
     from feederscrew.bowl.verified import Verified
@@ -76,50 +78,17 @@ def offers(
 
 def document(solid: "BowlSolid") -> dict[str, Any]:
     """Return what a BowlSolid measures and weighs, and of its STEP file what it was when opened again."""
-    plan, extent = solid.plan, solid.vertices.max(axis=0) - solid.vertices.min(axis=0)
-    measures = {
-        "diameter_mm": 2.0 * plan.path.radius / MM,
-        "solid_volume_mm3": solid.volume / MM**3,
-        **row_of(solid, "solid_mass_kg=mass solid_inertia_kg_m2=inertia"),
-        "solid_centre_of_mass_mm": list(solid.centre / MM),
-        "balance_weight_kg": solid.balance[0],
-        "balance_angle_deg": solid.balance[1] / DEG,
-        "balance_radius_mm": solid.balanced_at / MM,
-        "solid_extent_mm": list(extent / MM),
-        "solid_facets": len(solid.faces),
-        "material": plan.material.name,
-        "shape": "cylinder" if plan.stairs is None else plan.stairs.shape,
-        "falls_to": solid.falls,
-        "hand": "left" if plan.left else "right",
-        **row_of(plan.material, "wall_mm floor_mm track_plate_mm=plate"),
-        **row_of(
-            plan,
-            "wall_height_mm=top dome_rise_mm=dome solid_turns=turns outlet_height_mm outlet_angle_deg=turned",
-            "bolts bolt_hole_mm=bolt bolt_circle_mm chord_mm",
-        ),
-        "separate_parts": [name for name, _, _ in solid.gates],
-        "overhangs_mm2": {name: area / MM**2 for name, area in segments.overhangs(solid).items()},
-    }
-    if (cut := solid.segments) is not None:
-        measures |= {
-            "segments": [
-                {"name": p.name, "size_mm": [x / MM for x in p.size], "volume_mm3": p.volume / MM**3}
-                for p in cut.pieces
-            ],
-            **row_of(cut, "dowels dowel_mm dowel_length_mm"),
-            "screws": len(cut.screws),
-            "screw": segments.SCREW_NAME if len(cut.screws) else None,
-            "seam_ends": cut.ends[1],
-            "seam_ends_without_screw": cut.ends[0],
-            "seams_deg": cut.turned / DEG,
-        }
+    overhangs = {name: area / MM**2 for name, area in segments.overhangs(solid).items()}
+    measures = values(SOLID_COLUMNS, solid) | {"overhangs_mm2": overhangs}
+    if solid.segments is not None:
+        measures |= values(SEGMENTS_COLUMNS, solid.segments)
     if solid.step is not None:
         not_exact = [
             "what runs along the track is ruled between cubic splines through its helices every 0.1 rad",
             "the fillet below the track is six ruled strips",
             "slanted edges of cuts are splines",
         ]
-        if plan.stairs is not None:
+        if solid.plan.stairs is not None:
             ruled = "it is ruled between splines through 16 places a quarter turn"
             not_exact.append(f"the wall is no surface of revolution: {ruled}")
         measures["step"] = {

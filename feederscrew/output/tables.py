@@ -7,7 +7,6 @@ import math
 import re
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,17 +22,6 @@ from feederscrew.mechanics.limits import Regime
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-COLUMN_UNITS = {  # the end of a column's name, the longest first, and how a heading writes it
-    "_n_per_mm": "N/mm", "_per_minute": "1/min", "_percent": "%", "_kg_m2": "kg m2", "_mpa": "MPa",
-    "_kg": "kg", "_hz": "Hz", "_g_mm2": "g mm2", "_kg_m3": "kg/m3", "_g_cm3": "g/cm3", "_rad_s2": "rad/s2",
-    "_m_s2": "m/s2", "_mm_s": "mm/s", "_mm4": "mm4", "_mm3": "mm3", "_mm2": "mm2", "_mm": "mm", "_um": "um",
-    "_sr": "sr", "_deg": "deg", "_rad": "rad", "_Hz": "Hz", "_mJ": "mJ", "_uJ": "uJ", "_N": "N", "_g": "g",
-    "_s": "s",
-}  # fmt: skip
-INTERVAL = ".."  # ends the name of a value with an interval
-UNIT_SIZES = {unit: size for units_of in units.UNITS_BY_DIMENSION.values() for unit, size in units_of.items()}
-SHARES = ("share", "efficiency", "purity", "yield")  # last words of columns of shares ...
-PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
 TABLE_DIGITS = 4  # significant, in a table for people
 GAP, LEAST = "  ", 12  # between columns; letters that a column always has
 SLENDER = 20  # letters of a column of texts that is never made narrower so that the others fit beside it
@@ -52,52 +40,6 @@ HEADING_ZERO = (
 )
 
 Cells = dict[str, list[str]]  # of one width by the name of the column
-
-
-def row_of(record: Any, *names: str) -> dict[str, Any]:
-    """Return fields of a record by names that end in a unit, in which its SI values are given.
-
-    'leaf_width_mm' is the field ``leaf_width`` in millimetres; 'length_mm=pitch' is another field, and
-    'climb_deg=track.climb' that of a record in it. 'x_mm/y_mm=places' are the columns of an array (N, 2),
-    'rate..=parts' is a record with an interval: 'rate', 'rate_low', 'rate_high'. Each text may hold several,
-    with blanks between. None stays None, arrays stay arrays.
-    """
-    values: dict[str, Any] = {}
-    for entry in " ".join(names).split():
-        name, _, field = entry.partition("=")
-        value = attrgetter(field or name.removesuffix(_unit_ending(name)))(record)
-        if name.endswith(INTERVAL):
-            name = name.removesuffix(INTERVAL)
-            for end in ("value", "low", "high"):
-                values[name if end == "value" else f"{name}_{end}"] = _in_unit(name, getattr(value, end))
-        elif "/" in name:
-            values |= {part: _in_unit(part, column) for part, column in zip(name.split("/"), value.T)}
-        else:
-            values[name] = _in_unit(name, value)
-    return values
-
-
-def _in_unit(name: str, value: Any) -> Any:
-    """A value [SI] in the unit that ends its name."""
-    unit = COLUMN_UNITS.get(_unit_ending(name), "")
-    size = UNIT_SIZES.get(unit, 1.0)
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value[()]  # a number
-    if value is None or (size == 1.0 and unit != "%"):
-        return value
-    return 100.0 * value if unit == "%" else value / size
-
-
-def table_of(records: Iterable[Any], *names: str) -> Frame:
-    """Return a table with a row for each record, of fields as ``row_of`` has them."""
-    rows = [row_of(record, *names) for record in records]
-    columns = [entry.partition("=")[0] for entry in " ".join(names).split()]
-    return Frame.of({name: [row[name] for row in rows] for name in columns})
-
-
-def _unit_ending(name: str) -> str:
-    """The end of a column's name that is its unit; '' where it has none."""
-    return next((ending for ending in COLUMN_UNITS if name.endswith(ending) and name != ending), "")
 
 
 frame = Frame.of
@@ -354,47 +296,9 @@ def number(value: float, digits: int = TABLE_DIGITS, nothing: str = "-") -> str:
     return f"{value:.{max(0, digits - 1 - exponent)}f}"
 
 
-def _is_share(name: str) -> bool:
-    if name.startswith("p_"):
-        return name != "p_value"
-    whole = name.removesuffix("_low").removesuffix("_high").removesuffix("_static")
-    return name in PASSED or whole.rpartition("_")[2] in SHARES
-
-
 def head_of(frame: Frame, name: str) -> ColumnHead:
     """Return what people read above a column of a table: what is declared of it, else its name."""
-    if name in frame.heads:
-        return frame.heads[name]
-    numeric = is_numeric(frame[name])
-    words, unit = heading(name, numeric)
-    shown = 100.0 if numeric and _is_share(name) else 1.0
-    return ColumnHead(words, unit.strip("[]"), shown, is_mixed=name == "value")
-
-
-def heading(name: str, numeric: bool = True) -> tuple[str, str]:
-    """Return a column's name and unit for people: ('height', '[mm]') of 'height_mm'; no unit is ''.
-
-    A share is in percent, ('PMI', '[%]') of 'p_pmi', unless it is a word and not ``numeric``. The ends of an
-    interval, which follow their value, are ('low', '[%]') and ('high', '[%]').
-    """
-    if not _is_share(name):
-        ending = _unit_ending(name)
-        unit = f"[{COLUMN_UNITS[ending]}]" if ending else ""
-        return name.removesuffix(ending).replace("_", " "), unit
-    if not name.startswith("p_"):
-        return name.replace("_", " "), "[%]" if numeric else ""
-    rule = name.removeprefix("p_").replace("_", " ")
-    if rule.endswith((" low", " high")):
-        return rule.rsplit(" ", 1)[1], "[%]"
-    from feederscrew.resting.rules import registry
-
-    capitals = rule in registry.RULE_OF and registry.RULE_OF[rule].label == rule.upper()
-    return rule.upper() if capitals else rule, "[%]"
-
-
-def title(name: str) -> str:
-    """Return a column's name and unit in one text: 'height [mm]'."""
-    return " ".join(heading(name)).strip()
+    return frame.heads.get(name, ColumnHead(name.replace("_", " ")))
 
 
 def row_for_people(column: DeclaredColumn[Any], document: Mapping[str, Any]) -> tuple[str, str]:

@@ -8,18 +8,22 @@ import numpy as np
 from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
 from feederscrew.bowl.reading import Setting
+from feederscrew.columns import ColumnHead, Frame, heads, share_head, values
 from feederscrew.designing import texts
 from feederscrew.heavy import heavy
-from feederscrew.output import marking, part_facts, tables
+from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.rate import PassagesStudy
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import CostClass
-from feederscrew.tooling.isolating.chain import LEAST_SHARE, Design, in_mm
-from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
+from feederscrew.tooling.orientations import (
+    ORIENTATION_NAME_COLUMNS,
+    ORIENTATION_SIZE_COLUMNS,
+    Orientation,
+)
 from feederscrew.tooling.tooled_track import TooledTrack, lay_out
 from feederscrew.units import MM, counted
 
@@ -35,6 +39,8 @@ LEAVING = (  # efficiency and purity, of the trial where there is one
     "efficiency", "efficiency_low", "efficiency_high", "purity", "purity_low", "efficiency_static",
     "purity_static",
 )  # fmt: skip
+ROW_HEADS = heads((*ORIENTATION_NAME_COLUMNS, *ORIENTATION_SIZE_COLUMNS)) | heads(DESIGN_COLUMNS)
+ROW_HEADS |= {name: share_head(name) for name in ("share", *LEAVING)}
 HIDDEN = ("reasons", *(name for name in LEAVING if "_" in name))  # the sentences of the trial have them
 TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
@@ -52,7 +58,7 @@ QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 def document(study: ToolingStudy) -> dict[str, Any]:
     """Return a ToolingStudy as the JSON document."""
-    values = {
+    entries = {
         **part_facts.part(study.part, (*study.aspects.warnings, *study.of_size)),
         "rule": study.rule,
         "margin_asked_mm": study.margin / MM,
@@ -60,14 +66,14 @@ def document(study: ToolingStudy) -> dict[str, Any]:
         "orientations": _rows(study),
     }
     if study.design is None:
-        return values
+        return entries
     (design, wanted_row), chain = _asked_for(study), []
     orientation, cuts = study.orientations[wanted_row], design.cuts
     for cut in cuts:
         entry = {
             "device": cut.device.kind,
             **cut.device.document_values(),
-            **row_of(cut, "margin_pass_mm margin_reject_mm"),
+            **values(CUT_COLUMNS, cut),
             "smallest": cut.smallest.document_values(),
             "largest": cut.largest.document_values(),
             "returns": [name for name in cut.returns if name not in cut.stops],
@@ -79,8 +85,8 @@ def document(study: ToolingStudy) -> dict[str, Any]:
         if cut.device.turns:  # what it does, and how sure that is
             entry["turns"] = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
             entry["basis"] = QUASI_STATIC
-    return values | {
-        **row_of(orientation, "aspect heading_deg"),
+    return entries | {
+        **values(ORIENTATION_NAME_COLUMNS, orientation),
         "leaves_as": study.leaves_as,
         "isolated": study.isolates(wanted_row),
         "status": status(study, wanted_row),
@@ -110,12 +116,9 @@ def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
     for place, (item, share) in enumerate(zip(study.orientations, study.shares)):
         design = study.designs[place]
         row = {
-            **row_of(item, "aspect heading_deg"),
+            **values(ORIENTATION_NAME_COLUMNS, item),
             "share": float(share),
-            **row_of(item, "length_mm width_mm height_mm wall_distance_mm=distance"),
-            "balcony_mm": float(item.balcony / MM) if np.isfinite(item.balcony) else None,
-            **row_of(item, "canyon_mm gap_mm"),
-            "mirror": item.mirror or None,
+            **values(ORIENTATION_SIZE_COLUMNS, item),
         }
         names = ("isolated", "status", "class", "devices", "track_width_mm", "margin_mm", "steady")
         row |= dict.fromkeys((*names, *LEAVING, "left_over", "reasons"))
@@ -125,7 +128,7 @@ def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
                 "status": status(study, place),
                 "class": study.class_of(place),
                 "devices": [cut.device.kind for cut in design.cuts],
-                **row_of(design, "track_width_mm=width margin_mm"),
+                **values(DESIGN_COLUMNS, design),
                 "steady": design.steady if design.cuts else None,
                 **efficiency_and_purity(design, study.trial_of(place)),
                 "left_over": list(design.left_over),
@@ -189,10 +192,10 @@ def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> dict[s
     """
     if trial is not None:
         pure = (None, None) if np.isnan(trial.purity) else (trial.purity, trial.purity_ends[0])
-        values = (trial.efficiency, *trial.efficiency_ends, *pure)
+        leaving = (trial.efficiency, *trial.efficiency_ends, *pure)
     else:
-        values = (design.least, design.least, design.efficiency, design.purity, design.purity)
-    return dict(zip(LEAVING, (*values, design.efficiency, design.purity), strict=True))
+        leaving = (design.least, design.least, design.efficiency, design.purity, design.purity)
+    return dict(zip(LEAVING, (*leaving, design.efficiency, design.purity), strict=True))
 
 
 def status(study: ToolingStudy, place: int) -> str:
@@ -239,7 +242,7 @@ def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
             row["devices"] = [cut.device.kind for cut in design.cuts]
         for name, between in (("devices", ", "), ("left_over", " "), ("reasons", "; ")):
             row[name] = between.join(row[name] or ())
-    return tables.of_rows(rows)
+    return Frame.of_rows(rows).headed(ROW_HEADS)
 
 
 def summary(study: ToolingStudy, format: str = "csv") -> Frame:
@@ -282,7 +285,8 @@ def summary(study: ToolingStudy, format: str = "csv") -> Frame:
         value = cut.device.value_words if people else cut.device.short
         ends = cut.margin_pass / MM, cut.margin_reject / MM, cut.smallest.text, cut.largest.text
         rows.append((device, value, *ends, words))
-    return tables.of_cells(("device", "value", *margins, "smallest_cut", "largest_cut", "returns"), rows)
+    names = ("device", "value", *margins, "smallest_cut", "largest_cut", "returns")
+    return Frame.of_cells(names, rows).headed({name: ColumnHead.of_name(name, "mm") for name in margins})
 
 
 def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
@@ -389,11 +393,13 @@ def passages(study: PassagesStudy) -> Frame:
         A row for each orientation.
     """
     names = [orientation.name for orientation in study.orientations]
-    table = {"orientation": names, "p_of all parts": study.shares}
+    table: dict[str, Any] = {"orientation": names, "of all parts": study.shares}
+    above = {"of all parts": share_head("of all parts")}
     for place, device in enumerate(study.devices):
         verdicts = [ridden[place].verdict if place < len(ridden) else None for ridden in study.passages]
         margins = [verdict.margin / MM if verdict and verdict.sure else None for verdict in verdicts]
-        table[f"{device.kind} {place + 1}_mm"] = margins
+        table[name := f"{device.kind} {place + 1}_mm"] = margins
+        above[name] = ColumnHead.of_name(name, "mm")
     outcomes = table["outcome"] = []
     for orientation, ridden in zip(study.orientations, study.passages):
         if ridden and (last := ridden[-1]).verdict.passes <= 0.0:
@@ -401,7 +407,7 @@ def passages(study: PassagesStudy) -> Frame:
             outcomes.append(f"{last.fate} by the {last.device.kind}{doubt}")
         else:
             outcomes.append(track_sections.passage_fate(orientation, ridden))
-    return tables.frame(table)
+    return Frame.of(table, above)
 
 
 def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from feederscrew import bowl as bowls
 from feederscrew.arrays import Bools, Floats, Vector
 from feederscrew.bowl.record import Track
-from feederscrew.columns import Frame, values
+from feederscrew.columns import Frame, heads, values
 from feederscrew.geometry.grids import Grid
 from feederscrew.geometry.polygons import outline, turned
 from feederscrew.heavy import heavy
@@ -33,16 +33,16 @@ shading = heavy("feederscrew.output.shading")
 
 CONTACT_NAMES = ("floor", "wall_1", "wall_2")
 TRACK_LABELS = {
-    "normal_force_N": "normal force N",
-    "wall_1_N": "wall reaction R1, trailing contact",
-    "wall_2_N": "wall reaction R2, leading contact",
-    "radial_friction_N": "radial friction R3, away from the wall",
-    "traction_N": "traction R4, against motion ahead",
-    "normal_line_offset_mm": "line of action of N, d ahead",
-    "normal_line_offset_y_mm": "line of action of N, away from the wall",
-    "acceleration_x_m_s2": "acceleration along the track, V'_X",
-    "acceleration_y_m_s2": "acceleration away from the wall",
-    "turning_rad_s2": "turning off the wall",
+    "normal_force_N": "normal force N [N]",
+    "wall_1_N": "wall reaction R1, trailing contact [N]",
+    "wall_2_N": "wall reaction R2, leading contact [N]",
+    "radial_friction_N": "radial friction R3, away from the wall [N]",
+    "traction_N": "traction R4, against motion ahead [N]",
+    "normal_line_offset_mm": "line of action of N, d ahead [mm]",
+    "normal_line_offset_y_mm": "line of action of N, away from the wall [mm]",
+    "acceleration_x_m_s2": "acceleration along the track, V'_X [m/s2]",
+    "acceleration_y_m_s2": "acceleration away from the wall [m/s2]",
+    "turning_rad_s2": "turning off the wall [rad/s2]",
     "tips": floor.OUTSIDE,
 }
 IN_MM = {
@@ -262,7 +262,9 @@ def cells(grid: Grid) -> Frame:
     Frame
     """
     columns = grid.columns().items()
-    return Frame.of({IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns})
+    cells = {IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns}
+    axes = {axis.column: axis.head for axis in (grid.first, grid.second)}
+    return Frame.of(cells, heads(TRACK_CYCLE_COLUMNS) | axes)
 
 
 def map_remarks(grid: Grid) -> list[str]:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew import check
 from feederscrew.arrays import Floats
+from feederscrew.columns import Column
 from feederscrew.heavy import heavy
 from feederscrew.resting.profiles import AspectProfile
 
@@ -39,6 +40,17 @@ class Comparison:
     deviation: float
     total_variation: float
     chi_square: ChiSquare
+
+
+PAIR_COLUMNS: tuple[Column[Comparison], ...] = (  # the test is empty where neither profile holds counts
+    Column("first", lambda pair: pair.first.name),
+    Column("second", lambda pair: pair.second.name),
+    Column("deviation", lambda pair: pair.deviation),
+    Column("total_variation", lambda pair: pair.total_variation),
+    Column("chi_square", lambda pair: pair.chi_square.statistic),
+    Column("degrees_of_freedom", lambda pair: pair.chi_square.degrees_of_freedom or None),
+    Column("p_value", lambda pair: pair.chi_square.p_value),
+)
 
 
 def deviation(first: ArrayLike, second: ArrayLike) -> float:

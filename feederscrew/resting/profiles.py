@@ -14,6 +14,7 @@ import numpy as np
 
 from feederscrew import check, documents
 from feederscrew.arrays import Floats
+from feederscrew.columns import Column
 from feederscrew.documents import hint
 from feederscrew.errors import Faults, FeederError
 from feederscrew.part.record import Part
@@ -237,6 +238,14 @@ class AspectProfile:
     def has_counts(self) -> bool:
         """Return whether the values are counts, which a test needs."""
         return self.kind == "counts"
+
+
+PROFILE_COLUMNS: tuple[Column[AspectProfile], ...] = (
+    Column("name", lambda profile: profile.name),
+    Column("kind", lambda profile: profile.kind),
+    Column("values", lambda profile: profile.values),
+    Column("fractions", lambda profile: profile.fractions),
+)
 
 
 @dataclass(frozen=True, eq=False)

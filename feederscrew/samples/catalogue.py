@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from feederscrew.bowl.documentation import template
+from feederscrew.columns import Column
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.samples import families, solids
 
@@ -64,6 +65,13 @@ class Sample:
     call: str  # what to type behind `feeder sample`
     file: str  # that it writes
     meaning: str
+
+
+SAMPLE_COLUMNS: tuple[Column[Sample], ...] = (
+    Column("call", lambda sample: sample.call),
+    Column("file", lambda sample: sample.file),
+    Column("meaning", lambda sample: sample.meaning),
+)
 
 
 def samples() -> list[Sample]:

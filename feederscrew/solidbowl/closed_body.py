@@ -10,6 +10,7 @@ import shapely
 
 from feederscrew.arrays import Floats, Points, Triangles, Vector
 from feederscrew.bowl.record import Unbalance
+from feederscrew.columns import Column
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, track
@@ -107,6 +108,37 @@ class BowlSolid:
         vertices, faces = self.segments.joined
         volume = float(mass.integrate_solid(vertices[faces]).volume)
         return replace(self, vertices=vertices, faces=faces, volume=volume)
+
+
+SOLID_COLUMNS: tuple[Column[BowlSolid], ...] = (
+    Column("diameter_mm", lambda solid: 2.0 * solid.plan.path.radius, "mm"),
+    Column("solid_volume_mm3", lambda solid: solid.volume, "mm3"),
+    Column("solid_mass_kg", lambda solid: solid.mass, "kg"),
+    Column("solid_inertia_kg_m2", lambda solid: solid.inertia, "kg m2"),
+    Column("solid_centre_of_mass_mm", lambda solid: solid.centre, "mm"),
+    Column("balance_weight_kg", lambda solid: solid.balance[0], "kg"),
+    Column("balance_angle_deg", lambda solid: solid.balance[1], "deg"),
+    Column("balance_radius_mm", lambda solid: solid.balanced_at, "mm"),
+    Column("solid_extent_mm", lambda solid: np.ptp(solid.vertices, axis=0), "mm"),
+    Column("solid_facets", lambda solid: len(solid.faces)),
+    Column("material", lambda solid: solid.plan.material.name),
+    Column("shape", lambda solid: "cylinder" if solid.plan.stairs is None else solid.plan.stairs.shape),
+    Column("falls_to", lambda solid: solid.falls),
+    Column("hand", lambda solid: "left" if solid.plan.left else "right"),
+    Column("wall_mm", lambda solid: solid.plan.material.wall, "mm"),
+    Column("floor_mm", lambda solid: solid.plan.material.floor, "mm"),
+    Column("track_plate_mm", lambda solid: solid.plan.material.plate, "mm"),
+    Column("wall_height_mm", lambda solid: solid.plan.top, "mm"),
+    Column("dome_rise_mm", lambda solid: solid.plan.dome, "mm"),
+    Column("solid_turns", lambda solid: solid.plan.turns),
+    Column("outlet_height_mm", lambda solid: solid.plan.outlet_height, "mm"),
+    Column("outlet_angle_deg", lambda solid: solid.plan.turned, "deg"),
+    Column("bolts", lambda solid: solid.plan.bolts),
+    Column("bolt_hole_mm", lambda solid: solid.plan.bolt, "mm"),
+    Column("bolt_circle_mm", lambda solid: solid.plan.bolt_circle, "mm"),
+    Column("chord_mm", lambda solid: solid.plan.chord, "mm"),
+    Column("separate_parts", lambda solid: [name for name, _, _ in solid.gates]),
+)
 
 
 def body(plan: BowlPlan) -> BowlSolid:

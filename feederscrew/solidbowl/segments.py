@@ -10,6 +10,7 @@ import shapely
 
 from feederscrew import units
 from feederscrew.arrays import Floats, Points, Triangles, Vector
+from feederscrew.columns import Column, values
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.facets import Body
@@ -193,6 +194,13 @@ class Segment:
     volume: float  # [m3]
 
 
+PIECE_COLUMNS: tuple[Column[Segment], ...] = (
+    Column("name", lambda piece: piece.name),
+    Column("size_mm", lambda piece: np.array(piece.size), "mm"),
+    Column("volume_mm3", lambda piece: piece.volume, "mm3"),
+)
+
+
 @dataclass(frozen=True, eq=False)
 class Segments:
     """A bowl in pieces."""
@@ -224,6 +232,19 @@ class Segments:
     def screws(self) -> Points:
         """The middle (N, 3) [m] of each screw, in the bowl's axes."""
         return self.lugs[:, 0]
+
+
+SEGMENTS_COLUMNS: tuple[Column[Segments], ...] = (
+    Column("segments", lambda cut: [values(PIECE_COLUMNS, piece) for piece in cut.pieces]),
+    Column("dowels", lambda cut: cut.dowels),
+    Column("dowel_mm", lambda cut: cut.dowel, "mm"),
+    Column("dowel_length_mm", lambda cut: cut.dowel_length, "mm"),
+    Column("screws", lambda cut: len(cut.screws)),
+    Column("screw", lambda cut: SCREW_NAME if len(cut.screws) else None),
+    Column("seam_ends", lambda cut: cut.ends[1]),
+    Column("seam_ends_without_screw", lambda cut: cut.ends[0]),
+    Column("seams_deg", lambda cut: cut.turned, "deg"),
+)
 
 
 def bed(text: str) -> tuple[float, ...]:

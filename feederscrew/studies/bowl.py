@@ -12,7 +12,9 @@ from feederscrew import check, units
 from feederscrew.arrays import Floats
 from feederscrew.bowl.reading import Setting, has_machine
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
+from feederscrew.columns import Column, Frame, of_arrays, values
 from feederscrew.conveying import answer
+from feederscrew.conveying.hop import hop
 from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sizing, sizing
 from feederscrew.machine import springs as leaves
@@ -100,6 +102,15 @@ class MachineSheet(ReadableRecord):
     order: Order | None
     solid: BowlSolid | None = None  # where it was asked for
 
+    def angles_table(self) -> Frame:
+        """Return the direction of the motion over the radius: ``bowl_angles.csv``."""
+        return of_arrays(ANGLE_COLUMNS, self)
+
+    def emptying_table(self) -> Frame:
+        """Return the bowl from full to empty, with rates where parts are counted: ``bowl_emptying.csv``."""
+        rates = () if self.order is None else EMPTYING_RATE_COLUMNS
+        return of_arrays([*EMPTYING_COLUMNS, *rates], self)
+
     @property
     def remarks(self) -> tuple[str, ...]:
         """Return what must not be overlooked, a tuple of str."""
@@ -138,6 +149,147 @@ class MachineSheet(ReadableRecord):
     def rates(self, velocities: Floats | float) -> Floats:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
         return np.nan_to_num(np.maximum(velocities, 0.0)) * cast(Order, self.order).flow.parts
+
+
+def _drive_kind(sheet: MachineSheet) -> str:
+    """Return the kind of the drive as documents name it."""
+    is_two_axis = drive_sizing.is_two_axis(sheet.bowl.drive)
+    return drive_sizing.TWO_AXIS if is_two_axis else drive_sizing.LEAF_SPRING
+
+
+DRIVE_COLUMNS: tuple[Column[MachineSheet], ...] = (  # the drive, at the head of the document
+    Column("drive_kind", lambda sheet: _drive_kind(sheet)),
+    Column("phase_deg", lambda sheet: sheet.bowl.drive.phase, "deg"),
+)
+MISMATCH_COLUMNS: tuple[Column[MachineSheet], ...] = (
+    Column("springs_make_this_drive", lambda sheet: sheet.mismatch is None),
+    Column(
+        "drive_asked_for",
+        lambda sheet: sheet.mismatch and values(drive_sizing.DRIVE_FIGURE_COLUMNS, sheet.mismatch.wanted),
+    ),
+    Column(
+        "drive_of_the_springs",
+        lambda sheet: sheet.mismatch and values(drive_sizing.DRIVE_FIGURE_COLUMNS, sheet.mismatch.machine),
+    ),
+)
+MACHINE_COLUMNS: tuple[Column[MachineSheet], ...] = (  # the machine and what it does
+    Column("turns", lambda sheet: sheet.turns),
+    Column("bowl_depth_mm", lambda sheet: sheet.depth, "mm"),
+    Column("leaf_stiffness_n_per_mm", lambda sheet: sheet.springs.leaf_stiffness, "N/mm"),
+    Column("leaves", lambda sheet: int(sheet.bowl.machine.leaves)),
+    Column("leaf_width_mm", lambda sheet: sheet.bowl.machine.leaf_width, "mm"),
+    Column("leaf_thickness_mm", lambda sheet: sheet.bowl.machine.leaf_thickness, "mm"),
+    Column("leaf_length_mm", lambda sheet: sheet.bowl.machine.leaf_length, "mm"),
+    Column("stiffness_n_per_mm", lambda sheet: sheet.springs.stiffness, "N/mm"),
+    Column("stiffness_with_over_without_twist", lambda sheet: sheet.springs.twist),
+    Column("bowl_mass_kg", lambda sheet: sheet.bowl.machine.bowl_mass, "kg"),
+    Column("bowl_inertia_kg_m2", lambda sheet: sheet.bowl.machine.bowl_inertia, "kg m2"),
+    Column("base_mass_kg", lambda sheet: sheet.bowl.machine.base_mass, "kg"),
+    Column("base_inertia_kg_m2", lambda sheet: sheet.bowl.machine.base_inertia, "kg m2"),
+    Column("spring_radius_mm", lambda sheet: sheet.bowl.machine.spring_radius, "mm"),
+    Column("spring_angle_deg", lambda sheet: sheet.bowl.machine.spring_angle, "deg"),
+    Column("effective_mass_kg", lambda sheet: sheet.springs.effective_mass, "kg"),
+    Column("effective_mass_base_held_kg", lambda sheet: sheet.springs.effective_mass_held, "kg"),
+    Column("natural_frequency_hz", lambda sheet: sheet.springs.natural_frequency, "Hz"),
+    Column(
+        "natural_frequency_without_twist_hz",
+        lambda sheet: sheet.springs.natural_frequency_without_twist,
+        "Hz",
+    ),
+    Column("natural_frequency_base_held_hz", lambda sheet: sheet.springs.natural_frequency_held, "Hz"),
+    Column("natural_frequency_rigid_clamps_hz", lambda sheet: sheet.springs.natural_frequency_rigid, "Hz"),
+    Column(
+        "natural_frequency_rigid_clamps_end_hz", lambda sheet: sheet.springs.natural_frequency_rigid_end, "Hz"
+    ),
+    Column("drive_frequency_hz", lambda sheet: sheet.stroke.frequency, "Hz"),
+    Column("above_drive_percent", lambda sheet: sheet.detuning, "%"),
+    Column("gain", lambda sheet: sheet.gain),
+    Column("leaf_amplitude_mm", lambda sheet: sheet.stroke.springs, "mm"),
+    Column("leaf_stress_mpa", lambda sheet: sheet.stress, "MPa"),
+    Column("fatigue_stress_mpa", lambda sheet: sheet.bowl.sizing.fatigue_stress, "MPa"),
+    Column("drive_force_n", lambda sheet: sheet.force, "N"),
+    Column("magnet_force_n", lambda sheet: sheet.magnet, "N"),
+    Column("magnet_force_mean_n", lambda sheet: leaves.mean_pull(sheet.magnet, sheet.stroke.frequency), "N"),
+    Column("magnet_angle_deg", lambda sheet: 0.5 * np.pi, "deg"),
+    Column("controller_percent", lambda sheet: sheet.bowl.sizing.controller, "%"),
+    Column("peak_to_peak_mm", lambda sheet: sheet.stroke.peak_to_peak, "mm"),
+    Column(
+        "peak_to_peak_full_controller_mm",
+        lambda sheet: sheet.stroke.peak_to_peak / sheet.bowl.sizing.controller,
+        "mm",
+    ),
+    Column("sticker_mm", lambda sheet: sheet.stroke.peak_to_peak, "mm"),
+    Column("accelerometer_m_s2", lambda sheet: values(leaves.ACCELEROMETER_COLUMNS, sheet.stroke), "m/s2"),
+    Column("acceleration_ratio", lambda sheet: sheet.stroke.acceleration / sheet.bowl.gravity),
+    Column("throw_number", lambda sheet: sheet.answer.throw_number),
+    Column("hop_height_mm", lambda sheet: hop(sheet.bowl).height, "mm"),
+    Column("hop_flight_mm", lambda sheet: hop(sheet.bowl).flight, "mm"),
+    Column("vibration_angle_deg", lambda sheet: sheet.bowl.drive.vibration_angle, "deg"),
+    Column("vibration_angle_at_the_track_deg", lambda sheet: sheet.bowl.drive.vibration_angle, "deg"),
+    Column("vibration_angle_at_the_springs_deg", lambda sheet: sheet.bowl.machine.spring_angle, "deg"),
+    Column("velocity_mm_s", lambda sheet: sheet.answer.velocity, "mm/s"),
+    Column("regime", lambda sheet: sheet.answer.regime),
+    Column("hardest_impact_mm_s", lambda sheet: sheet.answer.hardest_impact, "mm/s"),
+)
+ANGLE_COLUMNS: tuple[Column[MachineSheet], ...] = (  # a row a radius
+    Column("radius_mm", lambda sheet: sheet.radii, "mm"),
+    Column("vibration_angle_deg", lambda sheet: sheet.angles, "deg"),
+    Column("to_the_track_deg", lambda sheet: sheet.angles - sheet.bowl.track.climb, "deg"),
+)
+FULL_BOWL_COLUMNS: tuple[Column[MachineSheet], ...] = (
+    Column("filled_with", lambda sheet: sheet.filled_with),
+    Column("volume_l", lambda sheet: sheet.fill.volume, "l"),
+    Column("mass_kg", lambda sheet: sheet.fill.mass, "kg"),
+    Column("inertia_kg_m2", lambda sheet: sheet.fill.inertia, "kg m2"),
+    Column("mass_carried_kg", lambda sheet: sheet.fill.mass * sheet.bowl.sizing.carried, "kg"),
+)
+EMPTYING_COLUMNS: tuple[Column[MachineSheet], ...] = (  # a row a level
+    Column("fill_percent", lambda sheet: sheet.emptying.levels, "%"),
+    Column("parts_kg", lambda sheet: sheet.emptying.masses, "kg"),
+    Column("natural_frequency_hz", lambda sheet: sheet.emptying.natural_frequencies, "Hz"),
+    Column("gain", lambda sheet: sheet.emptying.gains),
+    Column("stroke_over_that_of_the_empty_bowl", lambda sheet: sheet.emptying.strokes),
+    Column("vibration_angle_at_the_track_deg", lambda sheet: sheet.emptying.angles, "deg"),
+    Column("spring_stroke_over_that_of_the_empty_bowl", lambda sheet: sheet.emptying.springs),
+    Column("velocity_mm_s", lambda sheet: sheet.velocities, "mm/s"),
+    Column("velocity_controlled_mm_s", lambda sheet: sheet.controlled, "mm/s"),
+)
+EMPTYING_RATE_COLUMNS: tuple[Column[MachineSheet], ...] = (  # where parts are counted
+    Column("rate_per_minute", lambda sheet: sheet.rates(sheet.velocities), "1/min"),
+    Column("rate_controlled_per_minute", lambda sheet: sheet.rates(sheet.controlled), "1/min"),
+)
+ORDER_COLUMNS: tuple[Column[tuple[MachineSheet, Order]], ...] = (  # what was ordered, and the bowl for it
+    Column("target_per_minute", lambda sized: sized[1].target, "1/min"),
+    Column("parts_per_minute", lambda sized: sized[0].lowest.rate, "1/min"),
+    Column("lowest_at_fill_percent", lambda sized: sized[0].lowest.level, "%"),
+    Column("lowest_with", lambda sized: sized[0].lowest.control),
+    Column("rate_at_this_stroke", lambda sized: float(sized[0].rates(sized[0].answer.velocity)), "1/min"),
+    Column("rate_lowest_left_alone", lambda sized: sized[0].rates(sized[0].velocities).min(), "1/min"),
+    Column("rate_lowest_controlled", lambda sized: sized[0].rates(sized[0].controlled).min(), "1/min"),
+    Column("rate_full_bowl", lambda sized: sized[0].rates(sized[0].velocities)[0], "1/min"),
+    Column("rate_empty_bowl", lambda sized: sized[0].rates(sized[0].velocities)[-1], "1/min"),
+    Column("rate_full_bowl_controlled", lambda sized: sized[0].rates(sized[0].controlled)[0], "1/min"),
+    Column("rate_empty_bowl_controlled", lambda sized: sized[0].rates(sized[0].controlled)[-1], "1/min"),
+    Column("handbook_per_minute", lambda sized: sized[1].handbook, "1/min"),
+    Column("aspect", lambda sized: sized[1].wanted and sized[1].wanted[0]),
+    Column("heading_deg", lambda sized: sized[1].wanted and sized[1].wanted[1], "deg"),
+    Column("rule", lambda sized: sized[1].rule),
+    Column("answer", lambda sized: sized[1].answer),
+    Column("share_counted", lambda sized: sized[1].flow.share, "share"),
+    Column("mean_length_mm", lambda sized: sized[1].flow.length, "mm"),
+    Column("longest_mm", lambda sized: sized[1].lying.longest, "mm"),
+    Column("tallest_mm", lambda sized: sized[1].lying.tallest, "mm"),
+    Column("part_width_mm", lambda sized: sized[1].lying.width, "mm"),
+    Column("bowl_diameter_mm", lambda sized: sized[1].size.diameter, "mm"),
+    Column("least_diameters_mm", lambda sized: dict(sized[1].size.least), "mm"),
+    Column("track_width_mm", lambda sized: sized[1].size.track_width, "mm"),
+    Column("clearance_mm", lambda sized: sized[1].size.clearance, "mm"),
+    Column("bend_mm", lambda sized: sized[1].size.bend, "mm"),
+    Column("climb_deg", lambda sized: sized[1].size.climb, "deg"),
+    Column("steepest_climb_deg", lambda sized: sized[1].steepest, "deg"),
+    Column("turn_rise_mm", lambda sized: sized[1].size.pitch, "mm"),
+    Column("hopper_l", lambda sized: sized[1].hopper, "l"),
+)
 
 
 def machine(settings: Sequence[Setting]) -> MachineSheet:

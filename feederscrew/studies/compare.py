@@ -17,6 +17,7 @@ from feederscrew import bowl as bowls
 from feederscrew import check, documents
 from feederscrew.arrays import Bools, Floats, Vector
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column, Frame, of_records
 from feederscrew.conveying import answer as conveying
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError, ConfigError, Faults, FeederError
@@ -29,6 +30,7 @@ from feederscrew.resting import deviation, profiles
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.calibration import Fit, fit_counts, fit_passes
 from feederscrew.resting.profiles import DeviceCounts
+from feederscrew.resting.rules import registry
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.signatures import with_shown_signature
 from feederscrew.studies import arguments
@@ -95,6 +97,48 @@ class FeedingStudy(_Counted):
         return super().inputs | bowls.identity(self.config)
 
 
+def feedings_table(tests: Iterable[FeedingStudy]) -> Frame:
+    """Return what passed of the parts that came to each device, measured and predicted: ``devices.csv``.
+
+    Parameters
+    ----------
+    tests : iterable of FeedingStudy
+
+    Returns
+    -------
+    Frame
+        A row a device of each test; what the rules predict is hidden.
+    """
+    rows = [(study, place) for study in tests for place in range(len(study.stations))]
+    rules = dict.fromkeys(rule for study, _ in rows for rule in study.answers if rule != "recommended")
+    return of_records([*FEEDING_COLUMNS, *map(_predicted_column, rules)], rows)
+
+
+def _predicted_column(rule: str) -> Column[tuple[FeedingStudy, int]]:
+    """Return the column of the share that passes by a rule; empty of a test without it."""
+
+    def share(row: tuple[FeedingStudy, int]) -> float | None:
+        study, place = row
+        return float(study.answers[rule][place]) if rule in study.answers else None
+
+    return Column(f"p_{rule}", share, "share", registry.heading(rule), hidden=True)
+
+
+FEEDING_COLUMNS: tuple[Column[tuple[FeedingStudy, int]], ...] = (  # a row a device
+    Column("set", lambda row: row[0].measured.source, hidden=True),
+    Column("device", lambda row: row[0].stations[row[1]]),
+    Column("passed", lambda row: int(row[0].measured.passed[row[1]])),
+    Column("rejected", lambda row: int(row[0].measured.rejected[row[1]])),
+    Column("measured", lambda row: float(row[0].measured.shares[row[1]]), "share"),
+    Column("measured_low", lambda row: row[0].ends[row[1]][0], "share"),
+    Column("measured_high", lambda row: row[0].ends[row[1]][1], "share"),
+    Column("predicted", lambda row: float(row[0].answers["recommended"][row[1]]), "share"),
+    Column("predicted_low", lambda row: float(row[0].low[row[1]]), "share"),
+    Column("predicted_high", lambda row: float(row[0].high[row[1]]), "share"),
+    Column("agrees", lambda row: bool(row[0].agrees[row[1]])),
+)
+
+
 @dataclass(frozen=True, eq=False)
 class CompareStudy(_Counted):
     """Profiles of one part, measured and by rule, and how far every two of them are apart."""
@@ -142,6 +186,12 @@ class SetStudy(ReadableRecord):
             return None
         shares = self.profile.fractions
         return int(((self.recommended.low <= shares) & (shares <= self.recommended.high)).sum())
+
+
+SET_COLUMNS: tuple[Column[SetStudy], ...] = (
+    Column("file", lambda item: item.measured.source),
+    Column("name", lambda item: item.profile.name),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -362,6 +412,18 @@ class CalibrateStudy(_Counted):
     fits: tuple[Fit, ...]
 
 
+FIT_COLUMNS: tuple[Column[Fit], ...] = (  # a row a column of counts
+    Column("counts", lambda fit: fit.name),
+    Column("parts", lambda fit: fit.parts),
+    Column("exponent", lambda fit: fit.calibration.exponent),
+    Column("exponent_low", lambda fit: fit.calibration.low),
+    Column("exponent_high", lambda fit: fit.calibration.high),
+    Column("chi_square", lambda fit: fit.calibration.chi_square.statistic),
+    Column("degrees_of_freedom", lambda fit: fit.calibration.chi_square.degrees_of_freedom or None),
+    Column("p_value", lambda fit: fit.calibration.chi_square.p_value),
+)
+
+
 @with_shown_signature
 def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
     """Fit the exponent of a surface to counts by aspect or by device, as ``feeder calibrate``.
@@ -426,6 +488,27 @@ class BowlFit:
         """(3,) whether an interval reaches an end of what was tried: the velocities do not decide it."""
         ends = np.array([(values[0], values[-1]) for values in COARSE_GRID])
         return (self.low <= ends[:, 0]) | (self.high >= ends[:, 1])
+
+
+FIT_QUANTITY_COLUMNS: tuple[Column[BowlFit], ...] = (  # a row a quantity
+    Column("quantity", lambda fit: QUANTITIES),
+    Column("bowl_file", lambda fit: fit.assumed),
+    Column("fitted", lambda fit: fit.values),
+    Column("low", lambda fit: fit.low),
+    Column("high", lambda fit: fit.high),
+    Column(
+        "decided",
+        lambda fit: ["not decided by these velocities" if is_open else "yes" for is_open in fit.open_ended],
+    ),
+)
+FIT_VELOCITY_COLUMNS: tuple[Column[BowlFit], ...] = (  # a row a velocity
+    Column("setting", lambda fit: [setting or "as the bowl file" for setting in fit.settings]),
+    Column("measured_mm_s", lambda fit: fit.measured, "mm/s"),
+    Column("doubt_mm_s", lambda fit: fit.doubt, "mm/s"),
+    Column("bowl_file_mm_s", lambda fit: fit.file, "mm/s"),
+    Column("fitted_mm_s", lambda fit: fit.fitted, "mm/s"),
+    Column("remains_mm_s", lambda fit: fit.measured - fit.fitted, "mm/s"),
+)
 
 
 def fit_bowl(path: str | Path, bowl_path: str | Path | None = None) -> BowlFit:

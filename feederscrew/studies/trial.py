@@ -11,6 +11,7 @@ from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import shank_remarks, unknown_aspects
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.conveying import answer
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
@@ -114,6 +115,15 @@ class TrialStudy(ReadableRecord):
             parts = sum(len(run.course.entry_rows) for run in self.runs)
             listed.append(f"partial: stopped after {parts} parts")
         return tuple(listed)
+
+
+TRIAL_COLUMNS: tuple[Column[TrialStudy], ...] = (  # of the whole trial
+    Column("rule", lambda study: study.rule),
+    Column("answer", lambda study: study.answer),
+    Column("launch", lambda study: study.launch),
+    Column("seed", lambda study: study.seed),
+    Column("partial", lambda study: study.partial),
+)
 
 
 @former_keywords("bowls")

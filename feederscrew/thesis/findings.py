@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import bowl
+from feederscrew.columns import Column
 from feederscrew.mechanics import limits
 from feederscrew.resting.deviation import deviation, total_variation
 from feederscrew.thesis import figures, parts
@@ -39,6 +40,15 @@ class Finding:
     def evidence(self) -> str:
         """Return how it shows; the numbers are computed, never typed."""
         return self.numbers.format_map(_numbers())
+
+
+FINDING_COLUMNS: tuple[Column[Finding], ...] = (
+    Column("id", lambda finding: finding.id),
+    Column("title", lambda finding: finding.title),
+    Column("where", lambda finding: finding.where),
+    Column("what", lambda finding: finding.what),
+    Column("shown", lambda finding: finding.evidence),
+)
 
 
 @functools.cache

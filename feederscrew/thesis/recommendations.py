@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from feederscrew.columns import Column
 from feederscrew.resting.aspects import find
 from feederscrew.resting.inertia_products import find_products
 from feederscrew.thesis import parts
@@ -16,6 +17,15 @@ class Recommendation:
     what: str  # is recommended
     met: str  # where
     lacks: str  # what is not met
+
+
+RECOMMENDATION_COLUMNS: tuple[Column[Recommendation], ...] = (
+    Column("number", lambda item: item.number),
+    Column("title", lambda item: item.title),
+    Column("what", lambda item: item.what),
+    Column("met", lambda item: item.met),
+    Column("lacks", lambda item: item.lacks),
+)
 
 
 def recommendations() -> tuple[Recommendation, ...]:

@@ -7,19 +7,19 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from feederscrew.columns import Frame
+from feederscrew.columns import Frame, of_records
 from feederscrew.errors import ArgumentError
 from feederscrew.output import style
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page, Picture, Text
-from feederscrew.output.tables import data_frame, table_of, text
+from feederscrew.output.tables import data_frame, text
 from feederscrew.records import ReadableRecord
 from feederscrew.thesis import figures
 from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
-from feederscrew.thesis.findings import FINDING_OF, FINDINGS
+from feederscrew.thesis.findings import FINDING_COLUMNS, FINDING_OF, FINDINGS
 from feederscrew.thesis.parts import cells
-from feederscrew.thesis.recommendations import recommendations
+from feederscrew.thesis.recommendations import RECOMMENDATION_COLUMNS, recommendations
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED, TABLES, Cell, table
 from feederscrew.units import listed
 
@@ -216,13 +216,13 @@ def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[
         ],
         "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST_DRAWINGS.items()],
         "conclusions": [{"id": f"conclusion {n}", "findings": ids} for n, ids in CONCLUSIONS.items()],
-        "recommendations": table_of(recommendations(), "number title what met lacks"),
+        "recommendations": of_records(RECOMMENDATION_COLUMNS, recommendations()),
         "findings": _findings(),
     }
 
 
 def _findings() -> Frame:
-    return table_of(FINDINGS, "id title where what shown=evidence")
+    return of_records(FINDING_COLUMNS, FINDINGS)
 
 
 def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> dict[str, list[str]]:

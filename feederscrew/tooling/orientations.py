@@ -15,6 +15,7 @@ import shapely.affinity
 from feederscrew import check
 from feederscrew.arrays import Floats, Ints, Points, Vector
 from feederscrew.bowl.record import Bowl, Track
+from feederscrew.columns import Column
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import Hop, hop
 from feederscrew.errors import ConfigError
@@ -185,6 +186,31 @@ class Orientation:
     def gap(self) -> float:
         """Return the greatest gap across the track that it passes [m]; 0 for none."""
         return _longest_gap(self.foot, self.distance, self.track.radius, self.shift)
+
+
+ORIENTATION_NAME_COLUMNS: tuple[Column[Orientation], ...] = (  # which it is
+    Column("aspect", lambda orientation: orientation.aspect),
+    Column("heading_deg", lambda orientation: orientation.heading, "deg"),
+)
+ORIENTATION_SIZE_COLUMNS: tuple[Column[Orientation], ...] = (
+    Column("length_mm", lambda orientation: orientation.length, "mm"),
+    Column("width_mm", lambda orientation: orientation.width, "mm"),
+    Column("height_mm", lambda orientation: orientation.height, "mm"),
+    Column("wall_distance_mm", lambda orientation: orientation.distance, "mm"),
+    Column(
+        "balcony_mm",
+        lambda orientation: float(orientation.balcony) if np.isfinite(orientation.balcony) else None,
+        "mm",
+    ),
+    Column("canyon_mm", lambda orientation: orientation.canyon, "mm"),
+    Column("gap_mm", lambda orientation: orientation.gap, "mm"),
+    Column("mirror", lambda orientation: orientation.mirror or None),
+)
+ORIENTATION_TRIED_COLUMNS: tuple[Column[Orientation], ...] = (  # of a trial
+    Column("aspect", lambda orientation: orientation.aspect),
+    Column("heading_deg", lambda orientation: orientation.heading, "deg"),
+    Column("length_mm", lambda orientation: orientation.length, "mm"),
+)
 
 
 @lru_cache(maxsize=512)

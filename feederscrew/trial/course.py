@@ -14,6 +14,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.conveying import answer
 from feederscrew.dropping.launch_conditions import named
 from feederscrew.dropping.plate_test import EXACT_PACE
@@ -417,6 +418,18 @@ class Landing:
     def purity(self) -> float:
         """Return the share of that orientation in what leaves [1]; NaN where nothing does."""
         return float(self.leaving_counts[:-1].max(initial=0) / self.leavers) if self.leavers else np.nan
+
+
+LANDING_COLUMNS: tuple[Column[Landing], ...] = (
+    Column("launch", lambda landing: landing.launch),
+    Column("parts", lambda landing: landing.parts),
+    Column("lost", lambda landing: landing.lost),
+    Column("left", lambda landing: landing.leavers),
+    Column("efficiency", lambda landing: landing.efficiency, "share"),
+    Column("purity", lambda landing: landing.purity, "share"),
+    Column("velocity_mm_s", lambda landing: landing.velocity, "mm/s"),
+    Column("largest_penetration_mm", lambda landing: landing.depth, "mm"),
+)
 
 
 def landing(

@@ -13,6 +13,7 @@ import numpy as np
 
 from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
@@ -139,6 +140,21 @@ class FilledQueue:
     def pace(self) -> float:
         """Return the parts that are offered [1/s]; 0 where none leaves as wanted."""
         return self.rate * self.offered / self.right if self.right else 0.0
+
+
+FILL_COLUMNS: tuple[Column[FilledQueue], ...] = (  # at the head of a row
+    Column("fill", lambda filled: filled.fill),
+    Column("free_way", lambda filled: filled.gaps),
+    Column("parts", lambda filled: filled.parts),
+    Column("seconds", lambda filled: filled.seconds),
+)
+FILL_COUNT_COLUMNS: tuple[Column[FilledQueue], ...] = (
+    Column("left", lambda filled: filled.left),
+    Column("right", lambda filled: filled.right),
+    Column("returned", lambda filled: filled.returned),
+    Column("jams", lambda filled: filled.jams),
+    Column("climbs", lambda filled: filled.climbs),
+)
 
 
 def share_interval(queues: Iterable[FilledQueue]) -> tuple[float, float]:

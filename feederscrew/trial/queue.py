@@ -10,6 +10,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import zero_rows
@@ -311,6 +312,23 @@ class QueuedParts:
     def aspects(self) -> Ints:
         """Return (A + 1,) int, on which aspect whole parts left, whatever their heading; the last hung."""
         return self.whole.sum(axis=0)
+
+
+QUEUED_COLUMNS: tuple[Column[QueuedParts], ...] = (
+    Column("parts", lambda queue: queue.parts),
+    Column("on_track", lambda queue: queue.on_track),
+    Column("poured", lambda queue: queue.is_poured),
+    Column("seconds", lambda queue: queue.seconds),
+    Column("counted_seconds", lambda queue: queue.counted_seconds),
+    Column("delivered", lambda queue: queue.delivered),
+    Column("returned", lambda queue: queue.returned),
+    Column("backed_up", lambda queue: queue.relieved),
+    Column("jams", lambda queue: queue.jams),
+    Column("climbs", lambda queue: queue.climbs),
+    Column("velocity_mm_s", lambda queue: queue.velocity, "mm/s"),
+    Column("mean_gap_mm", lambda queue: queue.gap, "mm"),
+    Column("touching", lambda queue: queue.touching),
+)
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
 from feederscrew.dropping.ensemble import wilson
@@ -251,6 +252,20 @@ class TrialRun:
             yield "the part does not travel up the track: see feeder convey"
 
 
+RUN_DRIVE_COLUMNS: tuple[Column[TrialRun], ...] = (
+    Column("amplitude_mm", lambda run: run.bowl.drive.amplitude, "mm"),
+    Column("throw_number", lambda run: run.throw_number),
+    Column("velocity_mm_s", lambda run: run.velocity, "mm/s"),
+)
+RUN_COLUMNS: tuple[Column[TrialRun], ...] = (
+    Column("rolls_back_mm_s", lambda run: run.roll_back_velocity, "mm/s"),
+    Column("parts_per_minute", lambda run: run.parts, "1/min"),
+    Column("efficiency", lambda run: run.efficiency, "share"),
+    Column("purity", lambda run: run.purity, "share"),
+    Column("jams", lambda run: run.jams),
+)
+
+
 @dataclass(frozen=True, eq=False)
 class Outlet:
     """Parts that left a queue, by aspect; A aspects."""
@@ -282,6 +297,16 @@ class Outlet:
             if np.isfinite(own).all()
             for mine in [profile.fractions / profile.fractions.sum()]
         }
+
+
+OUTLET_COLUMNS: tuple[Column[Outlet], ...] = (
+    Column("aspect", lambda outlet: outlet.aspects),
+    Column("offered", lambda outlet: outlet.offered),
+    Column("parts", lambda outlet: outlet.counts),
+    Column("share", lambda outlet: outlet.shares, "share"),
+    Column("low", lambda outlet: outlet.ends[0], "share"),
+    Column("high", lambda outlet: outlet.ends[1], "share"),
+)
 
 
 def outlet(

@@ -10,7 +10,7 @@ import pytest
 
 import feederscrew as fs
 from feederscrew import bowl as bowls
-from feederscrew.columns import Frame
+from feederscrew.columns import ColumnHead, Frame, quantities
 from feederscrew.geometry.polygons import centroid
 from feederscrew.output import record_views, tables
 from feederscrew.output.page.as_html import escape, texts_of
@@ -22,7 +22,7 @@ from feederscrew.tooling.orientations import orientations
 PARTS = Path(__file__).parents[2] / "parts"
 COLUMNS = {"aspect": ["A", "BB"], "stable": np.array([True, False]), "faces": np.array([1, 12])}
 COLUMNS |= {"height_mm": [12.34567, 1.0], "normal_x": [1e-17, -0.99999], "p_pmi": [0.1234567, math.nan]}
-FRAME = Frame.of(COLUMNS)
+FRAME = Frame.of(COLUMNS, {"height_mm": ColumnHead("height", "mm"), "p_pmi": ColumnHead("PMI", "%", 100.0)})
 
 
 def test_a_table_for_people_for_spreadsheets_and_for_programs():
@@ -52,33 +52,29 @@ def test_a_table_for_people_for_spreadsheets_and_for_programs():
         assert tables.text(Frame.of({"x": [value]}), "table").split() == ["x", text]
 
 
-@pytest.mark.parametrize(
-    ("name", "shown"),
-    [
-        ("height_mm", ("height", "[mm]")), ("polar_inertia_g_mm2", ("polar inertia", "[g mm2]")),
-        ("alignment_acceleration_rad_s2", ("alignment acceleration", "[rad/s2]")), ("p_csa", ("CSA", "[%]")),
-        ("p_stability", ("stability", "[%]")), ("p_recommended", ("recommended", "[%]")),
-        ("p_recommended_low", ("low", "[%]")), ("p_drop_high", ("high", "[%]")), ("kind", ("kind", "")),
-        ("_mm", (" mm", "")),
-    ],
-)  # fmt: skip
-def test_headings_carry_the_unit(name, shown):
-    assert tables.heading(name) == shown
-
-
 LENGTHS = {f"length{k}_mm": [1.5, 22.25] for k in range(20)}
 ENDS = {f"{name}{end}": [0.5, 0.25] for name in ("p_pmi", "p_csa") for end in ("", "_low", "_high")}
 
 
+def headed(columns):
+    """Return a table whose columns of lengths and shares are declared by a rule of this test."""
+    table = Frame.of(columns)
+    shares = {name: name.removeprefix("p_").split("_") for name in table if name.startswith("p_")}
+    heads = {name: ColumnHead.of_name(name, "mm") for name in table if name.endswith("_mm")}
+    for name, (rule, *end) in shares.items():
+        heads[name] = ColumnHead(end[0] if end else rule.upper(), "%", 100.0)
+    return table.headed(heads)
+
+
 def folded(width, columns):
-    lines = tables.text(Frame.of(columns), "table", width).splitlines()
+    lines = tables.text(headed(columns), "table", width).splitlines()
     assert max(map(len, lines)) <= width
     return lines
 
 
 def test_a_wide_table_is_folded_to_the_window():
     columns = {"part": ["a.stl", "b.stl"]} | LENGTHS
-    assert max(map(len, tables.text(Frame.of(columns), "table").splitlines())) > 190
+    assert max(map(len, tables.text(headed(columns), "table").splitlines())) > 190
     lines = folded(60, columns)
     heads = [line.split() for line in lines if line.startswith("part")]
     assert [name for head in heads for name in head[1:]] == [f"length{k}" for k in range(20)]
@@ -98,7 +94,7 @@ def test_a_wide_table_is_folded_to_the_window():
     assert " ".join(line[start:].split("  ")[0] for line in lines[:2]) == values[0]
     assert lines[2].startswith("rails")
     # An interval stays with its value; rows keep their names.
-    columns = {"aspect": ["A", "A"], "heading_deg": [0.0, 90.0], "long_name_of_a_column_mm": [1.0, 2.0]}
+    columns = {"aspect": ["A", "A"], "heading": [0.0, 90.0], "long_name_of_a_column_mm": [1.0, 2.0]}
     heads = [line.split() for line in folded(46, columns | ENDS) if line.startswith("aspect")]
     assert all(head[:2] == ["aspect", "heading"] for head in heads)
     assert [head[2:] for head in heads[-2:]] == [["PMI", "low", "high"], ["CSA", "low", "high"]]
@@ -106,7 +102,7 @@ def test_a_wide_table_is_folded_to_the_window():
 
 def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
     columns = {"name": ["x" * 30], "low_mm": [1.5], "high_mm": [2.5], "note": ["y" * 60], "kept": ["z"]}
-    wide, spare = Frame.of(columns), [("low_mm", "high_mm"), ("gone",), ("note",)]
+    wide, spare = headed(columns), [("low_mm", "high_mm"), ("gone",), ("note",)]
     shown, left_out = tables.to_page(wide, spare)
     assert list(shown) == ["name", "note", "kept"] and left_out == ["low", "high"]
     assert len(tables.text(shown, "table").splitlines()[-1]) <= tables.PAGE
@@ -117,7 +113,7 @@ def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
 def test_texts_of_a_page_are_printable_and_what_has_a_unit_of_its_own_is_no_rounding_beside_another():
     """On the terminal and on a page; in a column of one unit it is."""
     assert escape("red\x1b[31m <b>\nnext \u202e") == "red\\x1b[31m &lt;b&gt;\nnext \\u202e"
-    mixed = Frame.of({"quantity": ["density", "volume"], "value": [7.85, 2.1e13]})
+    mixed = quantities([("density", 7.85), ("volume", 2.1e13)])
     assert "7.850" in tables.text(mixed, "table")
     assert texts_of(mixed)[2][1][0] == "7.850"
     assert texts_of(Frame.of({"volume_mm3": [1e-3, 2.1e13]}))[2][0][0] == "0"

@@ -10,7 +10,7 @@ import shapes
 from drop_bodies import cuboids
 
 from feederscrew.dropping import ensemble
-from feederscrew.output import style, tables
+from feederscrew.output import style
 from feederscrew.part import load
 from feederscrew.resting import profiles
 from feederscrew.resting.aspects import find
@@ -67,7 +67,7 @@ def test_a_rule_needs_quantities_of_its_kind_and_names_its_source(monkeypatch):
     weights = 1.0 / resting.heights
     np.testing.assert_allclose(resting.probabilities["low"], weights / weights.sum(), rtol=1e-12)
     assert style.method("low") == ("LOW", "#123456")
-    assert tables.heading("p_low") == ("LOW", "[%]")
+    assert registry.heading("low") == "LOW"
 
 
 def tipping(shares=SHARES, heights=HEIGHTS, tops=TOPS):

@@ -1,23 +1,25 @@
 """Files of ``feeder trial``: tables and documents in the units of the shop, pictures."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from feederscrew.arrays import Floats, Ints
+from feederscrew.columns import ColumnHead, Frame, heads, of_arrays, share_head, values
 from feederscrew.designing.evidence import share_at_least
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, tables
 from feederscrew.output.convey import restitution_entry
-from feederscrew.output.tables import Frame, row_of
-from feederscrew.studies.trial import ENGINE, TrialStudy
+from feederscrew.studies.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
+from feederscrew.tooling.orientations import ORIENTATION_TRIED_COLUMNS
 from feederscrew.trial import course
-from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import FilledQueue
-from feederscrew.trial.result import Outlet, TrialRun
+from feederscrew.trial.course import LANDING_COLUMNS, Fate
+from feederscrew.trial.fills import FILL_COLUMNS, FILL_COUNT_COLUMNS, FilledQueue
+from feederscrew.trial.queue import QUEUED_COLUMNS
+from feederscrew.trial.result import OUTLET_COLUMNS, RUN_COLUMNS, RUN_DRIVE_COLUMNS, Outlet, TrialRun
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
 figures = heavy("feederscrew.output.trial.figures")
@@ -25,6 +27,17 @@ film = heavy("feederscrew.output.trial.film")
 
 UM = 1e-3 * MM
 ENGINE_FIGURES = ("penetration_mm", "energy_won_um")  # how closely the engine keeps to the laws: for -v
+ROW_HEADS = heads(ORIENTATION_TRIED_COLUMNS)
+ROW_HEADS |= {name: share_head(name) for name in ("share", "passed_low", "passed_high")}
+ROW_HEADS |= {
+    name: ColumnHead.of_name(name, unit)
+    for unit, names in (
+        ("mm", ("amplitude_mm", "margin_mm", "penetration_mm", "fell_mm")),
+        ("um", ("energy_won_um",)),
+        ("mm/s", ("velocity_mm_s",)),
+    )
+    for name in names
+}
 HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
 
 
@@ -44,7 +57,7 @@ def offers(study: TrialStudy) -> list[offer.Offer]:
     if run.landing is not None:
         files.append(offer.table("trial_landing.csv", _landing_columns, study, run.landing))
     if (outlet := study.outlet(run)) is not None:
-        files.append(offer.table("trial_outlet.csv", _outlet_columns, outlet))
+        files.append(offer.table("trial_outlet.csv", _outlet_table, outlet))
     return [*files, offer.document("trial.json", document, study), *pictures(study)]
 
 
@@ -81,7 +94,7 @@ def document(study: TrialStudy) -> dict[str, Any]:
     """
     entries = {
         **part_facts.part(study.part, study.warnings),
-        **row_of(study, "rule answer launch seed partial"),
+        **values(TRIAL_COLUMNS, study),
         **_run(study, study.runs[0]),
     }
     if len(study.runs) > 1:
@@ -93,28 +106,23 @@ def document(study: TrialStudy) -> dict[str, Any]:
 def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
     fallen, landing, queue = run.landing, None, None
     if fallen is not None:  # what became of the parts that fell onto the track
-        names = "launch parts lost left=leavers efficiency purity velocity_mm_s largest_penetration_mm=depth"
-        landing = row_of(fallen, names) | {
+        landing = values(LANDING_COLUMNS, fallen) | {
             "aspects": tables.frame(_landing_columns(study, fallen)),
             "leaves": dict(_leaving_counts(run, fallen.leaving_counts)),
         }
     if (queued := run.queue) is not None and (outlet := study.outlet(run)) is not None:
-        names = (
-            "parts on_track poured=is_poured seconds counted_seconds delivered returned backed_up=relieved "
-            "jams climbs velocity_mm_s mean_gap_mm=gap touching"
-        )
         whole, apart = int(queued.leaving_counts.sum()), outlet.distances.items()
-        queue = row_of(queued, names) | {
+        queue = values(QUEUED_COLUMNS, queued) | {
             "pressure_mn": queued.pressure * 1e3,
             "largest_penetration_mm": queued.depth / MM,
             "profile": {name: n / whole for name, n in _leaving_counts(run, queued.leaving_counts)},
-            "outlet": tables.frame(_outlet_columns(outlet)),
+            "outlet": _outlet_table(outlet),
             "apart": {name: {"deviation": d, "total_variation": total} for name, (d, total) in apart},
         }
     return {
-        **row_of(run, "amplitude_mm=bowl.drive.amplitude throw_number velocity_mm_s"),
+        **values(RUN_DRIVE_COLUMNS, run),
         "point_restitution_doubt": restitution_entry(run.bowl, run.rebound),
-        **row_of(run, "rolls_back_mm_s=roll_back_velocity parts_per_minute efficiency purity jams"),
+        **values(RUN_COLUMNS, run),
         "engine": ENGINE,
         "sorts": bool(run.sorts),
         "part_seconds": float(run.course.seconds.sum()),
@@ -146,15 +154,22 @@ def filled_entry(filled: FilledQueue) -> dict[str, Any]:
     purity = filled.right / filled.left if filled.left else None
     shares: list[float | None] = [purity, share_at_least(filled.right, filled.left)]
     names = ("delivered_per_minute", "delivered_low", "delivered_high", "purity", "purity_low")
-    values = [None] * len(names) if filled.partial else [*rates, *shares]
+    figures = [None] * len(names) if filled.partial else [*rates, *shares]
     instead = (f"{pose.text}: {count} of {filled.left}" for pose, count in filled.left_instead)
     return {
-        **row_of(filled, "fill free_way=gaps parts seconds"),
-        **dict(zip(names, values, strict=True)),
-        **row_of(filled, "left right returned jams climbs"),
+        **values(FILL_COLUMNS, filled),
+        **dict(zip(names, figures, strict=True)),
+        **values(FILL_COUNT_COLUMNS, filled),
         "left_instead": ", ".join(instead),
         "partial": filled.partial,
     }
+
+
+def queues_table(rows: Sequence[Mapping[str, Any]]) -> Frame:
+    """Return rows of ``filled_entry`` as a table for people."""
+    shares = {name: share_head(name) for name in ("purity", "purity_low")}
+    names = ("delivered_per_minute", "delivered_low", "delivered_high")
+    return Frame.of_rows(rows).headed(shares | {name: ColumnHead.of_name(name, "1/min") for name in names})
 
 
 def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]:
@@ -177,7 +192,7 @@ def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]
         leaves = ", ".join(f"{_name(run, m)} {n}" for m, n in enumerate(run.matrix[k]) if n)
         rows.append(
             {
-                **row_of(orientation, "aspect heading_deg length_mm"),
+                **values(ORIENTATION_TRIED_COLUMNS, orientation),
                 "share": float(run.shares[k]),
                 "tried": int(run.tried_counts[k]),
                 **{name: int(count) for name, count in zip(course.FATES, counts[k])},
@@ -226,11 +241,10 @@ def _landing_columns(study: TrialStudy, landing: course.Landing) -> dict[str, An
     return shares | dict(zip(course.FATES, landing.fates.T))
 
 
-def _outlet_columns(outlet: Outlet) -> dict[str, Any]:
-    low, high = outlet.ends
-    columns_by_name = row_of(outlet, "aspect=aspects offered parts=counts share=shares")
-    columns_by_name |= {"low": low, "high": high}
-    return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in outlet.columns}
+def _outlet_table(outlet: Outlet) -> Frame:
+    own = of_arrays(OUTLET_COLUMNS, outlet)
+    measured = {f"measured {column.name}": column.fractions for column in outlet.columns}
+    return Frame.of(own | measured, own.heads | {name: share_head(name) for name in measured})
 
 
 def frame(study: TrialStudy, *, people: bool = False) -> Frame:
@@ -250,7 +264,7 @@ def frame(study: TrialStudy, *, people: bool = False) -> Frame:
     for run in study.runs:
         lead = {"amplitude_mm": run.bowl.drive.amplitude / MM} if len(study.runs) > 1 else {}
         rows += [lead | row for row in orientations(run, people=people)]
-    return tables.of_rows(rows)
+    return Frame.of_rows(rows).headed(ROW_HEADS)
 
 
 def _stations(run: TrialRun) -> Frame:

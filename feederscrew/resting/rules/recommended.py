@@ -7,6 +7,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats
+from feederscrew.columns import Column
 from feederscrew.errors import ArgumentError
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules import registry
@@ -59,6 +60,13 @@ class Recommended(ReadableRecord):
         """The rule with its launch in words: 'drop test, launch feed (from a hopper into a bowl)'."""
         launch = f"launch {self.launch}"
         return self.rule.replace(launch, f"{launch} ({LAUNCH_WORDS.get(self.launch, 'as given')})")
+
+
+RECOMMENDED_COLUMNS: tuple[Column[Recommended], ...] = (
+    Column("rule", lambda answer: answer.rule),
+    Column("low", lambda answer: answer.low),
+    Column("high", lambda answer: answer.high),
+)
 
 
 def launch_of_name(name: str) -> str:

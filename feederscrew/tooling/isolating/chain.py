@@ -18,6 +18,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats, Points
+from feederscrew.columns import Column
 from feederscrew.mechanics import sameness
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
@@ -104,6 +105,12 @@ class Cut:
     returns: tuple[str, ...]  # names of the orientations it returns
     turns: tuple[tuple[str, str, float], ...] = ()  # name, name it turns over into, share
     stops: tuple[str, ...] = ()  # names of the orientations that come to stand at it
+
+
+CUT_COLUMNS: tuple[Column[Cut], ...] = (
+    Column("margin_pass_mm", lambda cut: cut.margin_pass, "mm"),
+    Column("margin_reject_mm", lambda cut: cut.margin_reject, "mm"),
+)
 
 
 @dataclass(frozen=True)
@@ -689,6 +696,12 @@ class Design:
     def devices(self) -> tuple[Device, ...]:
         """Every device along the track: those of the bowl, then the design's own."""
         return (*self.before, *(cut.device for cut in self.cuts))
+
+
+DESIGN_COLUMNS: tuple[Column[Design], ...] = (
+    Column("track_width_mm", lambda design: design.width, "mm"),
+    Column("margin_mm", lambda design: design.margin, "mm"),
+)
 
 
 @dataclass(frozen=True, eq=False)
