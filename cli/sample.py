@@ -4,7 +4,6 @@ from pathlib import Path
 
 import click
 
-from feederscrew.columns import of_records
 from feederscrew_cli import grouped, options
 from feederscrew_cli.options import Output
 
@@ -49,6 +48,7 @@ def sample(
     bracket 25x10x12 (lengths in mm); t-shape takes --ratio. Bolts, screws, nuts and washers have the nominal
     sizes of their standard. A thread is a cylinder as thick as its major diameter.
     """
+    from feederscrew.columns import of_records
     from feederscrew.samples import catalogue
 
     out = Output.of_call(format=format, quiet=quiet)

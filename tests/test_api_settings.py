@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from command_lines import PARTS
+from design_counts import design_study
 
 import feederscrew as fs
 from feederscrew.bowl import devices
@@ -111,10 +112,20 @@ def test_a_setting_that_cannot_be_used_is_a_line_that_names_it(wrong, line):
         assert line in str(caught.value)
 
 
+def noting(calls, wanted):
+    """A design that only notes what it is asked."""
+
+    def designed(part, plain, keys, request, **own):
+        calls.append(wanted(plain, keys, request))
+        return design_study(part)
+
+    return designed
+
+
 def test_a_design_keeps_what_its_bowl_was_read_from_and_the_settings(monkeypatch, bowl):
     """As ``feeder design --config``: it kept the devices alone, without the names of the keys."""
     calls = []
-    monkeypatch.setattr(loop, "design", lambda part, plain, keys, request, **own: calls.append((plain, keys)))
+    monkeypatch.setattr(loop, "design", noting(calls, lambda plain, keys, request: (plain, keys)))
     monkeypatch.setattr(design, "build_machine", lambda study, settings: None)
     monkeypatch.setattr(design, "with_machine", lambda study, built: study)
     part = fs.load(PARTS / "washer_m6.stl")
@@ -138,9 +149,7 @@ def test_keywords_of_the_release_before_give_the_same_and_a_warning_that_says_wh
         studies = fs.shake(part, [plain, changed], drops=2, seconds=0.01, gravity=9.0).plates
     assert len(studies) == 2
     calls = []
-    monkeypatch.setattr(
-        loop, "design", lambda part, bowl, keys, request, **own: calls.append((keys, request))
-    )
+    monkeypatch.setattr(loop, "design", noting(calls, lambda plain, keys, request: (keys, request)))
     monkeypatch.setattr(design, "build_machine", lambda study, settings: None)
     monkeypatch.setattr(design, "with_machine", lambda study, built: study)
     with pytest.warns(DeprecationWarning, match=r"search=DesignSearch\(draws=\.\.\.\)"):

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from command_lines import NUT, ROOT
 
 from feederscrew import __version__
-from feederscrew.columns import Frame
+from feederscrew.columns import ColumnHead, Frame
 from feederscrew.errors import Faults, FeederError, MeshError
 from feederscrew.output import style
 from feederscrew_cli import interrupt, options
@@ -41,7 +41,9 @@ def speak(out):
     out.say("done")
     with out.step("nothing"):
         out.detail("slowly")
-    out.show(Frame.of({"normal_x": [1.0], "height_mm": [2.0]}), {"height_mm": 2.0}, hidden=["normal_x"])
+    frame = Frame.of({"normal_x": [1.0], "height_mm": [2.0]})
+    above = {"height_mm": ColumnHead.of_name("height_mm", "mm")}
+    out.show(frame.headed(above), {"height_mm": 2.0}, hidden=["normal_x"])
 
 
 @click.command()

@@ -205,7 +205,7 @@ def test_solids_of_what_falls_short_say_so_in_their_names_heads_and_bodies(mark,
     """A shop sees the name of an STL, a slicer that of a body, a CAD program that of a product."""
     step = SimpleNamespace(data=STEP)
     solid = SimpleNamespace(vertices=PART.vertices, faces=PART.faces, gates=(), segments=None, step=step)
-    sheet = SimpleNamespace(order=SimpleNamespace(part=PART), solid=solid)
+    sheet = SimpleNamespace(order=SimpleNamespace(part=PART, on_track=None), solid=solid)
     offers = {one.name: one for one in solidbowl.offers(sheet, None, mark)}
     assert {f"{name}.stl", f"{name}.3mf", f"{name}.step", "bowl.pdf"} <= set(offers)
     stl, step = offers[f"{name}.stl"].make(), offers[f"{name}.step"].make()

@@ -81,7 +81,7 @@ def test_a_drop_that_never_settles_has_no_class(tmp_path):
     (trace,) = result.traces
     assert result.tally.unsettled == 1
     assert trace.row == trace.face == -1 and not trace.still
-    table = drop.traces(DropStudy(part, aspects, result))
+    table = DropStudy(part, aspects, result).traces_table()
     assert set(table["aspect"]) == {"none"} and table["event"][-1] != "still"
     axes = drop.strip(part, aspects, trace, "box").axes
     texts = [text.get_text() for text in axes[-1].texts + axes[0].texts]

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 import feederscrew as fs
 from feederscrew import bowl as bowls
-from feederscrew.columns import Frame
+from feederscrew.columns import ColumnHead, Frame, share_head
 from feederscrew.output import DPI, style
 from feederscrew.output import report as report_output
 from feederscrew.output.page import as_html, blocks
@@ -173,8 +173,9 @@ def test_repeated_leaves_out_where_and_how_loud():
 def test_cells_for_people_and_a_column_for_each_fate_that_a_part_met():
     columns = {"aspect": ["A", None], "faces": [2, 10], "height_mm": [7.5, np.nan]}
     columns |= {"p_csa": [0.5, 1e-15], "fits": [True, False]}
-    heads, numeric, texts = as_html.texts_of(Frame.of(columns))
-    assert heads[2:4] == [("height", "[mm]"), ("CSA", "[%]")]
+    above = {"height_mm": ColumnHead.of_name("height_mm", "mm"), "p_csa": share_head("p_csa")}
+    heads, numeric, texts = as_html.texts_of(Frame.of(columns).headed(above))
+    assert heads[2:4] == [("height", "[mm]"), ("p csa", "[%]")]
     assert numeric == [False, True, True, True, False]
     assert list(zip(*texts)) == [("A", "2", "7.500", "50.0", "yes"), ("–", "10", "–", "0", "no")]
     # Of five bolts one was turned and one rolled back, and no column said so.
