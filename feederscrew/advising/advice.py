@@ -26,6 +26,7 @@ from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
+from feederscrew.signatures import with_shown_signature
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity
 from feederscrew.studies.rate import Shares, arriving, rate
@@ -300,6 +301,7 @@ class _Feeding:
         )
 
 
+@with_shown_signature
 def advise(
     part: Part,
     bowl: Bowl,

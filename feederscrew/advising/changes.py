@@ -169,9 +169,9 @@ def polygons(area: shapely.Geometry) -> list[shapely.Polygon]:
 def list_changes(part: Part) -> tuple[Change, ...]:
     """Return the small changes that the shape of a part allows.
 
-    Changes that give the same solid, as chamfers of two alike edges, are listed once: volume and principal
-    moments of inertia tell. A change that adds or takes more than ``MOST_VOLUME`` of the part, or leaves it
-    in several pieces, is none.
+    Changes that give the same solid, as chamfers of two alike edges, are listed once: volume and the
+    invariants of its second moments tell. A change that adds or takes more than ``MOST_VOLUME`` of the part,
+    or leaves it in several pieces, is none.
 
     Parameters
     ----------
@@ -277,21 +277,29 @@ def _prism(area: shapely.Geometry, low: float, high: float) -> "Manifold":
 
 
 def _moments(vertices: Points, faces: Triangles) -> Floats:
-    """Volume and sums of the squares of a solid about its centre (4,), in any unit: a print of its shape."""
+    """Volume and invariants of the second moments of a solid about its centre (4,): a print of its shape.
+
+    Trace, sum of the principal minors and determinant do not change as the part turns. Each is taken to the
+    power that makes it a second moment.
+    """
     corners = vertices[faces] - vertices.mean(axis=0)
-    six = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    six = (corners[:, 0] * np.cross(corners[:, 1], corners[:, 2])).sum(axis=1)
     sums = corners.sum(axis=1)
     volume = six.sum() / 6.0
     centre = (six[:, None] * sums).sum(axis=0) / (24.0 * volume)
-    squares = np.einsum("i,ijk,ijl->kl", six, corners, corners) + np.einsum("i,ik,il->kl", six, sums, sums)
-    about = squares / 120.0 - volume * np.outer(centre, centre)
-    return np.concatenate([[volume], np.sort(np.linalg.eigvalsh(about))])
+
+    def moment(i: int, j: int) -> float:
+        own = (corners[:, :, i] * corners[:, :, j]).sum(axis=1) + sums[:, i] * sums[:, j]
+        return float((six * own).sum() / 120.0 - volume * centre[i] * centre[j])
+
+    xx, yy, zz, xy, yz, zx = (moment(*pair) for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
+    minors = xx * yy + yy * zz + zz * xx - xy**2 - yz**2 - zx**2
+    determinant = xx * yy * zz + 2.0 * xy * yz * zx - xx * yz**2 - yy * zx**2 - zz * xy**2
+    return np.array([volume, xx + yy + zz, math.sqrt(max(minors, 0.0)), max(determinant, 0.0) ** (1.0 / 3.0)])
 
 
 def _alike(one: Floats, other: Floats) -> bool:
-    return bool((np.abs(one - other) <= SAME_SHAPE * np.abs(one).max(initial=0.0)).all()) and bool(
-        np.allclose(one, other, rtol=SAME_SHAPE, atol=0.0)
-    )
+    return bool(np.allclose(one, other, rtol=SAME_SHAPE, atol=0.0))
 
 
 def _heads(view: AxisView) -> Iterator[tuple[list[OutlineStep], bool]]:
