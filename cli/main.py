@@ -20,7 +20,7 @@ from feederscrew_cli.talk import options_by_argument, translate, typed
 
 COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
-    "Part": ("aspects", "drop", "inertia", "compare", "calibrate"),
+    "Part": ("advise", "aspects", "drop", "inertia", "compare", "calibrate"),
     "Bowl": ("rate", "tune", "convey", "slide", "floor", "track", "headings"),
     "Files": ("sample", "batch", "config", "cache", "serve", "doctor", "reproduce"),
 }

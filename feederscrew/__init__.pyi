@@ -1,5 +1,6 @@
 """The names of the library and where they live: read by type checkers, and by lazy_loader as it is used."""
 
+from .advising.advice import advise as advise
 from .batch.sweep import sweep as sweep
 from .bowl.record import Bowl as Bowl
 from .conveying.answer import Answer as Answer

@@ -14,14 +14,16 @@ ORDER = [
     "version", "heavy", "arrays", "errors", "check", "units", "columns", "value_forms", "signatures",
     "records", "running", "caches", "processes", "documents", "dxf", "geometry", "part", "resting",
     "tooling.devices", "bowl", "screw", "mechanics", "conveying", "dropping", "tooling", "rates", "trial",
-    "machine", "solidbowl", "studies", "designing", "output", "thesis", "samples", "batch", "serving",
+    "machine", "solidbowl", "studies", "designing", "advising",
+    "output", "thesis", "samples", "batch", "serving",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/documents.py"},
     "pandas": {"feederscrew/output", "feederscrew/records.py"},
     "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/figures.py"},
     "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/dxf.py"},
-    "manifold3d": {"feederscrew/part", "feederscrew/tooling/solid.py", "feederscrew/solidbowl/facets.py"},
+    "manifold3d": {"feederscrew/part", "feederscrew/tooling/solid.py", "feederscrew/solidbowl/facets.py",
+                   "feederscrew/advising/changes.py"},
     "OCP": {"feederscrew/output/solid_files.py", "feederscrew/solidbowl/exact"},
     "click": {"cli"}, "numba": {"feederscrew/geometry"}, "llvmlite": {"feederscrew/geometry"},
     "werkzeug": {"feederscrew/serving", "cli/serve.py"},

@@ -297,6 +297,7 @@ VIEWS = {  # by the name of the record's class
     "Part": RecordView(_part),
     "Bowl": RecordView(_bowl),
     "Aspects": RecordView(_aspects),
+    "AdviceStudy": RecordView(lambda x: f"{x.part.name}: {x.answer}", "advise.offers"),
     "AspectsStudy": RecordView(lambda x: f"{x.part.name} {_aspects(x.aspects)}", "aspects.offers"),
     "Shares": RecordView(lambda x: _aspects(x.aspects)),
     "Answer": RecordView(_convey),

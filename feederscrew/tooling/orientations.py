@@ -682,7 +682,8 @@ def _shoulders(pose: _Pose, height: float, radius: float, distance: float, width
     points = _about_centre(orientation, orientation.axes) + [0.0, 0.0, height]
     size, half = float(np.ptp(points, axis=0).max()), 0.5 * width
     flat = footprints.TOUCHING_SHARE * size
-    foot = points[points[:, 2] < flat]
+    # facets that lie in one plane but for rounding are one aspect: the lowest corner may lie over its plane
+    foot = points[points[:, 2] < max(float(points[:, 2].min()), 0.0) + flat]
     stem, middle = float(np.ptp(foot[:, 1])), float(0.5 * (foot[:, 1].min() + foot[:, 1].max()))
     if stem >= width or np.abs(points[:, 1] - middle).max() < half:
         return None

@@ -51,6 +51,7 @@ study = fs.design(part, "60/min", bowl, up="B,C", diameter=("200 mm", 0.4), sear
 designed: fs.Bowl | None = study.bowl
 family = fs.design([part, part], target=1.0, jobs=2)
 worst: tuple[float, float, float] = family.members[0].delivered
+advised: str | None = fs.advise(part, bowl, with_trials=False, seconds="1 min").grade
 fs.report(part, "A", target="60/min", bowl=bowl, gap="2 mm")
 frame = fs.sweep(fs.convey, bowl, frequency=["40 Hz", 50.0], amplitude=["0.1 mm"], jobs=2)
 fs.reproduce().to_frame("3-9")

@@ -18,7 +18,8 @@ pytestmark = pytest.mark.long  # both, so that one process has them and makes th
 PART = BRACKET.name
 STEEP = ("--set", "restitution=0", "--set", "track.climb=20 deg")  # few settings convey: soon over
 EXACT = ("--rule", "quasistatic")  # nothing is dropped or fed: minutes without a compiler
-HELP = ("compare", "headings", "bowl", "tooling", "trial", "design", "report", "serve")  # minutes without one
+# minutes without a compiler
+HELP = ("advise", "compare", "headings", "bowl", "tooling", "trial", "design", "report", "serve")
 ON_A = [PART, "--aspect", "A"]
 CALLS = dict.fromkeys(HELP, ("--help",)) | dict.fromkeys(
     ("reproduce", "doctor", "cache"), ()

@@ -124,8 +124,8 @@ def test_every_fault_of_a_file_of_names_has_its_line(box, text, line):
 def test_every_command_that_reads_a_part_takes_names(box, run):
     takers = {name for name, command in feeder.commands.items() for p in command.params if p.name == "names"}
     assert takers == {
-        "aspects", "inertia", "drop", "calibrate", "compare", "design", "floor", "track", "headings", "rate",
-        "tune", "tooling", "trial", "bowl", "report",
+        "advise", "aspects", "inertia", "drop", "calibrate", "compare", "design", "floor", "track",
+        "headings", "rate", "tune", "tooling", "trial", "bowl", "report",
     }  # fmt: skip
     written("aspects:\n  on_end: [0, 0, 1]\n")
     answer = run("headings", box, "--names", "n.yaml", "--aspect", "On_End", "--format", "csv")
