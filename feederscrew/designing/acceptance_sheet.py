@@ -18,7 +18,7 @@ from feederscrew.bowl.verified import AGREED_JAMS, PURE
 from feederscrew.designing import evidence
 from feederscrew.errors import Faults, FeederError
 from feederscrew.heavy import heavy
-from feederscrew.trial.fills import FilledQueue
+from feederscrew.trials.fills import FilledQueue
 from feederscrew.units import HOUR, PER_MINUTE, counted
 
 stats = heavy("scipy.stats")

@@ -24,15 +24,15 @@ from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.devices.base import ComparedValue
+from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.isolating.chain import OutcomeKind
+from feederscrew.sorting.isolating.rails import find_head
+from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
-from feederscrew.tooling.devices.base import ComparedValue
-from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.isolating.chain import OutcomeKind
-from feederscrew.tooling.isolating.rails import find_head
-from feederscrew.tooling.orientations import Hanging, Orientation
-from feederscrew.trial.wanted import equivalent_rows, wanted_rows
+from feederscrew.trials.wanted import equivalent_rows, wanted_rows
 
 LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
 

@@ -17,16 +17,16 @@ from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import SELDOM_SHARE, ShortTrial
 from feederscrew.geometry import vectors
 from feederscrew.rates.stream import Orientations
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.blades import Wiper
-from feederscrew.tooling.devices.kinds import dearer
-from feederscrew.tooling.devices.ledges import Rails
-from feederscrew.tooling.isolating import chain, rails
-from feederscrew.tooling.isolating.chain import Design, DesignConstraints, DesignTask
-from feederscrew.tooling.isolating.design import design_around_rails
-from feederscrew.tooling.isolating.rails import USUAL_RAILS, RailSetting, find_head
-from feederscrew.tooling.orientations import SAME_HEAD_COSINE, Neck, Orientation
-from feederscrew.trial.course import Fate
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.blades import Wiper
+from feederscrew.sorting.devices.kinds import dearer
+from feederscrew.sorting.devices.ledges import Rails
+from feederscrew.sorting.isolating import chain, rails
+from feederscrew.sorting.isolating.chain import Design, DesignConstraints, DesignTask
+from feederscrew.sorting.isolating.design import design_around_rails
+from feederscrew.sorting.isolating.rails import USUAL_RAILS, RailSetting, find_head
+from feederscrew.sorting.orientations import SAME_HEAD_COSINE, Neck, Orientation
+from feederscrew.trials.course import Fate
 
 # what is varied, one after the other, from the best chain so far: chosen on an eyelet, a cup with a flange, a
 # T-nut and a push button, for which one of these decides

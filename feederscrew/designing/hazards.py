@@ -22,12 +22,12 @@ from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.lattice import Cells, cells, chords, handles
 from feederscrew.geometry.polygons import turned
 from feederscrew.part.record import Part
-from feederscrew.tooling.isolating.chain import in_mm
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial import part_poses, queue, runs, staging
-from feederscrew.trial.fills import FilledQueue
-from feederscrew.trial.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
-from feederscrew.trial.shape import solid_of
+from feederscrew.sorting.isolating.chain import in_mm
+from feederscrew.sorting.orientations import Orientation
+from feederscrew.trials import part_poses, queue, runs, staging
+from feederscrew.trials.fills import FilledQueue
+from feederscrew.trials.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
+from feederscrew.trials.shape import solid_of
 from feederscrew.units import counted
 
 LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin

@@ -42,14 +42,14 @@ from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part, refuse_many_facets
+from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.isolating import chain as static
+from feederscrew.sorting.isolating.chain import DesignConstraints
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy, check_named
-from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.isolating import chain as static
-from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.trial.fills import FedRow, FilledQueue, FillLevel, PoseKind
-from feederscrew.trial.long_ride import long_ride
-from feederscrew.trial.result import TrialRun
+from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel, PoseKind
+from feederscrew.trials.long_ride import long_ride
+from feederscrew.trials.result import TrialRun
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
 Proofs = list[tuple[DesignStudy, Candidate]]

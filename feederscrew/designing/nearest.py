@@ -22,8 +22,8 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
-from feederscrew.tooling.isolating.chain import OutcomeKind
-from feederscrew.trial.wanted import wanted_states
+from feederscrew.sorting.isolating.chain import OutcomeKind
+from feederscrew.trials.wanted import wanted_states
 
 MINUTE = 60.0
 SLIGHT = 1e-9  # of rounding

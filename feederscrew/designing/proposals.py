@@ -17,18 +17,18 @@ from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.kinds import KINDS, CostClass, cost_class, dearer, names
+from feederscrew.sorting.devices.orientation_names import nearest
+from feederscrew.sorting.devices.orientation_names import rows as rows_of
+from feederscrew.sorting.devices.pneumatics import PULSE
+from feederscrew.sorting.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
+from feederscrew.sorting.isolating.rails import RAIL
+from feederscrew.sorting.orientations import Hanging, Orientation, neck
+from feederscrew.sorting.verdicts import DeviceEncounter
 from feederscrew.studies.tooling import ToolingSearch, tooling
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import KINDS, CostClass, cost_class, dearer, names
-from feederscrew.tooling.devices.orientation_names import nearest
-from feederscrew.tooling.devices.orientation_names import rows as rows_of
-from feederscrew.tooling.devices.pneumatics import PULSE
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
-from feederscrew.tooling.isolating.rails import RAIL
-from feederscrew.tooling.orientations import Hanging, Orientation, neck
-from feederscrew.tooling.verdicts import DeviceEncounter
-from feederscrew.trial.fills import LeavingCounts, PoseKind
-from feederscrew.trial.wanted import aspects_at_any_heading, equivalent_rows, wanted_rows, wanted_states
+from feederscrew.trials.fills import LeavingCounts, PoseKind
+from feederscrew.trials.wanted import aspects_at_any_heading, equivalent_rows, wanted_rows, wanted_states
 
 PROPOSED_ROWS = 6  # orientations for which chains are proposed, the most frequent first
 HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils

@@ -28,16 +28,16 @@ from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.orientation_names import place_of
-from feederscrew.tooling.fates import at_entry
-from feederscrew.tooling.orientations import Hanging, Orientation
-from feederscrew.tooling.orientations import orientations as on_the_track
-from feederscrew.trial import course, runs
-from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import FillLevel
-from feederscrew.trial.looks import AspectsBelow
-from feederscrew.trial.wanted import find_poses, leaves_hanging, wanted_rows, wanted_states
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.orientation_names import place_of
+from feederscrew.sorting.fates import at_entry
+from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.sorting.orientations import orientations as on_the_track
+from feederscrew.trials import course, runs
+from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import FillLevel
+from feederscrew.trials.looks import AspectsBelow
+from feederscrew.trials.wanted import find_poses, leaves_hanging, wanted_rows, wanted_states
 
 SELDOM_SHARE = 5e-3  # [1] orientations that come less often are left out
 STUCK_FATES = (Fate.HANGING, Fate.STOPPED)  # what is stuck on the bare track is pushed on by a queue

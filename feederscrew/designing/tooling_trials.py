@@ -26,13 +26,13 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.running import RunSettings
+from feederscrew.sorting.devices.kinds import KINDS, CostClass, names
+from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.isolating import chain as static
+from feederscrew.sorting.isolating.chain import Design, DesignConstraints, OutcomeKind
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling.devices.kinds import KINDS, CostClass, names
-from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.isolating import chain as static
-from feederscrew.tooling.isolating.chain import Design, DesignConstraints, OutcomeKind
-from feederscrew.trial.wanted import aspects_at_any_heading
+from feederscrew.trials.wanted import aspects_at_any_heading
 
 PARTS_OF_EACH = 2  # parts of each orientation
 MORE_PARTS = 20  # parts beside those where the trial denies nothing, by the shares of the orientations

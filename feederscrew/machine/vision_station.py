@@ -10,9 +10,9 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.rates.stream import on_stretch
-from feederscrew.tooling.devices.base import room_of
-from feederscrew.tooling.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, Sorter
-from feederscrew.tooling.orientations import Orientation, travel_speed
+from feederscrew.sorting.devices.base import room_of
+from feederscrew.sorting.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, Sorter
+from feederscrew.sorting.orientations import Orientation, travel_speed
 
 FIELD_MARGIN = 1.2  # [1] of the window: to align the camera (assumption)
 PIXELS_PER_RESOLUTION = 2.0  # an edge is found to half of what two pixels cover: sampling theorem

@@ -28,9 +28,9 @@ from feederscrew.solidbowl import facets, segments, track
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.measuring import Measures, measures
 from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
+from feederscrew.sorting.devices.pneumatics import SEEN_BY
+from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack
 from feederscrew.studies.bowl import MachineSheet, Order
-from feederscrew.tooling.devices.pneumatics import SEEN_BY
-from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack
 from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5

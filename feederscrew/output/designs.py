@@ -53,9 +53,9 @@ from feederscrew.output import next_tries, part_facts, style, tables
 from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")

@@ -12,9 +12,9 @@ from feederscrew.output import shading
 from feederscrew.output import solidbowl_views as views
 from feederscrew.output.drafting import Drawing, scale_words
 from feederscrew.output.shading import Camera
-from feederscrew.tooling.device_poses import DevicePoses, SharedPose
-from feederscrew.tooling.orientations import HANGING, Hanging, Orientation
-from feederscrew.tooling.pose_words import describe_pose
+from feederscrew.sorting.device_poses import DevicePoses, SharedPose
+from feederscrew.sorting.orientations import HANGING, Hanging, Orientation
+from feederscrew.sorting.pose_words import describe_pose
 from feederscrew.units import MM
 
 SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)  # ISO 5455

@@ -68,11 +68,11 @@ from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.rates.well_oriented import Rate, fed
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.orientations import Orientation
+from feederscrew.sorting.track_sections import Passage
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.track_sections import Passage
-from feederscrew.trial.course import Fate
+from feederscrew.trials.course import Fate
 from feederscrew.units import DEG, MM, MM_S
 
 PART_FACTS = (  # rows of the inertia that the chapter on the part shows

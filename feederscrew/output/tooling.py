@@ -13,18 +13,18 @@ from feederscrew.designing import texts
 from feederscrew.heavy import heavy
 from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
-from feederscrew.studies.rate import PassagesStudy
-from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling import track_sections
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import CostClass
-from feederscrew.tooling.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
-from feederscrew.tooling.orientations import (
+from feederscrew.sorting import track_sections
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.kinds import CostClass
+from feederscrew.sorting.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
+from feederscrew.sorting.orientations import (
     ORIENTATION_NAME_COLUMNS,
     ORIENTATION_SIZE_COLUMNS,
     Orientation,
 )
-from feederscrew.tooling.tooled_track import TooledTrack, lay_out
+from feederscrew.sorting.tooled_track import TooledTrack, lay_out
+from feederscrew.studies.rate import PassagesStudy
+from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.units import MM, counted
 
 if TYPE_CHECKING:

@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike
 from feederscrew.arrays import Floats
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
-from feederscrew.tooling.devices.features import box_ring
-from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
-from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack, bend_ring
+from feederscrew.sorting.devices.features import box_ring
+from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
+from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, bend_ring
 from feederscrew.units import DEG, MM
 
 VIEW_GAP_MM = 20.0  # [mm] between the views

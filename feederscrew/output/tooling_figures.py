@@ -16,12 +16,12 @@ from shapely import affinity
 from feederscrew.arrays import Floats
 from feederscrew.designing import texts
 from feederscrew.output import style
+from feederscrew.sorting import track_sections
+from feederscrew.sorting.devices.base import Device, Verdict
+from feederscrew.sorting.isolating.chain import LEAST_SHARE  # what comes less often has no row
+from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.sorting.track_sections import Passage
 from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling import track_sections
-from feederscrew.tooling.devices.base import Device, Verdict
-from feederscrew.tooling.isolating.chain import LEAST_SHARE  # what comes less often has no row
-from feederscrew.tooling.orientations import Hanging, Orientation
-from feederscrew.tooling.track_sections import Passage
 from feederscrew.units import MM
 
 LIMITS_PAGE_WIDTH_PX = 1200  # pixels

@@ -16,12 +16,12 @@ from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera, Mesh
 from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, margin_words
 from feederscrew.solidbowl import section as printed
-from feederscrew.tooling import track_sections
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.chain import LEAST_SHARE
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack, lay_out
-from feederscrew.tooling.track_sections import Passage
+from feederscrew.sorting import track_sections
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.isolating.chain import LEAST_SHARE
+from feederscrew.sorting.orientations import Orientation
+from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, lay_out
+from feederscrew.sorting.track_sections import Passage
 
 VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of two lines over it
 CAPTION_LINE_PX = 24

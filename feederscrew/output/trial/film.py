@@ -20,12 +20,12 @@ from feederscrew.output.trial import rides as shown
 from feederscrew.output.trial.figures import LOOKS, solids, unroll_path
 from feederscrew.output.trial.rides import WALL, DeviceRide
 from feederscrew.part.record import Part
+from feederscrew.sorting import solid
 from feederscrew.studies.trial import TrialStudy
-from feederscrew.tooling import solid
-from feederscrew.trial.course import Fate
-from feederscrew.trial.queue import QueuedParts
-from feederscrew.trial.result import TrialRun
-from feederscrew.trial.staging import Stage
+from feederscrew.trials.course import Fate
+from feederscrew.trials.queue import QueuedParts
+from feederscrew.trials.result import TrialRun
+from feederscrew.trials.staging import Stage
 from feederscrew.units import MM
 
 Frame = tuple[Floats, str, str]  # image (rows, columns, 3), caption, time
