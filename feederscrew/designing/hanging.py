@@ -150,9 +150,14 @@ class RailsSearch:
     """The rails of one head on one track, and what is tried of them from one trial to the next."""
 
     def __init__(
-        self, lying: Sequence[Orientation], shares: Floats, row: int, before: tuple[Device, ...],
-        request: DesignRequest, cost_class: int,
-    ) -> None:  # fmt: skip
+        self,
+        lying: Sequence[Orientation],
+        shares: Floats,
+        row: int,
+        before: tuple[Device, ...],
+        request: DesignRequest,
+        cost_class: int,
+    ) -> None:
         self.row, self.before, self.shares, self.request = row, before, shares, request
         kinds = (*dearer(cost_class), *request.without)
         self.constraints = DesignConstraints(without=tuple(dict.fromkeys(kinds)), up=request.up)
@@ -224,9 +229,15 @@ class RailsSearch:
         if angle is not None and not self.constraints.allows(Wiper.kind):
             return
         design = design_around_rails(
-            task, device, hangs, shown.gone | ~task.stays, shown.stands, sweep=angle, unswept=shown.unswept,
+            task,
+            device,
+            hangs,
+            shown.gone | ~task.stays,
+            shown.stands,
+            sweep=angle,
+            unswept=shown.unswept,
             partly=True,
-        )  # fmt: skip
+        )
         if design is None:  # the blade has nothing to sweep
             return
         proposal = self._proposal(design, move)
@@ -246,9 +257,14 @@ class RailsSearch:
 
     def _task(self) -> DesignTask:
         return chain.design_task(
-            self.lying, self.shares, self.row, MARGINS[-1], 1.0 - SELDOM_SHARE, self.before,
+            self.lying,
+            self.shares,
+            self.row,
+            MARGINS[-1],
+            1.0 - SELDOM_SHARE,
+            self.before,
             constraints=self.constraints,
-        )  # fmt: skip
+        )
 
     def _rails(self, setting: RailSetting) -> Rails | None:
         own = self.lying[self.row]

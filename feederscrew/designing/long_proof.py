@@ -99,9 +99,14 @@ class RunCounts:
         RunCounts
         """
         return cls(
-            outcome.seconds, outcome.counted_seconds, outcome.delivered, outcome.jams, outcome.climbs,
-            outcome.left_by_entry, outcome.returned_at,
-        )  # fmt: skip
+            outcome.seconds,
+            outcome.counted_seconds,
+            outcome.delivered,
+            outcome.jams,
+            outcome.climbs,
+            outcome.left_by_entry,
+            outcome.returned_at,
+        )
 
     def __add__(self, other: "RunCounts") -> "RunCounts":
         return RunCounts(*(getattr(self, each.name) + getattr(other, each.name) for each in fields(self)))
@@ -308,9 +313,20 @@ def run_key(row: FedRow, run: Run) -> dict[str, str]:
         digest.update(np.ascontiguousarray(shares, float).tobytes())
     names = [orientation.name for orientation in (*row.orientations.lying, *row.orientations.states)]
     settings = (
-        bowl.drive, bowl.friction, bowl.track, bowl.restitution, bowl.gravity, bowl.devices, names,
-        digest.hexdigest(), row.states, row.any_heading, run, run.fill.gaps, run.fill.parts,
-    )  # fmt: skip
+        bowl.drive,
+        bowl.friction,
+        bowl.track,
+        bowl.restitution,
+        bowl.gravity,
+        bowl.devices,
+        names,
+        digest.hexdigest(),
+        row.states,
+        row.any_heading,
+        run,
+        run.fill.gaps,
+        run.fill.parts,
+    )
     return simulation_cache.part_key(row.part, row.aspects, KIND, settings)
 
 

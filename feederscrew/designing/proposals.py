@@ -88,8 +88,10 @@ def recipes_of(cost_class: int, request: DesignRequest) -> list[Recipe]:
     kinds = [(*left_out, *HOLES), *([(*left_out, *TOUCHING_KINDS, *HOLES)] if cost_class == SENSED else [])]
     recipes = [
         Recipe(cost_class, margin, outcome, some)
-        for margin in MARGINS for outcome in outcomes for some in kinds
-    ]  # fmt: skip
+        for margin in MARGINS
+        for outcome in outcomes
+        for some in kinds
+    ]
     if OutcomeKind.LYING in outcomes:
         lying = [
             recipe
@@ -308,14 +310,23 @@ def propose_chain(
     lying = orientations.lying
     without = tuple(dict.fromkeys((*request.without, *recipe.excluded_kinds, *ON_THE_TRACK)))
     static_design = tooling(
-        part, bowl, lying[row].aspect, heading=lying[row].heading, margin=recipe.margin,
-        aspect_shares=aspects, outcome=recipe.outcome, without=without,
+        part,
+        bowl,
+        lying[row].aspect,
+        heading=lying[row].heading,
+        margin=recipe.margin,
+        aspect_shares=aspects,
+        outcome=recipe.outcome,
+        without=without,
         cost_class=CLASSES[recipe.cost_class - 1],
-        purity=ENOUGH_PURITY, up=request.up, play=0.0, tolerance=0.0,  # draws and the loop have them
+        purity=ENOUGH_PURITY,
+        up=request.up,
+        play=0.0,
+        tolerance=0.0,  # draws and the loop have them
         search=ToolingSearch(
             rule=request.rule, turn=recipe.turns, vary=False, seed=request.seed, verdicts=VERDICTS
         ),
-    ).design  # fmt: skip
+    ).design
     if static_design is None or not static_design.efficiency > 0.0:
         return None
     hopeful = static_design.hopeful or 0.0
@@ -324,9 +335,14 @@ def propose_chain(
     cuts = tuple(shorten_pulse(round_cut(cut, lying, row), lying) for cut in static_design.cuts)
     pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
     proposal = Proposal(
-        row, cuts, tuple(static_design.before), Move(MoveKind.PROPOSED, recipe.margin),
-        *find_equivalents(lying, row, request), pure, static_design.margin,
-    )  # fmt: skip
+        row,
+        cuts,
+        tuple(static_design.before),
+        Move(MoveKind.PROPOSED, recipe.margin),
+        *find_equivalents(lying, row, request),
+        pure,
+        static_design.margin,
+    )
     if static_design.isolated:
         return proposal
     # a drop before what stops some orientations; none where no drop tells them

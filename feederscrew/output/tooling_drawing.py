@@ -105,9 +105,14 @@ def svg(*drawn: Any, **sheet: Any) -> str:
 
 
 def draw(
-    strip: TooledTrack, ghosts: Sequence = (), mark: str = "", *, thickness: float | None = None,
-    fields: marking.SheetFields | None = None, titles: Sequence[tuple[str, str]] = (),
-) -> tuple[Drawing, Floats, Floats]:  # fmt: skip
+    strip: TooledTrack,
+    ghosts: Sequence = (),
+    mark: str = "",
+    *,
+    thickness: float | None = None,
+    fields: marking.SheetFields | None = None,
+    titles: Sequence[tuple[str, str]] = (),
+) -> tuple[Drawing, Floats, Floats]:
     """Draw a track section 1:1: unrolled with dimensions, list of devices, as bent, openings of gates.
 
     Layers are named as pens are: ``CUT``, ``CUT_2`` ... one hole each; the same with ``BENT_`` before it as

@@ -19,7 +19,10 @@ kernel = heavy("feederscrew.sorting.kernel")
 BORDER_STEP_M = 1e-4  # [m] between places of a border at which two are compared
 VIEW_TURNS_RAD = tuple(np.radians((-4.0, -2.0, 0.0, 2.0, 4.0)))  # by which parts come turned
 MAX_VIEW_TURN_RAD = np.radians(10.0)  # by which an outline is turned, either way, until it fits
-COARSE, SHRINKS, GOLDEN = 9, 10, 0.5 * (np.sqrt(5.0) - 1.0)  # turns that are tried first, then between them
+# turns that are tried first, then between them
+COARSE = 9
+SHRINKS = 10
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 View = tuple[Posture, float, float]  # heading [rad], and how far from the sensor's line [m]
 

@@ -38,7 +38,9 @@ WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
 TIP_BEYOND_RAIL_SHARE, STRAIGHT_SHANK_SHARE = 0.38, 0.05
 BEYOND_OPENING_M = 10.0  # [m] an opening goes on so far below the track and behind the wall
 # [rad] steps of the way down into a groove, the largest and the smallest, and the axes about which one turns
-FIRST_STEP_RAD, LAST_STEP_RAD, STEP_AXES = np.radians(6.0), np.radians(0.02), 24
+FIRST_STEP_RAD = np.radians(6.0)
+LAST_STEP_RAD = np.radians(0.02)
+STEP_AXES = 24
 YAW_RAD = np.radians(5.0)  # [rad] askew to either side, as it comes to a groove
 HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
 REACH_DIRECTIONS, REACH_TOLERANCE = 160, 0.05  # reaches that are compared; of the part's size, how alike

@@ -41,7 +41,10 @@ SHADES = 40  # of the light on a surface: few make small files
 WALL_HEIGHT, FLOOR_DEPTH = 1.1, 3.0  # of the part's radius: wall above the track, floor below it
 STILLS, IN_A_ROW = 6, 3  # of one part
 STILL_SIZE = (400, 280)  # [px]
-GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above a part's, below each
+GAP = 10  # [px] between stills
+RIM = 24  # round all
+TITLE = 54  # above a part's
+LINE = 26  # below each
 
 
 def require_writer(path: str | os.PathLike[str]) -> None:

@@ -31,7 +31,7 @@ class CostClass(enum.StrEnum):
 
     @classmethod
     def of(cls, devices: Sequence[Device]) -> "CostClass":
-        """Return the class of a chain of devices; steel of none at all."""
+        """Return the class of a chain of devices; steel where there is none."""
         return list(cls)[cost_class(devices) - 1]
 
 

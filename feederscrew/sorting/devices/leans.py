@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 MAX_BANK_RAD = math.radians(45.0)
 # [deg] of a bank that holds what rolls: the least, the greatest, and beyond the angle that just holds
-LEAST, MOST, MORE = 6.0, 15.0, 1.0
+LEAST = 6.0
+MOST = 15.0
+MORE = 1.0
 PROPOSED_BANKS_DEG = (6.0, 10.0, 15.0)  # [deg] that a design tries
 PARTING = -6.0  # [deg] climb of a stretch that separates parts
 HOLDS = 30.0  # [deg] of a groove's faces

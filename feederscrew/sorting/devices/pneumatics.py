@@ -50,7 +50,10 @@ RAYS, GOLDEN = 24, math.pi * (3.0 - math.sqrt(5.0))  # of a jet; [rad] from one 
 TRIED, ENOUGH = 12, 0.5  # heights at which an orientation is blown at, and the least share of the thrust
 JET_REACH_M = 0.5  # [m] no track is wider
 ACROSS = (0.0, 1.0, 0.0)  # straight across the track
-PULSE_BORE_M, PULSE_PRESSURE_PA, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
+# [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
+PULSE_BORE_M = 2e-3
+PULSE_PRESSURE_PA = 3e5
+PULSE = 0.04
 NOZZLE_COUNT = 4.0
 BAR_PA, MS = units.factor("bar", "pressure"), units.factor("ms", "time")
 REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
@@ -426,8 +429,12 @@ class Sorter(Device):
         )
 
     def document_values(self) -> dict[str, Any]:
-        return {"value_mm": self.like[2] / MM, "sees": self.sees, "resolution_mm": self.blur / MM,
-                "thrust_N": self.jet.thrust}  # fmt: skip
+        return {
+            "value_mm": self.like[2] / MM,
+            "sees": self.sees,
+            "resolution_mm": self.blur / MM,
+            "thrust_N": self.jet.thrust,
+        }
 
     def differs(self, encounter: "DeviceEncounter") -> float:
         """Return by how much an orientation is seen to differ from the nearest of the wanted ones.
@@ -560,8 +567,12 @@ class SteadyJet(Device):
         return (f"1 nozzle of {bore} in the wall, blows steadily: regulator {bar}",)
 
     def document_values(self) -> dict[str, Any]:
-        return {"nozzle_mm": self.nozzle / MM, "pressure_bar": self.pressure / 1e5,
-                "height_mm": self.height / MM, "thrust_N": self.jet.thrust}  # fmt: skip
+        return {
+            "nozzle_mm": self.nozzle / MM,
+            "pressure_bar": self.pressure / 1e5,
+            "height_mm": self.height / MM,
+            "thrust_N": self.jet.thrust,
+        }
 
     @property
     def jet(self) -> Nozzles:
