@@ -13,13 +13,13 @@ from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.base import RETURNED
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.falling import along_blade
-from feederscrew.tooling.orientations import add_travel, orientations
-from feederscrew.tooling.verdicts import DeviceEncounter, verdict
-from feederscrew.trial import course
-from feederscrew.trial.course import Fate
+from feederscrew.sorting.devices.base import RETURNED
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.falling import along_blade
+from feederscrew.sorting.orientations import add_travel, orientations
+from feederscrew.sorting.verdicts import DeviceEncounter, verdict
+from feederscrew.trials import course
+from feederscrew.trials.course import Fate
 from feederscrew.units import GRAVITY
 
 DRIVES = ((50, 25, 0.95), (50, 25, 1.3), (50, 20, 1.8), (100, 20, 2.2))  # [Hz], [deg], throw number

@@ -17,8 +17,8 @@ from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import long_ride
+from feederscrew.sorting.orientations import orientations
+from feederscrew.trials import long_ride
 
 REFERENCE = Path(__file__).parent.parent / "docs/measured/held_out/hopping.csv"
 RUN_UP, WAY, SEED = 0.02, 0.04, 3  # [m] the run up is left out

@@ -13,8 +13,8 @@ from feederscrew import bowl as bowls
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.orientations import orientations
-from feederscrew.trial.long_ride import LEFT, ride_of_track
+from feederscrew.sorting.orientations import orientations
+from feederscrew.trials.long_ride import LEFT, ride_of_track
 
 BOWL = (
     "drive.amplitude=0.5186 mm", "drive.frequency=50 Hz", "drive.vibration_angle=20 deg",

@@ -2,7 +2,7 @@
 
 Examples: python benchmarks/mutants.py --each 12 --seed 1
           python benchmarks/mutants.py rates.tipping.goes_over machine.sizing
-          python benchmarks/mutants.py tooling.falling.may_wedge --tests tests/tooling/test_holding.py
+          python benchmarks/mutants.py sorting.falling.may_wedge --tests tests/sorting/test_holding.py
 
 A name is that of a module, function, method or constant below `feederscrew`. The operators change numbers,
 signs, sums, products, comparisons, conditions, minima and sines of what has that name, in a copy of the
@@ -25,14 +25,14 @@ import numpy as np
 ROOT = Path(__file__).parent.parent
 SIZING = "tests/machine/test_sizing_rules.py"
 ROCKING = "tests/rates/test_rocking_noticed.py"
-HOLDING = "tests/tooling/test_holding.py"
-VERDICTS = "tests/tooling/test_verdicts.py"
+HOLDING = "tests/sorting/test_holding.py"
+VERDICTS = "tests/sorting/test_verdicts.py"
 LEDGES = f"{VERDICTS} {HOLDING} tests/rates/test_tipping.py"
 RATES = "tests/rates/test_rate.py"
 CONDITION = "tests/machine/test_condition.py"
 JUDGED = "tests/resting/test_judged_by_measurement.py"
 TIPPING = "tests/rates/test_tipping.py"
-SIGNS = "tests/trial/test_trial_signs.py"
+SIGNS = "tests/trials/test_trial_signs.py"
 TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "machine.sizing": f"{SIZING} tests/cli/test_cli_bowl.py",
     "machine.condition._of_stroke": CONDITION,
@@ -44,22 +44,22 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "resting.rules.recommended.HOP_SHARES": JUDGED,
     "resting.rules.recommended.LAUNCH_WIDTH": JUDGED,
     "resting.rules.recommended.WIDTH_FLOOR": JUDGED,
-    "tooling.verdicts.WORN": HOLDING,
-    "tooling.falling": HOLDING,
-    "tooling.verdicts": HOLDING,
-    "tooling.devices.blades": f"{VERDICTS} tests/tooling/test_clearing.py",
-    "tooling.devices.ledges": LEDGES,
-    "tooling.devices.ledges.Tip.judged": HOLDING,
-    "tooling.devices.openings": LEDGES,
-    "tooling.devices.pneumatics.SteadyJet": VERDICTS,
-    "trial.course": "tests/studies/test_trial_numbers.py tests/trial/test_trial_course.py",
-    "trial.result": "tests/studies/test_trial_numbers.py tests/cli/test_cli_trial.py",
-    "trial.queue.PartsQueue.enter": "tests/trial/test_trial_queue.py -k 'enter or wait'",
-    "trial.kernel.steps._want_no_strike": f"{SIGNS} -k 'slides and 0.2'",
-    "trial.kernel.steps._stand_share": f"{SIGNS} -k stand",
-    "trial.kernel.steps._add_forces": f"{SIGNS} -k air",
-    "trial.kernel.track_contacts.wall_friction": f"{SIGNS} -k 'brake and 0.7'",
-    "trial.kernel.steps.lift_island": "tests/trial/test_trial_queue.py -k pushed_apart",
+    "sorting.verdicts.WORN": HOLDING,
+    "sorting.falling": HOLDING,
+    "sorting.verdicts": HOLDING,
+    "sorting.devices.blades": f"{VERDICTS} tests/sorting/test_clearing.py",
+    "sorting.devices.ledges": LEDGES,
+    "sorting.devices.ledges.Tip.judged": HOLDING,
+    "sorting.devices.openings": LEDGES,
+    "sorting.devices.pneumatics.SteadyJet": VERDICTS,
+    "trials.course": "tests/studies/test_trial_numbers.py tests/trials/test_trial_course.py",
+    "trials.result": "tests/studies/test_trial_numbers.py tests/cli/test_cli_trial.py",
+    "trials.queue.PartsQueue.enter": "tests/trials/test_trial_queue.py -k 'enter or wait'",
+    "trials.kernel.steps._want_no_strike": f"{SIGNS} -k 'slides and 0.2'",
+    "trials.kernel.steps._stand_share": f"{SIGNS} -k stand",
+    "trials.kernel.steps._add_forces": f"{SIGNS} -k air",
+    "trials.kernel.track_contacts.wall_friction": f"{SIGNS} -k 'brake and 0.7'",
+    "trials.kernel.steps.lift_island": "tests/trials/test_trial_queue.py -k pushed_apart",
     "dropping.kernel.falling._press_on": "tests/dropping/test_drop.py",
 }
 EXCUSED = {  # constants whose value within reason has no consequence, and why
@@ -69,7 +69,7 @@ EXCUSED = {  # constants whose value within reason has no consequence, and why
     "rates.tipping.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest within the same instant",
     "rates.tipping.TIPPING_PHASES": "any number of instants that shows a stroke",
     "rates.tipping.MAX_FORCE_OFFSET_HEIGHTS": "any width beyond every force: it tips over the ends alone",
-    "tooling.falling.FAR": "any length beyond every foot",
+    "sorting.falling.FAR": "any length beyond every foot",
 }
 COPIED = (
     "feederscrew",

@@ -26,9 +26,9 @@ from feederscrew.solidbowl import facets, measuring, riding
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import ways_down
 from feederscrew.solidbowl.plan import MATERIAL_NAMES, SolidOptions, material, plan
-from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.tooled_track import lay_out
-from feederscrew.trial import course
+from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.tooled_track import lay_out
+from feederscrew.trials import course
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solidbowl"))
 import on_mesh

@@ -19,7 +19,7 @@ from feederscrew import part as parts
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.trial.long_ride import LEFT, ride_of_track
+from feederscrew.trials.long_ride import LEFT, ride_of_track
 
 BANKS_DEG = (0.0, 3.0, 8.0)
 DRIVES = (  # of throw numbers 2.2 and 0.89: in the second nothing hops

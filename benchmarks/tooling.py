@@ -13,9 +13,9 @@ import numpy as np
 import shapely
 import waits
 
-from feederscrew.tooling import footprints, kernel
-from feederscrew.tooling.devices.openings import polygon
-from feederscrew.tooling.footprints import Footprint
+from feederscrew.sorting import footprints, kernel
+from feederscrew.sorting.devices.openings import polygon
+from feederscrew.sorting.footprints import Footprint
 
 RADIUS, DISTANCE, CORNERS = 0.15, 9e-3, 30
 TARGETS = {"one-number verdicts": 100_000, "polygon verdicts": 2_000}  # a second and core

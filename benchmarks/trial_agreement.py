@@ -25,12 +25,12 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.part import load
+from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.sorting.isolating.chain import limits
+from feederscrew.sorting.isolating.design import TRACK_REMARK
 from feederscrew.studies import tooling as tooling_study
 from feederscrew.studies import trial
-from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.isolating.chain import limits
-from feederscrew.tooling.isolating.design import TRACK_REMARK
-from feederscrew.trial import course, result
+from feederscrew.trials import course, result
 
 sys.path.insert(0, str(Path(__file__).parent))
 import trial_parts

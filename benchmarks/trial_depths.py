@@ -20,7 +20,7 @@ from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.trial import course
+from feederscrew.trials import course
 
 PAGE = Path(__file__).parent.parent / "docs/method/trial.md"
 BEGIN, END = "<!-- depths -->\n", "<!-- end of depths -->"

@@ -181,7 +181,7 @@ def _time(seconds: float) -> str:
 KERNELS = {  # what waits for the compiler once: its module, and how it is told
     "drops": ("feederscrew.dropping.drop_test", "compiled", "the drop kernel", "ten seconds"),
     "plate": ("feederscrew.dropping.plate_test", "compiled", "the plate's kernel", "ten seconds"),
-    "trial": ("feederscrew.trial.runs", "is_compiled", "the trial's kernel", "a minute"),
+    "trial": ("feederscrew.trials.runs", "is_compiled", "the trial's kernel", "a minute"),
     "conveying": ("feederscrew.conveying.answer", "sweep_compiled", "the conveying kernel", "ten seconds"),
 }
 

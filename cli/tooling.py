@@ -157,10 +157,14 @@ def tooling(
             own = {name: request[name] for name in ("cost_class", "efficiency", "outcome")}
             own["without"] = may_be_left_out(request["without"])
             result = tooling_trials.try_designs(
-                result, propose, kept_keys={s.key.name for s in settings if s.is_own}, until=until,
+                result,
+                propose,
+                kept_keys={s.key.name for s in settings if s.is_own},
+                until=until,
                 heading_given=request["heading"] is not None,
-                before=lambda: progress.tell_compiling(out, "trial"), **own,
-            )  # fmt: skip
+                before=lambda: progress.tell_compiling(out, "trial"),
+                **own,
+            )
             if time.monotonic() > until:
                 count = counted(len(result.trials), "proposal was", "proposals were")
                 out.warn(f"the time (--limit) is over: {count} sent through a trial, no other")

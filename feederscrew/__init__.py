@@ -9,37 +9,17 @@ N samples; other letters are explained where they stand. SI units and radians th
 unit.
 """
 
-import sys
-from importlib import import_module
-from types import ModuleType
-
 import lazy_loader
 
 from feederscrew.version import __version__ as __version__
 
 _of_stub, _names_of_stub, __all__ = lazy_loader.attach_stub(__name__, __file__)
 __all__.remove("__version__")
-ROOMS = ("tooling", "trial")  # functions that share their name with a folder of the package
-
-
-class _Library(ModuleType):
-    """The package: importing the folder `feederscrew.tooling` does not replace the function of that name."""
-
-    def __setattr__(self, name: str, value: object) -> None:
-        if not (name in __all__ and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Library
 
 
 def __getattr__(name: str) -> object:
     """Import a public name when it is first used: ``import feederscrew`` stays quick."""
     value = _of_stub(name)
-    if name in ROOMS:  # `import feederscrew.tooling.fates as x` looks for `fates` in the function
-        folder = import_module(f"{__name__}.{name}").__dict__
-        folder.update(value.__dict__)
-        value.__dict__ = folder
     globals()[name] = value
     return value
 

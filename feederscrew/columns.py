@@ -19,10 +19,41 @@ from feederscrew.units import UNITS_BY_DIMENSION
 
 R = TypeVar("R")  # the record of a row, or one that holds an array for each column
 UnitName = Literal[
-    "", "share", "%", "mm", "um", "mm2", "mm3", "mm4", "l", "deg", "rad", "sr", "s", "Hz", "1/s", "1/min",
-    "mm/s", "m/s", "m/s2", "rad/s2", "g", "kg", "g/cm3", "kg/m3", "g mm2", "kg m2", "mJ", "uJ",
-    "1/h", "N", "mN", "N mm", "N/mm", "MPa",
-]  # fmt: skip
+    "",
+    "share",
+    "%",
+    "mm",
+    "um",
+    "mm2",
+    "mm3",
+    "mm4",
+    "l",
+    "deg",
+    "rad",
+    "sr",
+    "s",
+    "Hz",
+    "1/s",
+    "1/min",
+    "mm/s",
+    "m/s",
+    "m/s2",
+    "rad/s2",
+    "g",
+    "kg",
+    "g/cm3",
+    "kg/m3",
+    "g mm2",
+    "kg m2",
+    "mJ",
+    "uJ",
+    "1/h",
+    "N",
+    "mN",
+    "N mm",
+    "N/mm",
+    "MPa",
+]
 ENDINGS = {
     "%": "_percent",
     "1/s": "_per_s",
@@ -170,9 +201,11 @@ class Frame(dict[str, Any]):
     hidden: frozenset[str]  # columns that a table for people leaves out
 
     def __init__(
-        self, columns: Mapping[str, Any] | None = None, heads: Mapping[str, ColumnHead] | None = None,
+        self,
+        columns: Mapping[str, Any] | None = None,
+        heads: Mapping[str, ColumnHead] | None = None,
         hidden: Iterable[str] = (),
-    ) -> None:  # fmt: skip
+    ) -> None:
         super().__init__(columns or {})
         self.heads, self.hidden = dict(heads or {}), frozenset(hidden)
 

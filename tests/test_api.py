@@ -39,7 +39,7 @@ def part():
         ("import feederscrew.batch, feederscrew as fs; fs.rate; print(*[n for n in dir(fs) if n[0] != '_'])",
          " ".join(sorted(fs.__all__))),
         # importing a room would put it in the place of the function
-        ("import feederscrew.tooling.isolating.chain, feederscrew.trial.course, feederscrew as fs;"
+        ("import feederscrew.sorting.isolating.chain, feederscrew.trials.course, feederscrew as fs;"
          " from feederscrew import tooling; print(tooling is fs.tooling, callable(fs.trial))", "True True"),
     ],
     ids=["nothing heavy", "names alone", "no rooms"],

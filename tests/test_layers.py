@@ -7,13 +7,13 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.sorting.devices.kinds import KINDS
 
 ROOT = Path(__file__).parent.parent
 ORDER = [
     "version", "heavy", "arrays", "errors", "check", "units", "columns", "value_forms", "signatures",
     "records", "running", "caches", "processes", "documents", "dxf", "geometry", "part", "resting",
-    "tooling.devices", "bowl", "screw", "mechanics", "conveying", "dropping", "tooling", "rates", "trial",
+    "sorting.devices", "bowl", "screw", "mechanics", "conveying", "dropping", "sorting", "rates", "trials",
     "machine", "solidbowl", "studies", "designing", "advising",
     "output", "thesis", "samples", "batch", "serving",
 ]  # fmt: skip
@@ -22,7 +22,7 @@ DOORS = {
     "pandas": {"feederscrew/output", "feederscrew/records.py"},
     "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/figures.py"},
     "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/dxf.py"},
-    "manifold3d": {"feederscrew/part", "feederscrew/tooling/solid.py", "feederscrew/solidbowl/facets.py",
+    "manifold3d": {"feederscrew/part", "feederscrew/sorting/solid.py", "feederscrew/solidbowl/facets.py",
                    "feederscrew/advising/changes.py"},
     "OCP": {"feederscrew/output/solid_files.py", "feederscrew/solidbowl/exact"},
     "click": {"cli"}, "numba": {"feederscrew/geometry"}, "llvmlite": {"feederscrew/geometry"},

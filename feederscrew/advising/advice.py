@@ -27,14 +27,14 @@ from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.signatures import with_shown_signature
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.kinds import CostClass
+from feederscrew.sorting.isolating.chain import Design
+from feederscrew.sorting.orientations import Orientation, name_mirror_images, orientations
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity
 from feederscrew.studies.rate import Shares, arriving, rate
 from feederscrew.studies.tooling import ToolingSearch, ToolingStudy, tooling_without
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import CostClass
-from feederscrew.tooling.isolating.chain import Design
-from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations
 from feederscrew.units import MINUTE
 
 ORIENTATIONS = 6  # the most frequent ones of a part that are looked at

@@ -7,8 +7,8 @@ from dataclasses import fields, is_dataclass
 from feederscrew import documents, units
 from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError, FeederError
-from feederscrew.tooling.devices.base import WRITTEN_STEP_M, Device
-from feederscrew.tooling.devices.values import written
+from feederscrew.sorting.devices.base import WRITTEN_STEP_M, Device
+from feederscrew.sorting.devices.values import written
 
 DEVICES_SECTION = "devices"  # of a bowl file
 THREADED_SHANK = (  # files of bolts often have the minor diameter of the thread as shank
@@ -195,7 +195,7 @@ def _same_device(a: object, b: object) -> bool:
 
 
 def _device(item: documents.Node) -> Device:
-    from feederscrew.tooling.devices.kinds import KINDS, find_kind  # 20 ms, where a bowl has devices
+    from feederscrew.sorting.devices.kinds import KINDS, find_kind  # 20 ms, where a bowl has devices
 
     if item.kind != "mapping" or len(item.entries) != 1:
         raise ConfigError(item.where, "is not a device", "write one '- wiper: 6 mm' a line")

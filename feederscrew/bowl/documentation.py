@@ -10,8 +10,8 @@ from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.reading import OF_THE_MACHINE, default
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
 from feederscrew.errors import FeederError
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.kinds import KINDS
 from feederscrew.value_forms import UNITLESS, quantity
 
 SCHEMA_FILE = "feeder.schema.json"  # what the JSON Schema is called beside a bowl file

@@ -22,7 +22,7 @@ from feederscrew.columns import Column
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
 from feederscrew.geometry.grids import GridAxis
-from feederscrew.tooling.devices.base import Device
+from feederscrew.sorting.devices.base import Device
 
 DEVICES_SECTION = devices.DEVICES_SECTION
 RECORDS = {"drive": Drive, "friction": Friction, "track": Track, "machine": Machine, "sizing": Sizing}

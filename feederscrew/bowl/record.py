@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew.columns import Column
 from feederscrew.records import ReadableRecord
-from feederscrew.tooling.devices.base import Device
+from feederscrew.sorting.devices.base import Device
 
 if TYPE_CHECKING:
     from feederscrew.bowl.values import BowlValues, Overrides

@@ -16,7 +16,7 @@ from feederscrew import documents, units
 from feederscrew.bowl.record import Bowl
 from feederscrew.columns import Column
 from feederscrew.part.record import Part
-from feederscrew.tooling.devices.base import Device
+from feederscrew.sorting.devices.base import Device
 
 VERIFIED_SECTION = "verified"
 SHARED = {field.name for field in fields(Device)}  # what every device has

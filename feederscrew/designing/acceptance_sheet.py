@@ -18,16 +18,25 @@ from feederscrew.bowl.verified import AGREED_JAMS, PURE
 from feederscrew.designing import evidence
 from feederscrew.errors import Faults, FeederError
 from feederscrew.heavy import heavy
-from feederscrew.trial.fills import FilledQueue
+from feederscrew.trials.fills import FilledQueue
 from feederscrew.units import HOUR, PER_MINUTE, counted
 
 stats = heavy("scipy.stats")
 
 REQUIRED_COLUMNS = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
 SHEET_COLUMNS = (
-    "quantity", "fill", "low", "high", "unit", "plan", "computed", "computed_low", "computed_high",
-    "measured", "sample",
-)  # fmt: skip
+    "quantity",
+    "fill",
+    "low",
+    "high",
+    "unit",
+    "plan",
+    "computed",
+    "computed_low",
+    "computed_high",
+    "measured",
+    "sample",
+)
 TEXT_COLUMNS = ("quantity", "fill", "unit", "plan")
 MAX_BYTES, MAX_HEAD_BYTES = 200_000, 1000  # of a sheet; of its first line
 MAX_WRONG = 3  # wrong parts of the largest sample that a plan names
@@ -181,22 +190,42 @@ def lines_of_fill(queue: FilledQueue, target: float, agreed_jams: float = AGREED
     minutes = f"{RATE_SECONDS / units.MINUTE:.4g} min"
     return [
         SheetLine(
-            Quantity.RATE, queue.fill, UNITS[Quantity.RATE], target / PER_MINUTE, None,
-            queue.rate / PER_MINUTE, low / PER_MINUTE, high / PER_MINUTE,
-            f"count good parts for {minutes} at least", sample=RATE_SECONDS,
+            Quantity.RATE,
+            queue.fill,
+            UNITS[Quantity.RATE],
+            target / PER_MINUTE,
+            None,
+            queue.rate / PER_MINUTE,
+            low / PER_MINUTE,
+            high / PER_MINUTE,
+            f"count good parts for {minutes} at least",
+            sample=RATE_SECONDS,
         ),
         SheetLine(
-            Quantity.YIELD, queue.fill, UNITS[Quantity.YIELD], 100.0 * PURE, None, good,
-            100.0 * evidence.share_at_least(queue.right, queue.left), None,
-            yield_plan(PURE), sample=float(planned_sample(PURE, (queue.right, queue.left))),
+            Quantity.YIELD,
+            queue.fill,
+            UNITS[Quantity.YIELD],
+            100.0 * PURE,
+            None,
+            good,
+            100.0 * evidence.share_at_least(queue.right, queue.left),
+            None,
+            yield_plan(PURE),
+            sample=float(planned_sample(PURE, (queue.right, queue.left))),
         ),
         SheetLine(
-            Quantity.JAMS, queue.fill, UNITS[Quantity.JAMS], None, agreed_jams * HOUR,
-            HOUR * queue.jams / queue.seconds, None,
-            HOUR * evidence.rate_at_most(queue.jams, queue.seconds), jam_plan(agreed_jams),
+            Quantity.JAMS,
+            queue.fill,
+            UNITS[Quantity.JAMS],
+            None,
+            agreed_jams * HOUR,
+            HOUR * queue.jams / queue.seconds,
+            None,
+            HOUR * evidence.rate_at_most(queue.jams, queue.seconds),
+            jam_plan(agreed_jams),
             sample=units.MINUTE * minutes_to_run(agreed_jams, 0),
         ),
-    ]  # fmt: skip
+    ]
 
 
 def yield_plan(demand: float) -> str:
@@ -347,10 +376,19 @@ def _line(where: str, row: dict) -> SheetLine:
     read = {name: _number(where, name, row.get(name)) for name in number_columns}
     value = {name: number for name, (number, _) in read.items()}
     line = SheetLine(
-        texts["quantity"], texts["fill"], texts["unit"], value["low"], value["high"], value["computed"],
-        value["computed_low"], value["computed_high"], texts["plan"], value["measured"], value["sample"],
+        texts["quantity"],
+        texts["fill"],
+        texts["unit"],
+        value["low"],
+        value["high"],
+        value["computed"],
+        value["computed_low"],
+        value["computed_high"],
+        texts["plan"],
+        value["measured"],
+        value["sample"],
         measured_step=read["measured"][1],
-    )  # fmt: skip
+    )
     for column, what, mend in _contradictions(line):
         raise FeederError(where, f"column '{column}': {what}", mend)
     return line

@@ -26,6 +26,7 @@ from feederscrew.machine import checks, drive_sizing
 from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.part.record import Part
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
+from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.studies import arguments, solidbowl
 from feederscrew.studies import bowl as machines
 from feederscrew.studies.arguments import Quantity, former_keywords
@@ -33,7 +34,6 @@ from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
 from feederscrew.studies.tooling import listed as names_of
 from feederscrew.studies.tooling import may_be_left_out
-from feederscrew.tooling.isolating.chain import OutcomeKind
 
 
 @dataclass(frozen=True)

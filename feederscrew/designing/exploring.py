@@ -24,15 +24,15 @@ from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.devices.base import ComparedValue
+from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.isolating.chain import OutcomeKind
+from feederscrew.sorting.isolating.rails import find_head
+from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
-from feederscrew.tooling.devices.base import ComparedValue
-from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.isolating.chain import OutcomeKind
-from feederscrew.tooling.isolating.rails import find_head
-from feederscrew.tooling.orientations import Hanging, Orientation
-from feederscrew.trial.wanted import equivalent_rows, wanted_rows
+from feederscrew.trials.wanted import equivalent_rows, wanted_rows
 
 LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
 
@@ -119,9 +119,13 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
             track = idea.track
             start = replace(calm_drive.drive_at(track.plain_bowl, 0.0), devices=search.plain.devices)
             rails = hanging.RailsSearch(
-                search.through(start).lying, track.weights, idea.row, search.plain.devices, search.request,
+                search.through(start).lying,
+                track.weights,
+                idea.row,
+                search.plain.devices,
+                search.request,
                 cost_class,
-            )  # fmt: skip
+            )
             yield from _try_rails(search, track, rails)
             continue
         proposal = idea.proposal or _proposal(search, idea)
@@ -248,9 +252,14 @@ def _tracks(search: Search) -> list[BankedTrack]:
         banks = (search.plain.track.bank,)
     for number, bank in enumerate(banks):
         plain_bowl = calm_drive.section(
-            search.part, aspects, search.plain, search.kept_keys, diameter=search.request.diameter,
-            bank=bank, drive=search.request.drive,
-        )  # fmt: skip
+            search.part,
+            aspects,
+            search.plain,
+            search.kept_keys,
+            diameter=search.request.diameter,
+            bank=bank,
+            drive=search.request.drive,
+        )
         start = replace(calm_drive.drive_at(plain_bowl, 0.0), devices=search.plain.devices)
         if state.shares is None:
             state.shares = entry_shares(search, start)
@@ -418,9 +427,14 @@ def _propose(search: Search, track: BankedTrack, row: int, recipe: proposals.Rec
         step = math.ceil(math.log(velocity, policy.velocity_step) - 1e-9)
         bowl = calm_drive.drive_at(track.plain_bowl, policy.velocity_step**step)
         return proposals.propose_chain(
-            search.part, replace(bowl, devices=search.plain.devices), search.arrivals.aspects, row,
-            track.orientations, search.request, recipe,
-        )  # fmt: skip
+            search.part,
+            replace(bowl, devices=search.plain.devices),
+            search.arrivals.aspects,
+            row,
+            track.orientations,
+            search.request,
+            recipe,
+        )
 
     share = share_of(search, track, row)
     proposal = at_drive_for(share)
@@ -724,12 +738,20 @@ def _screen(search: Search, candidate: Candidate) -> Candidate:
     if not candidate.attempt.clean or candidate.attempt.rate < request.target or request.quick:
         return candidate
     robust = robust_run(
-        search.part, candidate.bowl, candidate.orientations, candidate.weights, candidate.proposal.rows,
-        draws=min(search.policy.screening_draws, request.draws), tolerance=request.tolerance, run=request.run,
-        any_heading=candidate.proposal.any_heading, enough=search.share_needed(candidate.attempt),
-        returnable=short_trials.find_returnable_rows(candidate.trial), shown=candidate.shown,
+        search.part,
+        candidate.bowl,
+        candidate.orientations,
+        candidate.weights,
+        candidate.proposal.rows,
+        draws=min(search.policy.screening_draws, request.draws),
+        tolerance=request.tolerance,
+        run=request.run,
+        any_heading=candidate.proposal.any_heading,
+        enough=search.share_needed(candidate.attempt),
+        returnable=short_trials.find_returnable_rows(candidate.trial),
+        shown=candidate.shown,
         max_failures=1,
-    )  # fmt: skip
+    )
     if robust.partial:
         raise KeyboardInterrupt
     if robust.held == robust.draws:
@@ -866,9 +888,16 @@ def _short(
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
     policy = search.policy
     single = functools.partial(
-        short_trials.try_parts, search.part, bowl, orientations, weights, proposal.rows,
-        run=search.request.run, aspects=search.arrivals.aspects, any_heading=proposal.any_heading,
-    )  # fmt: skip
+        short_trials.try_parts,
+        search.part,
+        bowl,
+        orientations,
+        weights,
+        proposal.rows,
+        run=search.request.run,
+        aspects=search.arrivals.aspects,
+        any_heading=proposal.any_heading,
+    )
     rows = short_trials.frequent_rows(weights, (proposal.row,))
     if proposal.hangs:  # which rows hang is what the trial shows
         count = min(policy.rails_parts // len(rows), policy.rails_parts_each)
@@ -914,7 +943,15 @@ def try_untried(
     if not rows:
         return trial
     more = short_trials.try_parts(
-        search.part, bowl, ways, trial.shares, proposal.rows, rows=rows, count=search.policy.trial_parts,
-        run=search.request.run, aspects=search.arrivals.aspects, any_heading=proposal.any_heading,
-    )  # fmt: skip
+        search.part,
+        bowl,
+        ways,
+        trial.shares,
+        proposal.rows,
+        rows=rows,
+        count=search.policy.trial_parts,
+        run=search.request.run,
+        aspects=search.arrivals.aspects,
+        any_heading=proposal.any_heading,
+    )
     return replace(trial.join(more), velocity=trial.velocity)

@@ -15,9 +15,9 @@ from feederscrew.designing.search import Search
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
+from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.sorting.isolating.chain import Cut
 from feederscrew.studies.aspects import find_aspects
-from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.isolating.chain import Cut
 
 PROPOSED = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed))
 SHARED_TRACK_KEYS = ("track.radius", "track.width", "track.bank", "track.climb")

@@ -13,7 +13,7 @@ from feederscrew.bowl.verified import PURE, RATE_KEPT, SHOWN_PURITY
 from feederscrew.columns import Column
 from feederscrew.designing import evidence
 from feederscrew.heavy import heavy
-from feederscrew.trial.fills import BARE_TRACK, FilledQueue, LeavingPose, PoseKind
+from feederscrew.trials.fills import BARE_TRACK, FilledQueue, LeavingPose, PoseKind
 
 stats = heavy("scipy.stats")
 

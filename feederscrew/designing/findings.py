@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from feederscrew.columns import Column
-from feederscrew.trial.course import Fate
+from feederscrew.trials.course import Fate
 
 
 class Cause(enum.StrEnum):

@@ -17,16 +17,16 @@ from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import SELDOM_SHARE, ShortTrial
 from feederscrew.geometry import vectors
 from feederscrew.rates.stream import Orientations
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.blades import Wiper
-from feederscrew.tooling.devices.kinds import dearer
-from feederscrew.tooling.devices.ledges import Rails
-from feederscrew.tooling.isolating import chain, rails
-from feederscrew.tooling.isolating.chain import Design, DesignConstraints, DesignTask
-from feederscrew.tooling.isolating.design import design_around_rails
-from feederscrew.tooling.isolating.rails import USUAL_RAILS, RailSetting, find_head
-from feederscrew.tooling.orientations import SAME_HEAD_COSINE, Neck, Orientation
-from feederscrew.trial.course import Fate
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.blades import Wiper
+from feederscrew.sorting.devices.kinds import dearer
+from feederscrew.sorting.devices.ledges import Rails
+from feederscrew.sorting.isolating import chain, rails
+from feederscrew.sorting.isolating.chain import Design, DesignConstraints, DesignTask
+from feederscrew.sorting.isolating.design import design_around_rails
+from feederscrew.sorting.isolating.rails import USUAL_RAILS, RailSetting, find_head
+from feederscrew.sorting.orientations import SAME_HEAD_COSINE, Neck, Orientation
+from feederscrew.trials.course import Fate
 
 # what is varied, one after the other, from the best chain so far: chosen on an eyelet, a cup with a flange, a
 # T-nut and a push button, for which one of these decides
@@ -150,9 +150,14 @@ class RailsSearch:
     """The rails of one head on one track, and what is tried of them from one trial to the next."""
 
     def __init__(
-        self, lying: Sequence[Orientation], shares: Floats, row: int, before: tuple[Device, ...],
-        request: DesignRequest, cost_class: int,
-    ) -> None:  # fmt: skip
+        self,
+        lying: Sequence[Orientation],
+        shares: Floats,
+        row: int,
+        before: tuple[Device, ...],
+        request: DesignRequest,
+        cost_class: int,
+    ) -> None:
         self.row, self.before, self.shares, self.request = row, before, shares, request
         kinds = (*dearer(cost_class), *request.without)
         self.constraints = DesignConstraints(without=tuple(dict.fromkeys(kinds)), up=request.up)
@@ -224,9 +229,15 @@ class RailsSearch:
         if angle is not None and not self.constraints.allows(Wiper.kind):
             return
         design = design_around_rails(
-            task, device, hangs, shown.gone | ~task.stays, shown.stands, sweep=angle, unswept=shown.unswept,
+            task,
+            device,
+            hangs,
+            shown.gone | ~task.stays,
+            shown.stands,
+            sweep=angle,
+            unswept=shown.unswept,
             partly=True,
-        )  # fmt: skip
+        )
         if design is None:  # the blade has nothing to sweep
             return
         proposal = self._proposal(design, move)
@@ -246,9 +257,14 @@ class RailsSearch:
 
     def _task(self) -> DesignTask:
         return chain.design_task(
-            self.lying, self.shares, self.row, MARGINS[-1], 1.0 - SELDOM_SHARE, self.before,
+            self.lying,
+            self.shares,
+            self.row,
+            MARGINS[-1],
+            1.0 - SELDOM_SHARE,
+            self.before,
             constraints=self.constraints,
-        )  # fmt: skip
+        )
 
     def _rails(self, setting: RailSetting) -> Rails | None:
         own = self.lying[self.row]

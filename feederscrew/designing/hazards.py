@@ -22,12 +22,12 @@ from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.lattice import Cells, cells, chords, handles
 from feederscrew.geometry.polygons import turned
 from feederscrew.part.record import Part
-from feederscrew.tooling.isolating.chain import in_mm
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial import part_poses, queue, runs, staging
-from feederscrew.trial.fills import FilledQueue
-from feederscrew.trial.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
-from feederscrew.trial.shape import solid_of
+from feederscrew.sorting.isolating.chain import in_mm
+from feederscrew.sorting.orientations import Orientation
+from feederscrew.trials import part_poses, queue, runs, staging
+from feederscrew.trials.fills import FilledQueue
+from feederscrew.trials.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
+from feederscrew.trials.shape import solid_of
 from feederscrew.units import counted
 
 LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin
@@ -258,7 +258,9 @@ def strut(orientation: Orientation, width: float) -> float:
     return float(angles[int(np.argmin(np.abs(np.array(wide) - width)))])
 
 
-LINES, NEAR, NESTED = 60, 0.02, 0.3  # lines through a part; of their longest; of a part that is in another
+LINES = 60  # lines through a part
+NEAR = 0.02  # of their longest
+NESTED = 0.3  # of a part that is in another
 ONE_SIDED_LEAN = 0.5  # mean of the sides' normals: what touches on one side only slides off
 
 
@@ -457,8 +459,12 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[Floats, Floats]]:
 
 HOLDING_SHARE = 0.75  # of the pulls, that do not part the two: then they may hook
 PULL, SECONDS = 0.12, 0.06  # [sqrt(g L)] by which a pull changes their velocities; [sqrt(L/g)] to the next
-PULLS, SHAKES, SHAKEN = 40, 15, 1  # in one direction; then in any, away from each other in the mean; seed
-LEAKS, SEEN, SURE = 1.7, 400, 7  # cells deep; so many of its cells are looked at; pulls that hold, of a ring
+PULLS = 40  # in one direction
+SHAKES = 15  # then in any, away from each other in the mean
+SHAKEN = 1  # seed
+LEAKS = 1.7  # cells deep
+SEEN = 400  # so many of its cells are looked at
+SURE = 7  # pulls that hold, of a ring
 OVERLAP_DEPTH = 0.02  # of the unit of length: so deep in each other no two parts are
 HIGH, FAR = 1e3, 1e6  # over the track and from the wall, in units of length; radius of the wall
 

@@ -29,8 +29,8 @@ from feederscrew.errors import FeederError
 from feederscrew.processes import Process, ProcessEnded, server_context
 from feederscrew.running import RunSettings
 from feederscrew.studies import simulation_cache
-from feederscrew.trial.fills import FedRow, FilledQueue, FillLevel
-from feederscrew.trial.queue import QueuedParts
+from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel
+from feederscrew.trials.queue import QueuedParts
 
 RUN_S = 300.0  # [s] of bowl time of one run, at the most: what an end in mid run can lose
 REFUSED_CONFIDENCE = 0.99  # [1] one-sided, that a fill jams more often than was agreed: it ends there
@@ -99,9 +99,14 @@ class RunCounts:
         RunCounts
         """
         return cls(
-            outcome.seconds, outcome.counted_seconds, outcome.delivered, outcome.jams, outcome.climbs,
-            outcome.left_by_entry, outcome.returned_at,
-        )  # fmt: skip
+            outcome.seconds,
+            outcome.counted_seconds,
+            outcome.delivered,
+            outcome.jams,
+            outcome.climbs,
+            outcome.left_by_entry,
+            outcome.returned_at,
+        )
 
     def __add__(self, other: "RunCounts") -> "RunCounts":
         return RunCounts(*(getattr(self, each.name) + getattr(other, each.name) for each in fields(self)))
@@ -308,9 +313,20 @@ def run_key(row: FedRow, run: Run) -> dict[str, str]:
         digest.update(np.ascontiguousarray(shares, float).tobytes())
     names = [orientation.name for orientation in (*row.orientations.lying, *row.orientations.states)]
     settings = (
-        bowl.drive, bowl.friction, bowl.track, bowl.restitution, bowl.gravity, bowl.devices, names,
-        digest.hexdigest(), row.states, row.any_heading, run, run.fill.gaps, run.fill.parts,
-    )  # fmt: skip
+        bowl.drive,
+        bowl.friction,
+        bowl.track,
+        bowl.restitution,
+        bowl.gravity,
+        bowl.devices,
+        names,
+        digest.hexdigest(),
+        row.states,
+        row.any_heading,
+        run,
+        run.fill.gaps,
+        run.fill.parts,
+    )
     return simulation_cache.part_key(row.part, row.aspects, KIND, settings)
 
 

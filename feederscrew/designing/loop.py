@@ -42,14 +42,14 @@ from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part, refuse_many_facets
+from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.isolating import chain as static
+from feederscrew.sorting.isolating.chain import DesignConstraints
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy, check_named
-from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.isolating import chain as static
-from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.trial.fills import FedRow, FilledQueue, FillLevel, PoseKind
-from feederscrew.trial.long_ride import long_ride
-from feederscrew.trial.result import TrialRun
+from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel, PoseKind
+from feederscrew.trials.long_ride import long_ride
+from feederscrew.trials.result import TrialRun
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -205,9 +205,15 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
         return _study_of(search, candidate, state.shares)
     source = "" if state.shares is None else state.shares.aspects.source(search.request.rule)
     return DesignStudy(
-        search.part, search.request, None, None, None, attempts=tuple(state.attempts), source=source,
+        search.part,
+        search.request,
+        None,
+        None,
+        None,
+        attempts=tuple(state.attempts),
+        source=source,
         arrivals=search.aspect_shares,
-    )  # fmt: skip
+    )
 
 
 def _likeliest(search: Search) -> Candidate | None:
@@ -364,20 +370,34 @@ def prove_design(
     if robust is None or robust.draws < request.draws:
         search.begin_proof(f"draws: {name}, {request.draws} of part, friction, drive and cuts")
         robust = robust_run(
-            search.part, candidate.bowl, oriented, 0.5 * (ride.entering + ride.arriving), proposal.rows,
-            draws=request.draws, tolerance=request.tolerance, run=search.run(SearchStage.DRAWS),
-            any_heading=proposal.any_heading, returnable=short_trials.find_returnable_rows(candidate.trial),
-            enough=search.share_needed(candidate.attempt), shown=candidate.shown,
+            search.part,
+            candidate.bowl,
+            oriented,
+            0.5 * (ride.entering + ride.arriving),
+            proposal.rows,
+            draws=request.draws,
+            tolerance=request.tolerance,
+            run=search.run(SearchStage.DRAWS),
+            any_heading=proposal.any_heading,
+            returnable=short_trials.find_returnable_rows(candidate.trial),
+            enough=search.share_needed(candidate.attempt),
+            shown=candidate.shown,
             max_failures=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
-        )  # fmt: skip
+        )
     study = replace(study, robust=robust, partial=robust.partial)
     if robust.partial or not (whole or robust.share >= DRAWS_HELD):
         return study
     # queues; parts that touch on their way come as they enter the track
     row = FedRow(
-        search.part, candidate.bowl, shares.aspects, oriented, candidate.weights,
-        candidate.trial.states, proposal.any_heading, ride.entering,
-    )  # fmt: skip
+        search.part,
+        candidate.bowl,
+        shares.aspects,
+        oriented,
+        candidate.weights,
+        candidate.trial.states,
+        proposal.any_heading,
+        ride.entering,
+    )
     study = replace(study, row=row)
     line = queues.FollowedRow(
         *(getattr(row, each.name) for each in fields(row)),
@@ -460,10 +480,18 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         same = np.isin(oriented.leaves_as, proposal.states(oriented))
         static_design = static.propose(task, proposal.cuts, oriented.through < 0.5, same)
         tooling = ToolingStudy(
-            search.part, bowl, shares.aspects, request.rule, margin, oriented.lying, weights,
-            tuple(static_design if k == row else None for k in range(len(weights))), row, request.up,
+            search.part,
+            bowl,
+            shares.aspects,
+            request.rule,
+            margin,
+            oriented.lying,
+            weights,
+            tuple(static_design if k == row else None for k in range(len(weights))),
+            row,
+            request.up,
             state=wanted,
-        )  # fmt: skip
+        )
     return DesignStudy(
         part=search.part,
         request=request,

@@ -22,8 +22,8 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
-from feederscrew.tooling.isolating.chain import OutcomeKind
-from feederscrew.trial.wanted import wanted_states
+from feederscrew.sorting.isolating.chain import OutcomeKind
+from feederscrew.trials.wanted import wanted_states
 
 MINUTE = 60.0
 SLIGHT = 1e-9  # of rounding
@@ -170,9 +170,13 @@ def nearest(
         if done < policy.near_proofs:
             pending.append(_calmer_variants(variant, study))
     none = NearestDesign(
-        None, "", trials=len(state.attempts), proofs=len(proofs) + done, denied=tuple(denials),
+        None,
+        "",
+        trials=len(state.attempts),
+        proofs=len(proofs) + done,
+        denied=tuple(denials),
         helps=tuple(_helps(search, best, None)),
-    )  # fmt: skip
+    )
     return none, None
 
 
@@ -327,10 +331,11 @@ def _calmer(search: Search, candidate: Candidate) -> Candidate | None:
     """The chain of a candidate tried at a calmer drive; None without one, or where that was tried before."""
     bowl = calm_drive.find_calmer(candidate.plain_bowl(search), candidate.bowl)
     if bowl is None or any(
-        attempt.chain == candidate.attempt.chain and attempt.peak_to_peak == 2.0 * bowl.drive.amplitude
+        attempt.chain == candidate.attempt.chain
+        and attempt.peak_to_peak == 2.0 * bowl.drive.amplitude
         and abs(attempt.throw_number - throw_number(bowl)) < 1e-6
         for attempt in search.state.attempts
-    ):  # fmt: skip
+    ):
         return None
     return exploring.try_calmer(search, candidate)
 

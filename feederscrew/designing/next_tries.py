@@ -10,7 +10,7 @@ from feederscrew.bowl.verified import HELD, Status
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.findings import Cause
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
-from feederscrew.tooling.isolating.chain import OutcomeKind
+from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.units import MINUTE
 
 MOST_TRIES = 3

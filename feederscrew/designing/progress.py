@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from feederscrew.designing import texts
 from feederscrew.designing.record import Attempt
 from feederscrew.running import RunSettings
-from feederscrew.trial import runs
+from feederscrew.trials import runs
 
 Progress = Callable[[str, int, int, float, float], None]
 USUAL_SLOWNESS_S = 10.0  # [s] of stages that count as having taken as long as usual

@@ -17,18 +17,18 @@ from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.kinds import KINDS, CostClass, cost_class, dearer, names
+from feederscrew.sorting.devices.orientation_names import nearest
+from feederscrew.sorting.devices.orientation_names import rows as rows_of
+from feederscrew.sorting.devices.pneumatics import PULSE
+from feederscrew.sorting.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
+from feederscrew.sorting.isolating.rails import RAIL
+from feederscrew.sorting.orientations import Hanging, Orientation, neck
+from feederscrew.sorting.verdicts import DeviceEncounter
 from feederscrew.studies.tooling import ToolingSearch, tooling
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import KINDS, CostClass, cost_class, dearer, names
-from feederscrew.tooling.devices.orientation_names import nearest
-from feederscrew.tooling.devices.orientation_names import rows as rows_of
-from feederscrew.tooling.devices.pneumatics import PULSE
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
-from feederscrew.tooling.isolating.rails import RAIL
-from feederscrew.tooling.orientations import Hanging, Orientation, neck
-from feederscrew.tooling.verdicts import DeviceEncounter
-from feederscrew.trial.fills import LeavingCounts, PoseKind
-from feederscrew.trial.wanted import aspects_at_any_heading, equivalent_rows, wanted_rows, wanted_states
+from feederscrew.trials.fills import LeavingCounts, PoseKind
+from feederscrew.trials.wanted import aspects_at_any_heading, equivalent_rows, wanted_rows, wanted_states
 
 PROPOSED_ROWS = 6  # orientations for which chains are proposed, the most frequent first
 HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
@@ -88,8 +88,10 @@ def recipes_of(cost_class: int, request: DesignRequest) -> list[Recipe]:
     kinds = [(*left_out, *HOLES), *([(*left_out, *TOUCHING_KINDS, *HOLES)] if cost_class == SENSED else [])]
     recipes = [
         Recipe(cost_class, margin, outcome, some)
-        for margin in MARGINS for outcome in outcomes for some in kinds
-    ]  # fmt: skip
+        for margin in MARGINS
+        for outcome in outcomes
+        for some in kinds
+    ]
     if OutcomeKind.LYING in outcomes:
         lying = [
             recipe
@@ -308,14 +310,23 @@ def propose_chain(
     lying = orientations.lying
     without = tuple(dict.fromkeys((*request.without, *recipe.excluded_kinds, *ON_THE_TRACK)))
     static_design = tooling(
-        part, bowl, lying[row].aspect, heading=lying[row].heading, margin=recipe.margin,
-        aspect_shares=aspects, outcome=recipe.outcome, without=without,
+        part,
+        bowl,
+        lying[row].aspect,
+        heading=lying[row].heading,
+        margin=recipe.margin,
+        aspect_shares=aspects,
+        outcome=recipe.outcome,
+        without=without,
         cost_class=CLASSES[recipe.cost_class - 1],
-        purity=ENOUGH_PURITY, up=request.up, play=0.0, tolerance=0.0,  # draws and the loop have them
+        purity=ENOUGH_PURITY,
+        up=request.up,
+        play=0.0,
+        tolerance=0.0,  # draws and the loop have them
         search=ToolingSearch(
             rule=request.rule, turn=recipe.turns, vary=False, seed=request.seed, verdicts=VERDICTS
         ),
-    ).design  # fmt: skip
+    ).design
     if static_design is None or not static_design.efficiency > 0.0:
         return None
     hopeful = static_design.hopeful or 0.0
@@ -324,9 +335,14 @@ def propose_chain(
     cuts = tuple(shorten_pulse(round_cut(cut, lying, row), lying) for cut in static_design.cuts)
     pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
     proposal = Proposal(
-        row, cuts, tuple(static_design.before), Move(MoveKind.PROPOSED, recipe.margin),
-        *find_equivalents(lying, row, request), pure, static_design.margin,
-    )  # fmt: skip
+        row,
+        cuts,
+        tuple(static_design.before),
+        Move(MoveKind.PROPOSED, recipe.margin),
+        *find_equivalents(lying, row, request),
+        pure,
+        static_design.margin,
+    )
     if static_design.isolated:
         return proposal
     # a drop before what stops some orientations; none where no drop tells them

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 from feederscrew.designing import fill_verdicts
 from feederscrew.designing.fill_verdicts import FillState
-from feederscrew.trial.fills import FedRow, FilledQueue, FillLevel
-from feederscrew.trial.queue import PartsQueue
+from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel
+from feederscrew.trials.queue import PartsQueue
 
 FILLS = (
     FillLevel.HIGH,

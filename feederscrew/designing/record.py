@@ -30,11 +30,11 @@ from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.isolating.chain import OutcomeKind
+from feederscrew.sorting.isolating.design import DESIGN_MARGIN_M
 from feederscrew.studies.tooling import ToolingStudy, listed
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.chain import OutcomeKind
-from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
-from feederscrew.trial.fills import (
+from feederscrew.trials.fills import (
     FedRow,
     FilledQueue,
     LeavingCounts,
@@ -42,8 +42,8 @@ from feederscrew.trial.fills import (
     PoseKind,
     join_leaving_counts,
 )
-from feederscrew.trial.long_ride import LongRide
-from feederscrew.trial.result import TrialRun
+from feederscrew.trials.long_ride import LongRide
+from feederscrew.trials.result import TrialRun
 from feederscrew.units import HOUR, MINUTE, counted
 
 

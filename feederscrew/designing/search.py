@@ -21,11 +21,11 @@ from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.running import RunSettings
+from feederscrew.sorting.devices.base import ComparedValue
 from feederscrew.studies.rate import Shares
-from feederscrew.tooling.devices.base import ComparedValue
-from feederscrew.trial.fills import FillLevel
-from feederscrew.trial.queue import PartsQueue
-from feederscrew.trial.wanted import leaves_hanging
+from feederscrew.trials.fills import FillLevel
+from feederscrew.trials.queue import PartsQueue
+from feederscrew.trials.wanted import leaves_hanging
 
 Place = tuple[float, int]  # bank [rad] of a track, and row of an orientation on it
 RowKey = tuple[tuple[str, str], ...]  # all that decides a row of parts

@@ -28,16 +28,16 @@ from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.orientation_names import place_of
-from feederscrew.tooling.fates import at_entry
-from feederscrew.tooling.orientations import Hanging, Orientation
-from feederscrew.tooling.orientations import orientations as on_the_track
-from feederscrew.trial import course, runs
-from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import FillLevel
-from feederscrew.trial.looks import AspectsBelow
-from feederscrew.trial.wanted import find_poses, leaves_hanging, wanted_rows, wanted_states
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.orientation_names import place_of
+from feederscrew.sorting.fates import at_entry
+from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.sorting.orientations import orientations as on_the_track
+from feederscrew.trials import course, runs
+from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import FillLevel
+from feederscrew.trials.looks import AspectsBelow
+from feederscrew.trials.wanted import find_poses, leaves_hanging, wanted_rows, wanted_states
 
 SELDOM_SHARE = 5e-3  # [1] orientations that come less often are left out
 STUCK_FATES = (Fate.HANGING, Fate.STOPPED)  # what is stuck on the bare track is pushed on by a queue
@@ -287,10 +287,15 @@ def try_parts(
     rows, states = np.asarray(rows, int), wanted_states(orientations, np.atleast_1d(targets))
     sent = np.tile(rows, count) if isinstance(count, int) else np.repeat(rows, count)
     followed = course.course(
-        part, bowl, orientations.lying, course.SentParts(sent.tolist(), len(sent)), bowl.devices,
+        part,
+        bowl,
+        orientations.lying,
+        course.SentParts(sent.tolist(), len(sent)),
+        bowl.devices,
         poses=find_poses(orientations, states, any_heading),
-        may_leave=course.leaves_by_rule(orientations.leaving), run=run,
-    )  # fmt: skip
+        may_leave=course.leaves_by_rule(orientations.leaving),
+        run=run,
+    )
     if followed.partial:  # fewer parts than were to be tried decide nothing
         raise KeyboardInterrupt
     left = np.isin(followed.fates, (Fate.PASSED, Fate.TURNED))
@@ -330,11 +335,21 @@ def try_parts(
     parts, right, wrong, held = np.array(counts).T
     moving = followed.velocities[np.isfinite(followed.velocities) & (followed.velocities > 0.0)]
     return ShortTrial(
-        orientations, shares, rows, parts, right, wrong, held, ends=tuple(ends), turns=tuple(turns),
+        orientations,
+        shares,
+        rows,
+        parts,
+        right,
+        wrong,
+        held,
+        ends=tuple(ends),
+        turns=tuple(turns),
         velocity=float(moving.mean()) if len(moving) else 0.0,
-        states=states, courses=(followed,),
-        spacing=stream.needed_spacing(bowl.devices, orientations.lying, bowl), shown=shown,
-    )  # fmt: skip
+        states=states,
+        courses=(followed,),
+        spacing=stream.needed_spacing(bowl.devices, orientations.lying, bowl),
+        shown=shown,
+    )
 
 
 def find_returnable_rows(trial: ShortTrial) -> tuple[int, ...]:
@@ -376,7 +391,9 @@ def lost_by_motion(trial: ShortTrial) -> int:
     return sum(number for count in counts for end, number in count.items() if end.on_bare_track)
 
 
-FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
+FRICTION = (0.6, 1.4)  # [1]
+DRIVE = (0.9, 1.1)  # [1]
+CUT = 1e-4  # [m] to either side
 CLEAN = 0.985  # [1] purity from which it is let be that another orientation is carried through
 EQUAL_MOMENTS = 1e-4  # of the greatest: principal moments that a part of revolution has in common
 RETRIED_PARTS = 3  # of each wanted orientation, where one came back: a bowl brings more of them
@@ -577,9 +594,18 @@ def robust_run(
 
     def draw_one(draw: int) -> tuple[list[Fault], float]:
         return _draw(
-            part, bowl, orientations, shares, np.atleast_1d(targets), tolerance, (run.seed, draw),
-            any_heading, returnable, enough, shown,
-        )  # fmt: skip
+            part,
+            bowl,
+            orientations,
+            shares,
+            np.atleast_1d(targets),
+            tolerance,
+            (run.seed, draw),
+            any_heading,
+            returnable,
+            enough,
+            shown,
+        )
 
     def work(begin: Callable[..., Future]) -> None:
         tasks: list[Future] = []
@@ -606,10 +632,18 @@ def robust_run(
 
 
 def _draw(
-    part: Part, bowl: Bowl, orientations: stream.Orientations, shares: Floats, targets: Ints,
-    tolerance: float, seed: tuple[int, int], any_heading: Sequence[str], returnable: Sequence[int],
-    enough: float, shown: tuple[int, ...] | None,
-) -> tuple[list[Fault], float]:  # fmt: skip
+    part: Part,
+    bowl: Bowl,
+    orientations: stream.Orientations,
+    shares: Floats,
+    targets: Ints,
+    tolerance: float,
+    seed: tuple[int, int],
+    any_heading: Sequence[str],
+    returnable: Sequence[int],
+    enough: float,
+    shown: tuple[int, ...] | None,
+) -> tuple[list[Fault], float]:
     """Return the faults of one draw, and the velocity there.
 
     Faults name the orientations of the part as it is drawn, not those of the part of other size.

@@ -7,9 +7,9 @@ import numpy as np
 from feederscrew.bowl.verified import PURE
 from feederscrew.designing.fill_verdicts import DifferenceKind, FillDifference
 from feederscrew.designing.findings import End, Fault, FaultKind, Hooking, Move, MoveKind, SeldomPart
-from feederscrew.tooling.isolating.chain import in_mm
-from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import LeavingCounts
+from feederscrew.sorting.isolating.chain import in_mm
+from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import LeavingCounts
 from feederscrew.units import counted
 
 

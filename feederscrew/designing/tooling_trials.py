@@ -26,13 +26,13 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.running import RunSettings
+from feederscrew.sorting.devices.kinds import KINDS, CostClass, names
+from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.isolating import chain as static
+from feederscrew.sorting.isolating.chain import Design, DesignConstraints, OutcomeKind
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling.devices.kinds import KINDS, CostClass, names
-from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.isolating import chain as static
-from feederscrew.tooling.isolating.chain import Design, DesignConstraints, OutcomeKind
-from feederscrew.trial.wanted import aspects_at_any_heading
+from feederscrew.trials.wanted import aspects_at_any_heading
 
 PARTS_OF_EACH = 2  # parts of each orientation
 MORE_PARTS = 20  # parts beside those where the trial denies nothing, by the shares of the orientations
@@ -49,9 +49,16 @@ SEARCH_TRIALS = 25  # short trials at most: 10 of steel, as many as the rails of
 POLICY = replace(USUAL_POLICY, budget_shares=(0.4, 0.6, 1.0))  # of them, after which each class had its turn
 # what of the bowl is kept: all but its bank, which is tried as ``feeder design`` does where it was not given
 OWN_KEYS = (
-    "track.climb", "track.radius", "track.width", "track.bank", "drive.amplitude", "drive.frequency",
-    "drive.vibration_angle", "drive.phase", "machine.leaves",
-)  # fmt: skip
+    "track.climb",
+    "track.radius",
+    "track.width",
+    "track.bank",
+    "drive.amplitude",
+    "drive.frequency",
+    "drive.vibration_angle",
+    "drive.phase",
+    "machine.leaves",
+)
 # returns a study without more kinds of devices, of a class
 Propose: TypeAlias = Callable[[tuple[str, ...], CostClass | None], ToolingStudy]
 
@@ -396,20 +403,32 @@ def _search_on(asked: AskedOrientation, *, only_hanging: bool = False) -> Search
     study = asked.study
     own = study.orientations[study.wanted or 0]
     request = DesignRequest(
-        target=ANY_RATE, aspect=own.aspect, heading=None if only_hanging else own.heading, up=study.up,
+        target=ANY_RATE,
+        aspect=own.aspect,
+        heading=None if only_hanging else own.heading,
+        up=study.up,
         outcome=OutcomeKind.HANGING if only_hanging else asked.outcome,
-        without=(*asked.without, *names(turns=True)), rule=study.rule, budget=SEARCH_TRIALS, draws=0,
-        seed=asked.run.seed, jobs=asked.run.jobs,
-    )  # fmt: skip
+        without=(*asked.without, *names(turns=True)),
+        rule=study.rule,
+        budget=SEARCH_TRIALS,
+        draws=0,
+        seed=asked.run.seed,
+        jobs=asked.run.jobs,
+    )
 
     def tell(_: str) -> None:
         if time.monotonic() > asked.until:
             search.state.most_trials = 0
 
     search = Search.begin(
-        study.part, request, study.bowl, OWN_KEYS, shares=Shares(study.aspects),
-        progress=SearchProgress(before=asked.run.before, tell=tell), policy=POLICY,
-    )  # fmt: skip
+        study.part,
+        request,
+        study.bowl,
+        OWN_KEYS,
+        shares=Shares(study.aspects),
+        progress=SearchProgress(before=asked.run.before, tell=tell),
+        policy=POLICY,
+    )
     banks: tuple[float, ...] = (study.bowl.track.bank,)
     if not (banks[0] > 0.0 or "track.bank" in asked.kept_keys or study.bowl.devices):
         likely = exploring.likely_banks(study.aspects, study.rule, POLICY)
@@ -437,9 +456,14 @@ def _study_of(study: ToolingStudy, candidate: Candidate) -> ToolingStudy | None:
     if not places:
         return None
     task = static.design_task(
-        on_bank.orientations, on_bank.shares, places[0], study.margin, 1.0, study.bowl.devices,
+        on_bank.orientations,
+        on_bank.shares,
+        places[0],
+        study.margin,
+        1.0,
+        study.bowl.devices,
         constraints=DesignConstraints(up=study.up),
-    )  # fmt: skip
+    )
     cuts, trial = candidate.proposal.cuts, candidate.trial
     rejecting = [static.margins_at(cut.device, on_bank.orientations) <= -study.margin for cut in cuts]
     is_returned = np.any([~task.stays, *rejecting], axis=0)
@@ -487,9 +511,15 @@ def _try_design(study: ToolingStudy, design: Design, run: RunSettings) -> TriedD
     wanted = (design.wanted, *equivalent_rows(oriented.lying, design.wanted, study.up))
     free = aspects_at_any_heading(oriented.lying, design.wanted, study.up)
     single = functools.partial(
-        short_trials.try_parts, study.part, bowl, oriented, shares, wanted,
-        aspects=study.aspects, any_heading=free,
-    )  # fmt: skip
+        short_trials.try_parts,
+        study.part,
+        bowl,
+        oriented,
+        shares,
+        wanted,
+        aspects=study.aspects,
+        any_heading=free,
+    )
     try:
         trial = single(rows=rows, count=PARTS_OF_EACH, run=run)
         further = further_parts(shares[rows])

@@ -40,8 +40,8 @@ SOURCES = {
     "conveying": ("conveying/*.py",),
     "resting": ("resting/landscape.py", "resting/half_edges.py", "resting/walks.py"),
     "dropping": ("dropping/kernel/*.py", "resting/half_edges.py", "resting/walks.py"),
-    "tooling": ("tooling/kernel.py",),
-    "trial": ("trial/kernel/*.py", "dropping/kernel/*.py"),
+    "tooling": ("sorting/kernel.py",),
+    "trial": ("trials/kernel/*.py", "dropping/kernel/*.py"),
 }
 
 

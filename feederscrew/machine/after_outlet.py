@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.machine.springs import stroke
-from feederscrew.tooling.orientations import HANGING, Hanging, Orientation
+from feederscrew.sorting.orientations import HANGING, Hanging, Orientation
 
 GAP_CLEARANCE_M, STEP_CLEARANCE_M = 0.5e-3, 0.2e-3  # beyond what the bowl moves by (assumption)
 BUFFER_PARTS, FULL_PARTS, LOW_PARTS = (

@@ -27,7 +27,7 @@ from feederscrew.part.record import Part
 from feederscrew.rates import well_oriented
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
-from feederscrew.tooling.devices.orientation_names import nearest
+from feederscrew.sorting.devices.orientation_names import nearest
 
 STRAIGHT_TRACK = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
 MAX_SIZING_ITERATIONS = 200  # of a search that halves its error in each

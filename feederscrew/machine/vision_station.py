@@ -10,13 +10,16 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.rates.stream import on_stretch
-from feederscrew.tooling.devices.base import room_of
-from feederscrew.tooling.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, Sorter
-from feederscrew.tooling.orientations import Orientation, travel_speed
+from feederscrew.sorting.devices.base import room_of
+from feederscrew.sorting.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, Sorter
+from feederscrew.sorting.orientations import Orientation, travel_speed
 
 FIELD_MARGIN = 1.2  # [1] of the window: to align the camera (assumption)
 PIXELS_PER_RESOLUTION = 2.0  # an edge is found to half of what two pixels cover: sampling theorem
-AIM_M, LEAST_DISTANCE_M, GREATEST_DISTANCE_M = 0.25, 0.12, 0.6  # of a lens over the track (assumption)
+# of a lens over the track (assumption)
+AIM_M = 0.25
+LEAST_DISTANCE_M = 0.12
+GREATEST_DISTANCE_M = 0.6
 BLUR_SHARE = 0.5  # [1] of the resolution that anything moves while the picture is taken
 FOCAL_LENGTHS_M = (
     6e-3,

@@ -27,9 +27,17 @@ TIPPING_ALT = "Tipping graph: which aspect tips into which, and the lift it take
 RECOMMENDED_COLUMNS = ("p_recommended", "p_recommended_low", "p_recommended_high")
 DROP_COLUMNS = ("p_drop", "p_drop_low", "p_drop_high")
 PRINTED = (  # the table for people, unless they ask for more
-    "aspect", "lies", "stable", "height_mm", *RECOMMENDED_COLUMNS,
-    "p_pmi", "p_csa", "p_stability", "surface", "tumbling",
-)  # fmt: skip
+    "aspect",
+    "lies",
+    "stable",
+    "height_mm",
+    *RECOMMENDED_COLUMNS,
+    "p_pmi",
+    "p_csa",
+    "p_stability",
+    "surface",
+    "tumbling",
+)
 
 
 def select_columns(frame: Frame, choice: str | None = None) -> Frame:
@@ -162,10 +170,11 @@ def offers(study: AspectsStudy, *, with_graph: bool = False) -> list[offer.Offer
         offered += [
             offer.table("graph.csv", study.transitions_table),
             offer.picture(
-                "graph.png", TIPPING_ALT,
+                "graph.png",
+                TIPPING_ALT,
                 lambda: draw_tipping_graph(study, study.transitions, rules["quasistatic"]),
             ),
-        ]  # fmt: skip
+        ]
     return offered
 
 
@@ -376,8 +385,21 @@ def _caption(axes: "style.Axes", aspects: Aspects, row: int, answer: Recommended
 MOST_GRAPH_ASPECTS = 12  # aspects a picture can show
 BEND = 0.12  # of an arrow, so that there and back lie apart
 LIFT_SPOTS = (  # of the way: where the lift may be written, the first that is free
-    0.3, 0.27, 0.33, 0.24, 0.36, 0.21, 0.39, 0.42, 0.45, 0.48, 0.54, 0.6, 0.66, 0.72,
-)  # fmt: skip
+    0.3,
+    0.27,
+    0.33,
+    0.24,
+    0.36,
+    0.21,
+    0.39,
+    0.42,
+    0.45,
+    0.48,
+    0.54,
+    0.6,
+    0.66,
+    0.72,
+)
 LETTER_SIZE = (0.041, 0.109)  # width and height of one, over the ring's radius
 HALF_DISC = 0.22  # over the ring's radius
 EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is as easy
@@ -385,9 +407,12 @@ RING_REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
 def tipping_graph(
-    title: str, names: Sequence[str], tips: Sequence[Transition], shares: Floats,
+    title: str,
+    names: Sequence[str],
+    tips: Sequence[Transition],
+    shares: Floats,
     draw_aspect: Callable[[int], Array] | None = None,
-) -> "style.Figure":  # fmt: skip
+) -> "style.Figure":
     """Draw the aspects on a ring, joined by arrows that carry the lift in mm.
 
     Parameters
@@ -465,9 +490,12 @@ def draw_tipping_graph(study: AspectsStudy, tips: Sequence[Transition], shares: 
 
 
 def _arrows(
-    axes: "style.Axes", tips: Sequence[Transition], places: Mapping[int, Vector], sizes: Floats,
+    axes: "style.Axes",
+    tips: Sequence[Transition],
+    places: Mapping[int, Vector],
+    sizes: Floats,
     names: Sequence[str],
-) -> None:  # fmt: skip
+) -> None:
     """The easiest way between every two discs that are shown, bent to leave room for the way back.
 
     The easiest out of each disc stands out. A lift is written where it covers the least.

@@ -17,8 +17,8 @@ from feederscrew.machine.vision_station import (
 )
 from feederscrew.output.outlet_poses import find_leaving
 from feederscrew.output.tables import Frame, of_rows
+from feederscrew.sorting.devices.pneumatics import SEEN_BY
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.tooling.devices.pneumatics import SEEN_BY
 from feederscrew.units import MM, MM_S
 
 MS = 1e-3  # [s]

@@ -7,11 +7,13 @@ from feederscrew.machine.after_outlet import InlineTrack
 from feederscrew.machine.vision_station import STAND_OFF_M, VisionStation
 from feederscrew.output.beside_bowl import Beside, rows
 from feederscrew.output.drafting import Drawing, scale_words
-from feederscrew.tooling.devices.pneumatics import SEEN_BY
+from feederscrew.sorting.devices.pneumatics import SEEN_BY
 from feederscrew.units import MM
 
 SCALES = (2.0, 1.0, 0.5, 0.4, 0.2, 0.1, 0.05)  # ISO 5455, with 1:2.5
-ROW_MM, LETTERS, WIDTHS_MM = 4.6, 110, (12.0, 52.0, 172.0)
+ROW_MM = 4.6
+LETTERS = 110
+WIDTHS_MM = (12.0, 52.0, 172.0)
 SHORT_MM = 9.0  # [mm] of paper: a number does not fit between the arrows of less
 CAMERA_MM = 70.0  # [mm] of paper from the track to a camera
 

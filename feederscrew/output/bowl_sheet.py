@@ -28,9 +28,9 @@ from feederscrew.solidbowl import facets, segments, track
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.measuring import Measures, measures
 from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
+from feederscrew.sorting.devices.pneumatics import SEEN_BY
+from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack
 from feederscrew.studies.bowl import MachineSheet, Order
-from feederscrew.tooling.devices.pneumatics import SEEN_BY
-from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack
 from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
@@ -54,9 +54,11 @@ CONDITION_LETTERS, CONDITION_LINE_MM = 240, 2.8  # of a line of the condition; f
 
 
 def draw_sheets(
-    study: MachineSheet, trial: Verified | None = None, mark: str | None = None,
+    study: MachineSheet,
+    trial: Verified | None = None,
+    mark: str | None = None,
     fields: SheetFields | None = None,
-) -> Drawing:  # fmt: skip
+) -> Drawing:
     """Return the drawing of a bowl on its sheets.
 
     Parameters
@@ -222,9 +224,15 @@ def _draw_side_views(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale:
         near, far_edge = (outer - edge for edge in rails.features.slot)
         inner = outer - plan.width
         yoke = [
-            (outer, top), (outer, foot), (inner, foot), (inner, top), (far_edge, top), (far_edge, deep),
-            (near, deep), (near, top),
-        ]  # fmt: skip
+            (outer, top),
+            (outer, foot),
+            (inner, foot),
+            (inner, top),
+            (far_edge, top),
+            (far_edge, deep),
+            (near, deep),
+            (near, top),
+        ]
         drawing.outline(_to_paper(yoke, at, scale), "HIDDEN")
         text += "; dashed: yoke of the inner rail"
     drawing.text(at[0], low - 8.0, text, 2.2, "center")
@@ -322,9 +330,12 @@ def _list_beside(beside: beside_bowl.Beside, sheet: int) -> list[tuple[str, str]
 
 
 def _draw_list(
-    drawing: Drawing, study: MachineSheet, solid: BowlSolid, corner: tuple[float, float],
+    drawing: Drawing,
+    study: MachineSheet,
+    solid: BowlSolid,
+    corner: tuple[float, float],
     beside: Sequence[tuple[str, str]],
-) -> None:  # fmt: skip
+) -> None:
     under, banks = study.bowl.machine, sheets.spring_banks(study.bowl)
     plan, cut, (weight, angle) = solid.plan, solid.segments, solid.balance
     turn = (angle - plan.turned) / DEG % 360.0
@@ -357,9 +368,17 @@ def _draw_list(
 
 
 def _draw_title_block(
-    drawing: Drawing, study: MachineSheet, order: Order, solid: BowlSolid, sizes: Measures, scale: float,
-    trial: Verified | None, fields: SheetFields | None, sheet: str, poses: OutletPoses | None,
-) -> None:  # fmt: skip
+    drawing: Drawing,
+    study: MachineSheet,
+    order: Order,
+    solid: BowlSolid,
+    sizes: Measures,
+    scale: float,
+    trial: Verified | None,
+    fields: SheetFields | None,
+    sheet: str,
+    poses: OutletPoses | None,
+) -> None:
     """The title block in the lower right corner; of a bowl that was tried as it was tried."""
     left, low, right, high = 246.0, 10.0, 410.0, 78.0
     drawing.box(left, low, right, high)
@@ -574,8 +593,20 @@ def _draw_track(drawing: Drawing, plan: BowlPlan, part: str, fields: SheetFields
         drawing.text(x, y + 8.0, "D", 3.0, "center", bold=True)
     _draw_head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
     flat = []  # the outline of each piece: one climb, half a turn at most
-    rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
-             "angle", "width"]]  # fmt: skip
+    rows = [
+        [
+            "piece",
+            "from [°] *",
+            "to [°] *",
+            "climb",
+            "height [mm]",
+            "pitch [mm]",
+            "outer R",
+            "inner R",
+            "angle",
+            "width",
+        ]
+    ]
     for (start, end), climb in _stretches(path):
         count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
         for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
@@ -590,8 +621,18 @@ def _draw_track(drawing: Drawing, plan: BowlPlan, part: str, fields: SheetFields
             ends = [f"{abs(float(path.angle(s))) / DEG:.4g}" for s in (a, b)]
             heights = " to ".join(f"{float(path.height(s)) / MM:.4g}" for s in (a, b))
             pitch = 2.0 * np.pi * path.radius * np.tan(climb) / MM
-            rows.append([str(len(flat)), *ends, f"{climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
-                         f"{long / (inner + width) / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
+            rows.append(
+                [
+                    str(len(flat)),
+                    *ends,
+                    f"{climb / DEG:.3g}°",
+                    heights,
+                    f"{pitch:.4g}",
+                    *radii,
+                    f"{long / (inner + width) / DEG:.4g}°",
+                    f"{plan.width / MM:.4g}",
+                ]
+            )
     low = drawing.table(25.0, 212.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
     drawing.text(25.0, low - 5.0, "* before the outlet; radii, angle and width: of the flat sheet", 2.2)
     _draw_flat_pieces(drawing, flat, low - 14.0)

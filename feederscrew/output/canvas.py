@@ -29,9 +29,15 @@ class _Writer(RendererAgg):
         self._texts: dict[Any, tuple[str, Size]] = {}  # by text and font: as it can be drawn
 
     def draw_text(
-        self, gc: GraphicsContextBase, x: float, y: float, s: str, prop: FontProperties,
-        *angle: Any, **more: Any,
-    ) -> None:  # fmt: skip
+        self,
+        gc: GraphicsContextBase,
+        x: float,
+        y: float,
+        s: str,
+        prop: FontProperties,
+        *angle: Any,
+        **more: Any,
+    ) -> None:
         more["ismath"] = False  # a name with a dollar sign is no formula
         super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, *angle, **more)
 

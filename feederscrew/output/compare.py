@@ -198,9 +198,13 @@ def _sets_figure(study: studies.SetsStudy) -> "style.Figure":
 
 
 def _shades(
-    axes: "style.Axes", values: Floats, darkest: float, white_from: float, title: str,
+    axes: "style.Axes",
+    values: Floats,
+    darkest: float,
+    white_from: float,
+    title: str,
     aspect: Literal["equal", "auto"],
-) -> None:  # fmt: skip
+) -> None:
     axes.imshow(values, cmap="Blues", vmin=0.0, vmax=darkest, aspect=aspect)
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
@@ -247,9 +251,12 @@ def look(name: str, place: int = 0) -> tuple[str, str]:
 
 
 def bars(
-    axes: "style.Axes", names: Sequence[str], profiles: Mapping[str, Floats],
-    printed_shares: Mapping[str, Floats] | None = None, room: float = BAR_WIDTH_IN,
-) -> None:  # fmt: skip
+    axes: "style.Axes",
+    names: Sequence[str],
+    profiles: Mapping[str, Floats],
+    printed_shares: Mapping[str, Floats] | None = None,
+    room: float = BAR_WIDTH_IN,
+) -> None:
     """Draw grouped bars on an Axes, with a tick where print has the number.
 
     ``names`` are the A aspects, ``profiles`` (A,) shares [1] by name, ``printed_shares`` the published ones
@@ -272,9 +279,12 @@ def bars(
 
 
 def comparison(
-    title: str, names: Sequence[str], shares: dict[str, Floats], rules: dict[str, Floats],
+    title: str,
+    names: Sequence[str],
+    shares: dict[str, Floats],
+    rules: dict[str, Floats],
     gaps: Mapping[tuple[str, str], float],
-) -> "style.Figure":  # fmt: skip
+) -> "style.Figure":
     """Draw one chart a rule against everything measured, and how far each profile is from what was measured.
 
     ``names`` are the A aspects, ``shares`` what was measured and ``rules`` (A,) [1] by name, ``gaps`` the

@@ -266,10 +266,11 @@ def offers(study: ConveyStudy) -> list[offer.Offer]:
     return [
         offer.document("convey.json", document, study),
         offer.picture(
-            "convey.png", "Plate and part over one steady cycle",
+            "convey.png",
+            "Plate and part over one steady cycle",
             lambda: cycle(study.trace(), study.bowl.drive.amplitude, study.answer),
         ),
-    ]  # fmt: skip
+    ]
 
 
 def curve_offers(study: ConveyCurve) -> list[offer.Offer]:
@@ -336,8 +337,10 @@ CONVEY_COLOURS: dict[str, str] = {  # what a designer wants is the strongest
     Regime.NO_STEADY_STATE: "#8c8c8c",
 }
 THROW_NAMES = {  # near 3 the velocity per stroke has its first peak, without rebound
-    1.0: "hop", 3.0: "first peak", round(throw_of_flight(1.0), 4): "one period",
-}  # fmt: skip
+    1.0: "hop",
+    3.0: "first peak",
+    round(throw_of_flight(1.0), 4): "one period",
+}
 SEVERAL_HATCH = "////"
 
 

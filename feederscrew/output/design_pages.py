@@ -74,9 +74,14 @@ MEASURE = (
     "and the rate with it.",
 )
 SHOP = (  # what a shop reads of the machine, rows of its summary
-    "vibration angle [deg]", "leaves", "springs", "natural frequency [Hz]", "above the drive [%], gain",
-    "leaf stress [MPa]", "force of the magnet [N]",
-)  # fmt: skip
+    "vibration angle [deg]",
+    "leaves",
+    "springs",
+    "natural frequency [Hz]",
+    "above the drive [%], gain",
+    "leaf stress [MPa]",
+    "force of the magnet [N]",
+)
 FILES = {  # by ending: what they are
     "pdf": "sheets of the bowl, its springs, its tooling and the sheet development of its track",
     "dxf": "drawing with dimensions, to cut from",
@@ -187,10 +192,14 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     aspects = find(study.part) if study.tooling is None else study.tooling.aspects
     return html(
         Page(
-            study.part.name, f"design of a bowl: {study.status}", tuple(chapters), "design",
-            poses.opening(study.part, aspects, first_seen(study)), poses.pose_finder(study.part, aspects),
+            study.part.name,
+            f"design of a bowl: {study.status}",
+            tuple(chapters),
+            "design",
+            poses.opening(study.part, aspects, first_seen(study)),
+            poses.pose_finder(study.part, aspects),
         )
-    )  # fmt: skip
+    )
 
 
 def _quick_tiles(quick: Mapping[str, Any] | None) -> tuple[Tile, ...]:
@@ -385,7 +394,9 @@ CHANGEABLE = {  # keys of the bowl, by section
     "track": ("radius", "width", "bank", "climb"),
     "drive": ("amplitude", "frequency", "vibration_angle", "phase"),
 }
-SET, TAUGHT, SWAPPED = "set", "taught", "swapped"  # at the controller, at the sensor, by hand
+SET = "set"  # at the controller
+TAUGHT = "taught"  # at the sensor
+SWAPPED = "swapped"  # by hand
 Change = tuple[str, str, tuple[str, ...]]  # what, how it is changed, and a text for each part
 
 
@@ -508,13 +519,18 @@ def family_page(study: FamilyStudy) -> str:
         risks += [f"{name}: {risk.text}" for risk in member.risks]
         rows.append(
             {
-                "part": name, "status": d["status"], "leaves as": d["wanted"] or "-",
-                "asked_per_minute": d["target_per_minute"], "delivered_per_minute": d["delivered_per_minute"],
-                "at_least_per_minute": d["delivered_low"], "purity": d["purity"], "jams": d["jams"],
+                "part": name,
+                "status": d["status"],
+                "leaves as": d["wanted"] or "-",
+                "asked_per_minute": d["target_per_minute"],
+                "delivered_per_minute": d["delivered_per_minute"],
+                "at_least_per_minute": d["delivered_low"],
+                "purity": d["purity"],
+                "jams": d["jams"],
                 "devices": ", ".join(device["device"] for device in d["chain"]) or "none",
                 "page": f"{name}/design.html",
             }
-        )  # fmt: skip
+        )
     paces = ("asked_per_minute", "delivered_per_minute", "at_least_per_minute")
     above = {name: ColumnHead.of_name(name, "1/min") for name in paces} | {"purity": share_head("purity")}
     answer: list[Block] = [Text(status), Table(Frame.of_rows(rows).headed(above))]

@@ -53,30 +53,51 @@ from feederscrew.output import next_tries, part_facts, style, tables
 from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.chain import OutcomeKind
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
 
 SAID_FIRST = {  # or elsewhere
-    "drive_kind", "drive_needs", "drive_of_the_springs", "vibration_angle_deg", "phase_deg", "frequency_hz",
-    "peak_to_peak_mm", "throw_number",
-}  # fmt: skip
+    "drive_kind",
+    "drive_needs",
+    "drive_of_the_springs",
+    "vibration_angle_deg",
+    "phase_deg",
+    "frequency_hz",
+    "peak_to_peak_mm",
+    "throw_number",
+}
 CAMERAS = {  # by what a sensor sees
-    "outline": "camera from above", "side": "camera from the side", "height": "height sensor",
+    "outline": "camera from above",
+    "side": "camera from the side",
+    "height": "height sensor",
     "relief": "laser line",
-}  # fmt: skip
+}
 PROOF = (  # what a design has shown: none of it of one that is not proved
-    "delivered_per_minute", "delivered_low", "delivered_high", "worst_friction_per_minute", "purity",
-    "purity_low", "jams", "jams_per_hour_high",
-)  # fmt: skip
+    "delivered_per_minute",
+    "delivered_low",
+    "delivered_high",
+    "worst_friction_per_minute",
+    "purity",
+    "purity_low",
+    "jams",
+    "jams_per_hour_high",
+)
 BOWL_UNITS = {  # of the entry ``bowl`` of the document
-    "phase_deg": "deg", "diameter_mm": "mm", "track_width_mm": "mm", "bank_deg": "deg", "climb_deg": "deg",
-    "frequency_hz": "Hz", "peak_to_peak_mm": "mm", "vibration_angle_deg": "deg",
-    "vibration_angle_at_the_track_deg": "deg", "vibration_angle_at_the_springs_deg": "deg",
-}  # fmt: skip
+    "phase_deg": "deg",
+    "diameter_mm": "mm",
+    "track_width_mm": "mm",
+    "bank_deg": "deg",
+    "climb_deg": "deg",
+    "frequency_hz": "Hz",
+    "peak_to_peak_mm": "mm",
+    "vibration_angle_deg": "deg",
+    "vibration_angle_at_the_track_deg": "deg",
+    "vibration_angle_at_the_springs_deg": "deg",
+}
 LOWER_BOUND, UPPER_BOUND = (f"{side} bound (95 %, one-sided)" for side in ("lower", "upper"))
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
 
@@ -538,9 +559,10 @@ def acceptance(study: DesignStudy) -> Frame:
             ("reserve of the drive", 100.0 * (1.0 / controller - 1.0), "%"),
             (
                 "angle at which a part slides down a tilted strip",
-                np.degrees(np.arctan(study.bowl.friction.static)), "deg",
+                np.degrees(np.arctan(study.bowl.friction.static)),
+                "deg",
             ),
-        ]  # fmt: skip
+        ]
         for name, value, unit in single:
             if value is not None:
                 line = SheetLine(name, "", unit, None, None, float(value))
@@ -558,11 +580,19 @@ SET_KEYS = {  # keys of the bowl file that a design sets, by section
     "drive": ("amplitude", "frequency", "vibration_angle", "phase"),
     "track": ("climb", "bank", "radius", "width"),
     "machine": (
-        "bowl_mass", "bowl_inertia", "base_mass", "base_inertia", "spring_radius", "spring_angle",
-        "leaf_width", "leaf_thickness", "leaf_length", "leaves",
+        "bowl_mass",
+        "bowl_inertia",
+        "base_mass",
+        "base_inertia",
+        "spring_radius",
+        "spring_angle",
+        "leaf_width",
+        "leaf_thickness",
+        "leaf_length",
+        "leaves",
     ),
     "sizing": ("fill_density", "outlet_height"),
-}  # fmt: skip
+}
 
 
 def value_text(record: Drive | Track | Machine | Sizing, name: str, digits: int) -> str:
@@ -668,17 +698,28 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
         verified = {
             "status": tried.status,
             "condition": f'"{study.condition}"' if study.condition else None,
-            "wanted": tried.wanted, "up": f'"{tried.up}"' if tried.up else None,
-            "outcome": tried.outcome, "target": f"{tried.target / PER_MINUTE:.6g}/min",
-            "fill": tried.fill or None, "delivered": value, "delivered_low": low, "delivered_high": high,
+            "wanted": tried.wanted,
+            "up": f'"{tried.up}"' if tried.up else None,
+            "outcome": tried.outcome,
+            "target": f"{tried.target / PER_MINUTE:.6g}/min",
+            "fill": tried.fill or None,
+            "delivered": value,
+            "delivered_low": low,
+            "delivered_high": high,
             "purity": NOTHING_LEFT if np.isnan(study.purity[0]) else f"{study.purity[0]:.4g}",
             "purity_low": f"{study.purity[1]:.4g}",
-            "jams": tried.jams, "queue_seconds": f"{tried.queue_seconds:.6g} s",
-            "trial_parts": study.trial_parts or None, "draws": tried.draws, "draws_held": tried.held,
+            "jams": tried.jams,
+            "queue_seconds": f"{tried.queue_seconds:.6g} s",
+            "trial_parts": study.trial_parts or None,
+            "draws": tried.draws,
+            "draws_held": tried.held,
             "seed": study.request.seed,
-            "version": f'"{tried.version}"', "tried": f'"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"',
-            "part": f'"{tried.part}"', "body": f'"{tried.body}"', "bowl": f'"{fingerprint(bowl_read)}"',
-        }  # fmt: skip
+            "version": f'"{tried.version}"',
+            "tried": f'"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"',
+            "part": f'"{tried.part}"',
+            "body": f'"{tried.body}"',
+            "bowl": f'"{fingerprint(bowl_read)}"',
+        }
         lines += ["verified:  # void as soon as part, bowl or version is another"]
         lines += [f"  {word}: {value}" for word, value in verified.items() if value is not None]
     return "\n".join(lines) + "\n"
@@ -701,12 +742,27 @@ def trial_of(study: DesignStudy) -> Verified | None:
         return None
     value, low, high = study.delivered
     return Verified(
-        study.status, study.wanted, study.request.target, value, low, high, study.purity[0], study.jams,
-        study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
-        fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part), study.outcome,
-        "" if study.worst_fill is None else study.worst_fill.fill, study.condition,
+        study.status,
+        study.wanted,
+        study.request.target,
+        value,
+        low,
+        high,
+        study.purity[0],
+        study.jams,
+        study.queue_seconds,
+        study.robust.draws,
+        study.robust.held,
+        __version__,
+        study.part.sha256[:16],
+        fingerprint(study.bowl),
+        ", ".join(study.request.up),
+        body_fingerprint(study.part),
+        study.outcome,
+        "" if study.worst_fill is None else study.worst_fill.fill,
+        study.condition,
         study.purity[1],
-    )  # fmt: skip
+    )
 
 
 def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
@@ -814,14 +870,30 @@ def history_figure(study: DesignStudy, ax: "style.Axes | None" = None) -> "style
 
 
 LOW_BAR = 0.06  # [1] of the highest: neighbours' labels would stand on one line
-RISK_PICTURE_PX, HEIGHT, CAPTION, EDGE = 460, 300, 34, 12  # pixels
+# pixels
+RISK_PICTURE_PX = 460
+HEIGHT = 300
+CAPTION = 34
+EDGE = 12
 THIN, OVER = 0.05, 0.3  # of a part's size: how thick walls are drawn; how far they go on
 VIEWS = {"shingles": (-0.25, -1.0, 0.25), "wedges": (-0.45, -0.35, 1.0)}  # from where, along, across and up
 BOX = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 SIDES = np.array(
-    [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
-     (0, 6, 4), (1, 5, 7), (1, 7, 3)]
-)  # fmt: skip
+    [
+        (0, 1, 3),
+        (0, 3, 2),
+        (4, 6, 7),
+        (4, 7, 5),
+        (0, 4, 5),
+        (0, 5, 1),
+        (2, 3, 7),
+        (2, 7, 6),
+        (0, 2, 6),
+        (0, 6, 4),
+        (1, 5, 7),
+        (1, 7, 3),
+    ]
+)
 Body = tuple[Floats, Ints]  # corners (V, 3) [m] and faces (F, 3)
 
 

@@ -150,9 +150,16 @@ class Drawing:
             self.outline(ring, "SECTION")
 
     def text(
-        self, x: float, y: float, words: str, size: float = NUMBER_HEIGHT_MM, align: str = "left",
-        turn: float = 0.0, bold: bool = False, layer: str = "TEXT",
-    ) -> None:  # fmt: skip
+        self,
+        x: float,
+        y: float,
+        words: str,
+        size: float = NUMBER_HEIGHT_MM,
+        align: str = "left",
+        turn: float = 0.0,
+        bold: bool = False,
+        layer: str = "TEXT",
+    ) -> None:
         """Write one line.
 
         Parameters
@@ -177,9 +184,14 @@ class Drawing:
         self._record(entity, bold)
 
     def table(
-        self, left: float, top: float, widths: Sequence[float], rows: Sequence[Sequence[str]],
-        size: float = TABLE_LETTER_HEIGHT_MM, line: float = 4.6,
-    ) -> float:  # fmt: skip
+        self,
+        left: float,
+        top: float,
+        widths: Sequence[float],
+        rows: Sequence[Sequence[str]],
+        size: float = TABLE_LETTER_HEIGHT_MM,
+        line: float = 4.6,
+    ) -> float:
         """Draw a table.
 
         Parameters
@@ -212,9 +224,14 @@ class Drawing:
     # dimensions
 
     def length(
-        self, start: ArrayLike, end: ArrayLike, offset: ArrayLike, scale: float = 1.0, text: str = "<>",
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        offset: ArrayLike,
+        scale: float = 1.0,
+        text: str = "<>",
         decimals: int = 2,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Dimension the distance of two places.
 
         Parameters
@@ -271,9 +288,15 @@ class Drawing:
         self._measure(self.space.add_angular_dim_cra, 1.0, 2, center=self._in_file(middle), text="<>", **ends)
 
     def round_size(
-        self, middle: ArrayLike, radius: float, turn: float, scale: float = 1.0, diameter: bool = False,
-        text: str = "<>", decimals: int = 2,
-    ) -> None:  # fmt: skip
+        self,
+        middle: ArrayLike,
+        radius: float,
+        turn: float,
+        scale: float = 1.0,
+        diameter: bool = False,
+        text: str = "<>",
+        decimals: int = 2,
+    ) -> None:
         """Dimension a radius, or a diameter, of a circle.
 
         Parameters
@@ -381,11 +404,20 @@ class Drawing:
                     words, place, height, turn, across, up = value
                     x, y = np.asarray(place) - shift
                     axes.text(
-                        x, y, words, fontsize=height * POINT, color=pen.ink,
-                        rotation=turn, rotation_mode="anchor", ha=across, va=up, parse_math=False,
-                        fontweight="bold" if bold else "normal", gid=layer,
+                        x,
+                        y,
+                        words,
+                        fontsize=height * POINT,
+                        color=pen.ink,
+                        rotation=turn,
+                        rotation_mode="anchor",
+                        ha=across,
+                        va=up,
+                        parse_math=False,
+                        fontweight="bold" if bold else "normal",
+                        gid=layer,
                         alpha=marking.STRENGTH if layer == "MARK" else None,
-                    )  # fmt: skip
+                    )
                 elif shape == "area":
                     rings = [Path(np.vstack([ring, ring[:1]]) - shift, closed=True) for ring in value]
                     whole = Path.make_compound_path(*rings)
@@ -436,10 +468,22 @@ class Drawing:
         name = f"SCALE_{scale:g}_{NUMBER_HEIGHT_MM:g}_{decimals}".replace(".", "P")
         if name not in self.document.dimstyles:
             look = {
-                "dimtxt": NUMBER_HEIGHT_MM, "dimasz": 0.8 * NUMBER_HEIGHT_MM, "dimexe": 1.0, "dimexo": 0.6,
-                "dimgap": 0.6, "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": decimals, "dimadec": 1,
-                "dimazin": 2, "dimzin": 8, "dimlfac": 1.0 / scale, "dimtxsty": "SHEET", "dimdsep": ord("."),
-            }  # fmt: skip
+                "dimtxt": NUMBER_HEIGHT_MM,
+                "dimasz": 0.8 * NUMBER_HEIGHT_MM,
+                "dimexe": 1.0,
+                "dimexo": 0.6,
+                "dimgap": 0.6,
+                "dimtad": 1,
+                "dimtih": 0,
+                "dimtoh": 0,
+                "dimdec": decimals,
+                "dimadec": 1,
+                "dimazin": 2,
+                "dimzin": 8,
+                "dimlfac": 1.0 / scale,
+                "dimtxsty": "SHEET",
+                "dimdsep": ord("."),
+            }
             self.document.dimstyles.new(name, dxfattribs=look)
         dimension = add(**sizes, dimstyle=name, dxfattribs=self._look("DIMENSION"))
         dimension.render()

@@ -209,8 +209,14 @@ def _badge(axes: "style.Axes", x: float, y: float, number: int) -> None:
 
 
 ACROSS, DOWN = 6, 2  # stills
-WIDTH, TALLEST, GAP = 262, 430, 12  # [px] of a still; its greatest height; to the next
-EDGE, HEAD, CAPTION, CURVE = 30, 92, 44, 350  # [px]
+WIDTH = 262  # [px] of a still
+TALLEST = 430  # its greatest height
+GAP = 12  # to the next
+# [px]
+EDGE = 30
+HEAD = 92
+CAPTION = 44
+CURVE = 350
 STILL_MARGIN = 1.12  # of a still over the part in it
 MAX_ZOOM_OUT = 1.7  # a part that flies high is drawn so much smaller; higher still, its floor is cut off
 GRID_REACH = 1.25  # [size] how far behind and before the part the grid is drawn

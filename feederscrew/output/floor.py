@@ -39,16 +39,18 @@ mpl_ticker = heavy("matplotlib.ticker")
 TABLE_CELLS, PICTURE_CELLS = 46, 181  # values of each quantity of a map in a table, and in a picture
 MAPS: dict[str, tuple[Any, ...]] = {  # method of the study, axes, picture, the bowl's own point
     "beta_friction": (
-        FloorStudy.over_angle_and_friction, ("vibration angle β [deg]", "friction μ [1]"),
+        FloorStudy.over_angle_and_friction,
+        ("vibration angle β [deg]", "friction μ [1]"),
         "Acceleration along the heading over vibration angle and friction",
         lambda bowl: (np.degrees(bowl.drive.vibration_angle), bowl.friction.kinetic),
     ),
     "frequency_amplitude": (
-        FloorStudy.over_frequency_and_amplitude, ("frequency f [Hz]", "amplitude A [mm]"),
+        FloorStudy.over_frequency_and_amplitude,
+        ("frequency f [Hz]", "amplitude A [mm]"),
         "Acceleration along the heading over frequency and amplitude",
         lambda bowl: (bowl.drive.frequency, 1e3 * bowl.drive.amplitude),
     ),
-}  # fmt: skip
+}
 OUTSIDE = "line of action of N outside the contact"  # at that instant; over the strokes it may only rock
 STATE_WORDS = {"tip": "line of action outside the contact", "stick": "held by friction"}  # else as it is
 SAMPLE_STEP = 5  # of the samples of a cycle, in tables and documents
@@ -451,13 +453,22 @@ def _map(study: FloorStudy, kind: str, title: str, ax: "style.Axes | None" = Non
     over, labels, _, own_point = MAPS[kind]
     grid = over(study, PICTURE_CELLS)
     return regime_map(
-        grid, "acceleration_z_m_s2", title=title, labels=labels, value="acceleration V'_z [m/s²]",
-        bowl_point=own_point(study.bowl), note=_map_notes(kind, grid), ax=ax,
-    )  # fmt: skip
+        grid,
+        "acceleration_z_m_s2",
+        title=title,
+        labels=labels,
+        value="acceleration V'_z [m/s²]",
+        bowl_point=own_point(study.bowl),
+        note=_map_notes(kind, grid),
+        ax=ax,
+    )
 
 
 PART, CONTACT = "#dfe6ec", style.ACCENT
-DRIVE, FRICTION, MOTION, NORMAL = "#0072b2", "#b5482a", "#2f7d5b", "#5b3a8e"
+DRIVE = "#0072b2"
+FRICTION = "#b5482a"
+MOTION = "#2f7d5b"
+NORMAL = "#5b3a8e"
 
 
 def plan(
@@ -587,9 +598,15 @@ def _alignment_figure(study: FloorStudy, title: str, ax: "style.Axes | None" = N
 
 
 def arrow(
-    axes: "style.Axes", start: XY, step: Vector, text: str, color: str, *, is_push: bool = False,
+    axes: "style.Axes",
+    start: XY,
+    step: Vector,
+    text: str,
+    color: str,
+    *,
+    is_push: bool = False,
     side: int = 0,
-) -> None:  # fmt: skip
+) -> None:
     """Draw a force arrow with its value.
 
     Parameters
@@ -652,9 +669,16 @@ HATCH_COLOUR = "#8d979f"
 
 
 def regime_map(
-    grid: Grid, column: str, *, title: str, labels: Sequence[str], value: str,
-    bowl_point: Sequence[float] | None = None, note: Sequence[str] = (), ax: "style.Axes | None" = None,
-) -> "style.Figure":  # fmt: skip
+    grid: Grid,
+    column: str,
+    *,
+    title: str,
+    labels: Sequence[str],
+    value: str,
+    bowl_point: Sequence[float] | None = None,
+    note: Sequence[str] = (),
+    ax: "style.Axes | None" = None,
+) -> "style.Figure":
     """Draw a column of a grid in colour with contour lines, and every region where it means something else.
 
     Parameters
@@ -693,9 +717,15 @@ def regime_map(
         edge = {"edgecolor": HATCH_COLOUR, "linewidth": 0.4}
         with matplotlib.rc_context(hatching):
             axes.contourf(
-                x, y, cover, [0.5, 1.5], colors=[colour],
-                alpha=1.0 if name in COVERED_REGIMES else 0.55, hatches=[hatch or None], zorder=3,
-            )  # fmt: skip
+                x,
+                y,
+                cover,
+                [0.5, 1.5],
+                colors=[colour],
+                alpha=1.0 if name in COVERED_REGIMES else 0.55,
+                hatches=[hatch or None],
+                zorder=3,
+            )
             regions.append(mpl_patches.Patch(facecolor=colour, hatch=hatch, label=label, **edge))
         if not inside.all():
             axes.contour(x, y, cover, [0.5], colors=style.INK, linewidths=0.9, zorder=4)

@@ -90,9 +90,13 @@ class ResultFolder:
         return read if isinstance(read, dict) else {}
 
     def keep(
-        self, command: str, *, arguments: Sequence[str] = (), effective: Mapping[str, Any] | None = None,
+        self,
+        command: str,
+        *,
+        arguments: Sequence[str] = (),
+        effective: Mapping[str, Any] | None = None,
         warnings: Sequence[str] = (),
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Put every file in place and record the run; a command's files of an earlier run are replaced.
 
         Parameters

@@ -27,9 +27,11 @@ figures = heavy("feederscrew.output.machine_figures")
 
 
 def offers(
-    study: MachineSheet, trial: Verified | None = None, mark: str | None = None,
+    study: MachineSheet,
+    trial: Verified | None = None,
+    mark: str | None = None,
     fields: marking.SheetFields | None = None,
-) -> tuple[offer.Offer, ...]:  # fmt: skip
+) -> tuple[offer.Offer, ...]:
     """Return the files of a machine.
 
     Parameters

@@ -13,7 +13,11 @@ from feederscrew.studies.bowl import MachineSheet
 from feederscrew.units import DEG, MM, PER_MINUTE
 
 MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX = 1760, 1500  # [px] of the page
-SHEET_EDGE, TRACK_RING_FACE, FLOOR, FILL, BASE = "#22303c", "#b9cbd8", "#eef2f5", "#e9d9b6", "#c9d0d6"
+SHEET_EDGE = "#22303c"
+TRACK_RING_FACE = "#b9cbd8"
+FLOOR = "#eef2f5"
+FILL = "#e9d9b6"
+BASE = "#c9d0d6"
 SPRING_FACE = "#7d8b97"
 SIZE_TEXT_PT = 8.5  # [pt]
 PITCH = 2.2  # thicknesses from leaf to leaf: one between them as a spacer
@@ -119,10 +123,11 @@ def _draw_from_above(axes: "style.Axes", study: MachineSheet, half: float) -> No
     axes.plot(middle * np.cos(turn), middle * np.sin(turn), color=style.INK, linewidth=1.1)
     end, before = turn[-1], turn[-4]
     axes.annotate(
-        "", (middle * np.cos(end + 0.03), middle * np.sin(end + 0.03)),
+        "",
+        (middle * np.cos(end + 0.03), middle * np.sin(end + 0.03)),
         (middle * np.cos(before), middle * np.sin(before)),
         arrowprops={"arrowstyle": "-|>", "color": style.INK, "linewidth": 1.1},
-    )  # fmt: skip
+    )
     # the diameter, the track's width and the springs' radius
     y = -radius - 0.10 * half
     for x in (-radius, radius):

@@ -158,9 +158,19 @@ def mark_figure(figure: "Figure | None", mark: str) -> "Figure | None":
 def _write(figure: "Figure", mark: str) -> None:
     size, turn = diagonal(figure.get_size_inches(), mark)
     figure.text(
-        0.5, 0.5, mark, fontsize=72.0 * size, rotation=np.degrees(turn), ha="center", va="center",
-        rotation_mode="anchor", fontweight="bold", color=MARK_COLOUR, alpha=STRENGTH, zorder=100,
-    ).set_in_layout(False)  # fmt: skip
+        0.5,
+        0.5,
+        mark,
+        fontsize=72.0 * size,
+        rotation=np.degrees(turn),
+        ha="center",
+        va="center",
+        rotation_mode="anchor",
+        fontweight="bold",
+        color=MARK_COLOUR,
+        alpha=STRENGTH,
+        zorder=100,
+    ).set_in_layout(False)
 
 
 def pictures(files: Iterable[offers.Offer], mark: str) -> list[offers.Offer]:

@@ -7,11 +7,11 @@ import numpy as np
 from feederscrew.arrays import Floats
 from feederscrew.bowl.verified import AMONG, Verified
 from feederscrew.rates.stream import Orientations
+from feederscrew.sorting.device_poses import DevicePoses, find_device_poses
+from feederscrew.sorting.devices.orientation_names import nearest, split_name
+from feederscrew.sorting.orientations import HANGING, Hanging, Orientation
+from feederscrew.sorting.pose_words import describe_pose
 from feederscrew.studies.bowl import MachineSheet, Order
-from feederscrew.tooling.device_poses import DevicePoses, find_device_poses
-from feederscrew.tooling.devices.orientation_names import nearest, split_name
-from feederscrew.tooling.orientations import HANGING, Hanging, Orientation
-from feederscrew.tooling.pose_words import describe_pose
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,21 +12,33 @@ from feederscrew.output import shading
 from feederscrew.output import solidbowl_views as views
 from feederscrew.output.drafting import Drawing, scale_words
 from feederscrew.output.shading import Camera
-from feederscrew.tooling.device_poses import DevicePoses, SharedPose
-from feederscrew.tooling.orientations import HANGING, Hanging, Orientation
-from feederscrew.tooling.pose_words import describe_pose
+from feederscrew.sorting.device_poses import DevicePoses, SharedPose
+from feederscrew.sorting.orientations import HANGING, Hanging, Orientation
+from feederscrew.sorting.pose_words import describe_pose
 from feederscrew.units import MM
 
 SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)  # ISO 5455
 MOST_FACETS = 6_000  # of a part that is drawn as lines
-FROM_ABOVE, FROM_THE_WALL, FROM_AHEAD = (-90.0, 90.0), (-90.0, 0.0), (0.0, 0.0)  # azimuth, elevation [deg]
+# azimuth, elevation [deg]
+FROM_ABOVE = (-90.0, 90.0)
+FROM_THE_WALL = (-90.0, 0.0)
+FROM_AHEAD = (0.0, 0.0)
 SMALL_VIEW = 125.0, 32.0  # [deg] azimuth and elevation of a small picture: from inside the bowl, ahead
 VIEWS_GAP_MM = 7.0  # [mm] of paper between two views
-HEAD_MM, SIZES_MM, BESIDE_MM = 11.0, 9.0, 8.0  # [mm] over the views, below them and left of them
+# [mm] over the views, below them and left of them
+HEAD_MM = 11.0
+SIZES_MM = 9.0
+BESIDE_MM = 8.0
 LABEL_MM = 19.0  # [mm] of paper from one label of a view to the next
 ARROW_MM = 7.0  # [mm] of paper: the way parts travel
-LEAST_ROW_MM, GREATEST_ROW_MM, ROWS_MM = 36.0, 60.0, 250.0  # of a device's row, and of all rows of a sheet
-NAME_MM, COLUMN_MM, PICTURE_SHARE = 42.0, 41.5, 0.84  # of a device's name, of a pose; [1] of it the picture
+# of a device's row, and of all rows of a sheet
+LEAST_ROW_MM = 36.0
+GREATEST_ROW_MM = 60.0
+ROWS_MM = 250.0
+# of a device's name, of a pose; [1] of it the picture
+NAME_MM = 42.0
+COLUMN_MM = 41.5
+PICTURE_SHARE = 0.84
 MOST_PICTURES = 8  # of a device: what passes first, then what is returned
 CAPTION_LETTERS, CAPTION_LINES = 33, 3  # below a picture
 
@@ -90,8 +102,10 @@ def draw_outlet_views(drawing: Drawing, leaving: Orientation, box: tuple[float, 
     x_ahead = left + BESIDE_MM + max(long * scale + VIEWS_GAP_MM + 5.0, LABEL_MM)  # the wall, from ahead
     span = np.array([low[0] - 0.1 * long, high[0] + 0.1 * long]) * scale + x0
     for (azimuth, elevation), at in (
-        (FROM_ABOVE, (x0, y_above)), (FROM_THE_WALL, (x0, y_wall)), (FROM_AHEAD, (x_ahead, y_wall)),
-    ):  # fmt: skip
+        (FROM_ABOVE, (x0, y_above)),
+        (FROM_THE_WALL, (x0, y_wall)),
+        (FROM_AHEAD, (x_ahead, y_wall)),
+    ):
         pieces = _seen(corners, faces, views.camera(azimuth, elevation))
         _draw_edges(drawing, pieces * scale + np.array(at))
     # wall and track, or the rails

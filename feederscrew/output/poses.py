@@ -26,12 +26,28 @@ ORIENTATION = re.compile(r"([^@\s]+)@(\d{1,3})")  # 'A@188': an aspect, a headin
 NAMED = re.compile(r"([^@\s]+?)(?:@(\d{1,3}))?")  # the same, or an aspect alone
 WIDTH_PX, HEIGHT_PX = 240, 180
 MOST_FACETS = 20_000  # of a part that is drawn so small
-AHEAD, ASIDE, THICK, WALL = 0.35, 0.25, 0.04, 0.45  # of the part's length: track before it, at its side, wall
+# of the part's length: track before it, at its side, wall
+AHEAD = 0.35
+ASIDE = 0.25
+THICK = 0.04
+WALL = 0.45
 ARROW = np.array([(0.0, -0.26), (0.0, 0.26), (1.0, 0.0)])  # of the direction of travel, ahead and inwards
 SLAB = np.array(
-    [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
-     (0, 6, 4), (1, 5, 7), (1, 7, 3)]
-)  # fmt: skip
+    [
+        (0, 1, 3),
+        (0, 3, 2),
+        (4, 6, 7),
+        (4, 7, 5),
+        (0, 4, 5),
+        (0, 5, 1),
+        (2, 3, 7),
+        (2, 7, 6),
+        (0, 2, 6),
+        (0, 6, 4),
+        (1, 5, 7),
+        (1, 7, 3),
+    ]
+)
 WEDGE = np.array([(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)])
 
 

@@ -18,10 +18,23 @@ from feederscrew.studies.tune import TuneStudy
 from feederscrew.units import MM, PER_MINUTE
 
 TOLD = {  # columns that stand in rows of the printed table with words of their own
-    "parts_per_minute", "aspect", "heading_deg", "velocity_mm_s", "offered_per_minute", "efficiency",
-    "purity", "length_mm", "gap_mm", "pitch_mm", "p_orientation", "answer", "passes_devices", "fill",
-    "jams_per_hour", "clearing_s",
-}  # fmt: skip
+    "parts_per_minute",
+    "aspect",
+    "heading_deg",
+    "velocity_mm_s",
+    "offered_per_minute",
+    "efficiency",
+    "purity",
+    "length_mm",
+    "gap_mm",
+    "pitch_mm",
+    "p_orientation",
+    "answer",
+    "passes_devices",
+    "fill",
+    "jams_per_hour",
+    "clearing_s",
+}
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 

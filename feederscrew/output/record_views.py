@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from feederscrew.designing.record import DesignStudy
     from feederscrew.rates.well_oriented import Rate
     from feederscrew.resting.aspects import Aspects
+    from feederscrew.sorting.orientations import Orientation
     from feederscrew.studies.aspects import InertiaStudy
     from feederscrew.studies.bowl import MachineSheet
     from feederscrew.studies.compare import CalibrateStudy
@@ -54,7 +55,6 @@ if TYPE_CHECKING:
     from feederscrew.studies.track import TrackStudy
     from feederscrew.studies.trial import TrialStudy
     from feederscrew.studies.tune import TuneStudy
-    from feederscrew.tooling.orientations import Orientation
 
 shading = heavy("feederscrew.output.shading")
 PERCENT = 0.01  # [SI]

@@ -68,21 +68,37 @@ from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.rates.well_oriented import Rate, fed
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.orientations import Orientation
+from feederscrew.sorting.track_sections import Passage
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.track_sections import Passage
-from feederscrew.trial.course import Fate
+from feederscrew.trials.course import Fate
 from feederscrew.units import DEG, MM, MM_S
 
 PART_FACTS = (  # rows of the inertia that the chapter on the part shows
-    "density_g_cm3", "mass_g", "volume_mm3", "bounding_box_x_mm", "bounding_box_y_mm", "bounding_box_z_mm",
-    "centre_of_mass_x_mm", "centre_of_mass_y_mm", "centre_of_mass_z_mm",
-    "principal_moment_1_g_mm2", "principal_moment_2_g_mm2", "principal_moment_3_g_mm2",
-)  # fmt: skip
+    "density_g_cm3",
+    "mass_g",
+    "volume_mm3",
+    "bounding_box_x_mm",
+    "bounding_box_y_mm",
+    "bounding_box_z_mm",
+    "centre_of_mass_x_mm",
+    "centre_of_mass_y_mm",
+    "centre_of_mass_z_mm",
+    "principal_moment_1_g_mm2",
+    "principal_moment_2_g_mm2",
+    "principal_moment_3_g_mm2",
+)
 HEADINGS = (  # columns of the table of headings
-    "aspect", "heading_deg", "share", "aspect_share", "length_mm", "width_mm", "overhang_mm", "falls_off",
-)  # fmt: skip
+    "aspect",
+    "heading_deg",
+    "share",
+    "aspect_share",
+    "length_mm",
+    "width_mm",
+    "overhang_mm",
+    "falls_off",
+)
 SHARES = {"share": "of this aspect", "aspect_share": "of all drops"}  # words above two of them
 WORDS = tables.REGIME_WORDS | {Regime.STICK: "sticks, does not travel"}  # of a regime
 METHOD_LIMITS = (

@@ -227,9 +227,18 @@ def surface(slide: SlideMap) -> "Figure":
     axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
     angles, ratios, friction = slide.sheet(HIGHEST)
     axes.plot_surface(
-        np.degrees(angles), ratios, friction, cmap=LEVEL_COLOURS, vmin=0.0, vmax=HIGHEST,
-        rcount=61, ccount=61, edgecolor="white", linewidth=0.15, zorder=1,
-    )  # fmt: skip
+        np.degrees(angles),
+        ratios,
+        friction,
+        cmap=LEVEL_COLOURS,
+        vmin=0.0,
+        vmax=HIGHEST,
+        rcount=61,
+        ccount=61,
+        edgecolor="white",
+        linewidth=0.15,
+        zorder=1,
+    )
     own = slide.level_line(slide.friction, angles[:, 0])
     own = np.where(own <= ratios.max(), own, np.nan)
     label = f"static friction of this bowl, {slide.friction:g}: where the surface is above it, the part slips"

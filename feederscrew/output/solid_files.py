@@ -12,7 +12,7 @@ from feederscrew.output import marking
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.section import triangles
 from feederscrew.solidbowl.segments import Segment
-from feederscrew.tooling.tooled_track import TooledTrack
+from feederscrew.sorting.tooled_track import TooledTrack
 from feederscrew.units import MM
 
 TYPES = (

@@ -20,9 +20,11 @@ if TYPE_CHECKING:
 
 
 def offers(
-    study: "MachineSheet", trial: "Verified | None" = None, mark: str | None = None,
+    study: "MachineSheet",
+    trial: "Verified | None" = None,
+    mark: str | None = None,
     fields: marking.SheetFields | None = None,
-) -> tuple[offer.Offer, ...]:  # fmt: skip
+) -> tuple[offer.Offer, ...]:
     """Return the files of the solid of a bowl.
 
     Parameters

@@ -230,9 +230,13 @@ def named_ticks(axes: "Axes", places: ArrayLike, names: Sequence[str], length: f
 
 
 def numbers(
-    axes: "Axes", x: Iterable[float], heights: Iterable[float], texts: Iterable[float], upright: bool = False,
+    axes: "Axes",
+    x: Iterable[float],
+    heights: Iterable[float],
+    texts: Iterable[float],
+    upright: bool = False,
     **look: Any,
-) -> None:  # fmt: skip
+) -> None:
     """Write numbers with one decimal over the ends of bars.
 
     Parameters

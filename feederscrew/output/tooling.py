@@ -13,18 +13,18 @@ from feederscrew.designing import texts
 from feederscrew.heavy import heavy
 from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
-from feederscrew.studies.rate import PassagesStudy
-from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling import track_sections
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import CostClass
-from feederscrew.tooling.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
-from feederscrew.tooling.orientations import (
+from feederscrew.sorting import track_sections
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.kinds import CostClass
+from feederscrew.sorting.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
+from feederscrew.sorting.orientations import (
     ORIENTATION_NAME_COLUMNS,
     ORIENTATION_SIZE_COLUMNS,
     Orientation,
 )
-from feederscrew.tooling.tooled_track import TooledTrack, lay_out
+from feederscrew.sorting.tooled_track import TooledTrack, lay_out
+from feederscrew.studies.rate import PassagesStudy
+from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.units import MM, counted
 
 if TYPE_CHECKING:
@@ -36,21 +36,32 @@ tooling_figures = heavy("feederscrew.output.tooling_figures")
 tooling_views = heavy("feederscrew.output.tooling_views")
 
 LEAVING = (  # efficiency and purity, of the trial where there is one
-    "efficiency", "efficiency_low", "efficiency_high", "purity", "purity_low", "efficiency_static",
+    "efficiency",
+    "efficiency_low",
+    "efficiency_high",
+    "purity",
+    "purity_low",
+    "efficiency_static",
     "purity_static",
-)  # fmt: skip
+)
 ROW_HEADS = heads((*ORIENTATION_NAME_COLUMNS, *ORIENTATION_SIZE_COLUMNS)) | heads(DESIGN_COLUMNS)
 ROW_HEADS |= {name: share_head(name) for name in ("share", *LEAVING)}
 HIDDEN = ("reasons", *(name for name in LEAVING if "_" in name))  # the sentences of the trial have them
 TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
-    ("height_mm", "track_width_mm"), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",),
+    ("height_mm", "track_width_mm"),
+    ("length_mm", "width_mm"),
+    ("steady",),
+    ("status",),
+    ("purity",),
     ("left_over",),
-)  # fmt: skip
+)
 CLASS_NAMES = {  # what a chain takes, as the trade says it
-    CostClass.STEEL: "steel", CostClass.AIR: "steady air", CostClass.SENSOR: "a camera or another sensor",
-}  # fmt: skip
+    CostClass.STEEL: "steel",
+    CostClass.AIR: "steady air",
+    CostClass.SENSOR: "a camera or another sensor",
+}
 NOT_PROVED = "not proved"
 STOPPED = f"{NOT_PROVED}: stopped before all was searched and tried"
 QUASI_STATIC = "quasi-static, until a trial confirms it"
@@ -480,9 +491,12 @@ def settings_lines(settings: Sequence[Setting], sections: Mapping[str, Sequence[
 
 
 def offers(
-    study: ToolingStudy, settings: Sequence[Setting], step: bool = False, mark: str = "",
+    study: ToolingStudy,
+    settings: Sequence[Setting],
+    step: bool = False,
+    mark: str = "",
     fields: marking.SheetFields | None = None,
-) -> list[offer.Offer]:  # fmt: skip
+) -> list[offer.Offer]:
     """Offer the files of a tooling study: table, document and picture.
 
     Of one orientation with devices that isolate it the bowl file and the drawings as well; of a run that was
@@ -579,9 +593,12 @@ def solid_picture(
 
 
 def _draw_section(
-    kind: str, study: ToolingStudy, section: Callable[[], TooledTrack], mark: str,
+    kind: str,
+    study: ToolingStudy,
+    section: Callable[[], TooledTrack],
+    mark: str,
     fields: marking.SheetFields | None,
-) -> str | bytes:  # fmt: skip
+) -> str | bytes:
     """The drawing as 'dxf' or 'svg', with the outline of the part before the devices and at each."""
     strip, wanted = section(), study.orientations[_asked_for(study)[1]]
     outline = np.add(wanted.outline, [0.0, wanted.distance])

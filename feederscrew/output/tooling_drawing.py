@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike
 from feederscrew.arrays import Floats
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
-from feederscrew.tooling.devices.features import box_ring
-from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
-from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack, bend_ring
+from feederscrew.sorting.devices.features import box_ring
+from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
+from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, bend_ring
 from feederscrew.units import DEG, MM
 
 VIEW_GAP_MM = 20.0  # [mm] between the views
@@ -105,9 +105,14 @@ def svg(*drawn: Any, **sheet: Any) -> str:
 
 
 def draw(
-    strip: TooledTrack, ghosts: Sequence = (), mark: str = "", *, thickness: float | None = None,
-    fields: marking.SheetFields | None = None, titles: Sequence[tuple[str, str]] = (),
-) -> tuple[Drawing, Floats, Floats]:  # fmt: skip
+    strip: TooledTrack,
+    ghosts: Sequence = (),
+    mark: str = "",
+    *,
+    thickness: float | None = None,
+    fields: marking.SheetFields | None = None,
+    titles: Sequence[tuple[str, str]] = (),
+) -> tuple[Drawing, Floats, Floats]:
     """Draw a track section 1:1: unrolled with dimensions, list of devices, as bent, openings of gates.
 
     Layers are named as pens are: ``CUT``, ``CUT_2`` ... one hole each; the same with ``BENT_`` before it as

@@ -16,18 +16,26 @@ from shapely import affinity
 from feederscrew.arrays import Floats
 from feederscrew.designing import texts
 from feederscrew.output import style
+from feederscrew.sorting import track_sections
+from feederscrew.sorting.devices.base import Device, Verdict
+from feederscrew.sorting.isolating.chain import LEAST_SHARE  # what comes less often has no row
+from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.sorting.track_sections import Passage
 from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling import track_sections
-from feederscrew.tooling.devices.base import Device, Verdict
-from feederscrew.tooling.isolating.chain import LEAST_SHARE  # what comes less often has no row
-from feederscrew.tooling.orientations import Hanging, Orientation
-from feederscrew.tooling.track_sections import Passage
 from feederscrew.units import MM
 
 LIMITS_PAGE_WIDTH_PX = 1200  # pixels
-FATE_COLUMN_PX, DEVICE_COLUMN_PX, ROW, PAGE_HEAD_PX, PAGE_FOOT_PX, OUT = 230, 300, 170, 134, 30, 210  # pixels
+# pixels
+FATE_COLUMN_PX = 230
+DEVICE_COLUMN_PX = 300
+ROW = 170
+PAGE_HEAD_PX = 134
+PAGE_FOOT_PX = 30
+OUT = 210
 PASSED_COLOUR, REJECTED_COLOUR = "#0072b2", "#d55e00"
-TRACK_FACE, PART_FACE, TOUCHING = "#e3e8ec", "#9fb3c4", "#56697a"
+TRACK_FACE = "#e3e8ec"
+PART_FACE = "#9fb3c4"
+TOUCHING = "#56697a"
 MAX_ROWS_OF_ONE_PANEL, MAX_TWO_PANELS_PX = 9, 2200  # more rows: two panels, if no wider [px]
 TEXT_LINE_PX = 17  # pixels between lines of text
 HEAD_LETTER_PX = 9.8  # [px] of a letter in the bold head of a column
@@ -41,9 +49,11 @@ RAIL_FACE, RAIL_DEPTH_MM = "#c3ccd4", 2.0  # [mm] of a rail as drawn
 
 
 def chain(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats,
+    devices: Sequence[Device],
+    orientations: Sequence[Orientation],
+    shares: Floats,
     wanted_row: int | None = None,
-) -> Figure:  # fmt: skip
+) -> Figure:
     """Draw each orientation at the worst place of each device that it meets, the one wanted first.
 
     Parameters
@@ -155,11 +165,15 @@ def limits(study: ToolingStudy, words: str) -> Figure:
         # share and limits at the left of the row
         write_text(page, 16, top + 24, orientation.name, size=12, weight="bold")
         balcony = f"{orientation.balcony / MM:.2f} mm" if np.isfinite(orientation.balcony) else "none"
-        for line, (name, value) in enumerate((
-            ("of the parts", f"{100.0 * shares[k]:.3g} %"), ("track at least", balcony),
-            ("canyon up to", f"{orientation.canyon / MM:.2f} mm"),
-            ("gap up to", f"{orientation.gap / MM:.2f} mm"), ("height", f"{orientation.height / MM:.2f} mm"),
-        )):  # fmt: skip
+        for line, (name, value) in enumerate(
+            (
+                ("of the parts", f"{100.0 * shares[k]:.3g} %"),
+                ("track at least", balcony),
+                ("canyon up to", f"{orientation.canyon / MM:.2f} mm"),
+                ("gap up to", f"{orientation.gap / MM:.2f} mm"),
+                ("height", f"{orientation.height / MM:.2f} mm"),
+            )
+        ):
             write_text(page, 16, top + 50 + line * TEXT_LINE_PX, name)
             write_text(page, 138, top + 50 + line * TEXT_LINE_PX, value)
         colour = PASSED_COLOUR if study.isolates(k) else REJECTED_COLOUR
@@ -357,9 +371,15 @@ def _draw_rule(page: Figure, top: float) -> None:
 
 
 def write_text(
-    page: Figure, x: float, y: float, text: str, *, size: float = 9, colour: str = style.INK,
+    page: Figure,
+    x: float,
+    y: float,
+    text: str,
+    *,
+    size: float = 9,
+    colour: str = style.INK,
     weight: str = "normal",
-) -> None:  # fmt: skip
+) -> None:
     """Write a line of text on a page.
 
     Parameters

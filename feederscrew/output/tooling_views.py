@@ -16,14 +16,17 @@ from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera, Mesh
 from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, margin_words
 from feederscrew.solidbowl import section as printed
-from feederscrew.tooling import track_sections
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.chain import LEAST_SHARE
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.tooled_track import PlacedDevice, TooledTrack, lay_out
-from feederscrew.tooling.track_sections import Passage
+from feederscrew.sorting import track_sections
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.isolating.chain import LEAST_SHARE
+from feederscrew.sorting.orientations import Orientation
+from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, lay_out
+from feederscrew.sorting.track_sections import Passage
 
-VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of two lines over it
+# pixels of one view and of two lines over it
+VIEW_WIDTH_PX = 620
+VIEW_HEIGHT_PX = 520
+VIEW_HEAD_PX = 96
 CAPTION_LINE_PX = 24
 NAME_LETTERS, CAPTION_LETTERS = 46, 64  # of a line that is no wider than a view
 TO_VIEWER = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
@@ -123,9 +126,12 @@ def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation],
         weight = np.array([[*passage.weight, 0.0]])
         box.plot(*project(weight, angle).T, "o", ms=6.0, color=colour, mec="white", mew=0.8)
     _draw_air(
-        box, passage, section, size,
+        box,
+        passage,
+        section,
+        size,
         lambda s, off, up: project(np.array([[0.0, off, up]]), (placed.begin + s) / radius)[0],
-    )  # fmt: skip
+    )
     box.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
     box.axis("off")
 
@@ -237,9 +243,12 @@ def section_of(passage: Passage, orientations: Sequence[Orientation]) -> TooledT
 
 
 def clearest(
-    tracks: Sequence[Mesh], parts: Sequence[Mesh], centres: Sequence[Vector], angles: Sequence[float],
+    tracks: Sequence[Mesh],
+    parts: Sequence[Mesh],
+    centres: Sequence[Vector],
+    angles: Sequence[float],
     half: float,
-) -> list[Camera]:  # fmt: skip
+) -> list[Camera]:
     """Return the views of some moments from the one side on which the track hides least of the part.
 
     Parameters
@@ -295,9 +304,12 @@ def camera_at(angle: float, turn: float = 0.0) -> Camera:
 
 
 def _draw_air(
-    axes: Axes, passage: Passage, section: TooledTrack, size: float,
+    axes: Axes,
+    passage: Passage,
+    section: TooledTrack,
+    size: float,
     project: Callable[[float, float, float], Vector],
-) -> None:  # fmt: skip
+) -> None:
     """The sensor's line of sight, its nozzles and their air; ``project`` takes places at a device [m]."""
     features, orientation = section.devices[0].features, passage.orientation
     reach = section.width + np.ptp(passage.outline[:, 1])

@@ -332,9 +332,15 @@ def _map(
         key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
         own.append(attrgetter(key.field)(study.bowl) / key.share / axis.unit)
     return floor.regime_map(
-        grid, "acceleration_x_m_s2", title=title, labels=labels,
-        value="acceleration V'_X at the upper reversal [m/s²]", bowl_point=own, note=map_remarks(grid), ax=ax,
-    )  # fmt: skip
+        grid,
+        "acceleration_x_m_s2",
+        title=title,
+        labels=labels,
+        value="acceleration V'_X at the upper reversal [m/s²]",
+        bowl_point=own,
+        note=map_remarks(grid),
+        ax=ax,
+    )
 
 
 def _cycle(motion: TrackMotion, course: Cycle, title: str) -> "Figure":
@@ -496,9 +502,16 @@ def _draw_from_behind(axes: "Axes", study: TrackStudy, size: float, balance: Tra
 
 
 def _draw_force(
-    axes: "Axes", now: TrackMotion, size: float, start: Vector, direction: Vector, value: float, name: str,
-    color: str, **look: Any,
-) -> None:  # fmt: skip
+    axes: "Axes",
+    now: TrackMotion,
+    size: float,
+    start: Vector,
+    direction: Vector,
+    value: float,
+    name: str,
+    color: str,
+    **look: Any,
+) -> None:
     """Draw a force [N] along a unit vector, its length by the root of it; none that is next to nothing."""
     longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
     if abs(value) > 1e-3 * longest:

@@ -21,7 +21,9 @@ MAX_MESH_BYTES = 1 << 29  # [bytes] of a file, or of what an archive unpacks to
 MAX_TEXT_BYTES = 1 << 27  # [bytes] of a mesh in text: six hundred thousand facets of an ASCII STL
 MAX_READ_FACETS = 2_000_000  # a hundred times what a fed part needs; checked in less than 3 GB
 MAX_READ_CORNERS = 3 * MAX_READ_FACETS  # of facets that share none
-CARD_FORMAT, BINARY_STL, ASCII_STL = "card", "stl", "stl-ascii"
+CARD_FORMAT = "card"
+BINARY_STL = "stl"
+ASCII_STL = "stl-ascii"
 STL_HEADER_BYTES, STL_FACET_BYTES = 84, 50  # [bytes] of a binary STL
 FORMAT_HEAD_BYTES = 1 << 16  # [bytes] looked at
 

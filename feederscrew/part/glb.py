@@ -28,7 +28,11 @@ MAX_PRIMITIVES = 200_000  # of all instances
 JSON_CHUNK, BINARY_CHUNK = 0x4E4F534A, 0x004E4942  # 4.4.3
 COMPONENT_TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}  # 3.6.2.2
 COMPONENTS_BY_TYPE = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-POINTS_AND_LINES, TRIANGLES, STRIP, FAN = range(4), 4, 5, 6  # modes of a primitive, 3.7.2.1
+# modes of a primitive, 3.7.2.1
+POINTS_AND_LINES = range(4)
+TRIANGLES = 4
+STRIP = 5
+FAN = 6
 INSTANCING, VISIBILITY = "EXT_mesh_gpu_instancing", "KHR_node_visibility"
 PACKINGS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
 QUANTIZATION, BREP_FACES = "KHR_mesh_quantization", "TM_brep_faces"  # corners as integers; of cascadio

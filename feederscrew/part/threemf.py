@@ -38,7 +38,9 @@ UNITS_3MF = {  # of the specification: one of ours, and how many of it they are
     "foot": ("in", 12.0),
     "meter": ("m", 1.0),
 }
-PART_ROLE, NEGATIVE_ROLE, MODIFIER_ROLE = "part", "negative", "modifier"
+PART_ROLE = "part"
+NEGATIVE_ROLE = "negative"
+MODIFIER_ROLE = "modifier"
 SURFACE_ROLE = "surface"  # a part if it is closed: FreeCAD 0.20 and 0.21 call every object that
 UNDECIDED_ROLES = (PART_ROLE, SURFACE_ROLE)  # a slicer may say otherwise
 SUPPORT_ROLE, UNPRINTED_ROLE = "support", "unprintable"

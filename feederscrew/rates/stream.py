@@ -20,13 +20,13 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.profiles import AspectProfile, CountFile, DeviceCounts
 from feederscrew.resting.rules import registry
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, widen_for_launch
-from feederscrew.tooling import orientations as tooling
-from feederscrew.tooling.devices.base import UNSURE, Device
-from feederscrew.tooling.devices.kinds import find_kind
-from feederscrew.tooling.devices.orientation_names import place
-from feederscrew.tooling.falling import clearing_time
-from feederscrew.tooling.fates import at_entry, course
-from feederscrew.tooling.orientations import Orientation, travel_speed
+from feederscrew.sorting import orientations as tooling
+from feederscrew.sorting.devices.base import UNSURE, Device
+from feederscrew.sorting.devices.kinds import find_kind
+from feederscrew.sorting.devices.orientation_names import place
+from feederscrew.sorting.falling import clearing_time
+from feederscrew.sorting.fates import at_entry, course
+from feederscrew.sorting.orientations import Orientation, travel_speed
 
 if TYPE_CHECKING:
     from feederscrew.dropping.arrival import Arrival

@@ -19,11 +19,11 @@ from feederscrew.mechanics import limits, track_balance
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor_balance import HOP, TIP
 from feederscrew.mechanics.track_balance import Seat, SeatStack, seat
-from feederscrew.tooling import footprints
-from feederscrew.tooling.devices.base import Device, opening_at
-from feederscrew.tooling.devices.openings import HoleEdges, hole_edges
-from feederscrew.tooling.falling import surely_gone
-from feederscrew.tooling.orientations import Orientation, add_travel, gyration, travel_speed
+from feederscrew.sorting import footprints
+from feederscrew.sorting.devices.base import Device, opening_at
+from feederscrew.sorting.devices.openings import HoleEdges, hole_edges
+from feederscrew.sorting.falling import surely_gone
+from feederscrew.sorting.orientations import Orientation, add_travel, gyration, travel_speed
 from feederscrew.units import MM, listed
 
 ROCKING_STEPS = 48  # of one period

@@ -17,8 +17,8 @@ from feederscrew.rates.stream import Orientations
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.orientations import Orientation
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.orientations import Orientation
 
 RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
 

@@ -9,7 +9,7 @@ from typing import Any
 from feederscrew.part.density import MATERIALS
 from feederscrew.serving.refusal import Refusal
 from feederscrew.serving.uploads import BowlUpload, Upload
-from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.sorting.devices.kinds import KINDS
 
 MACHINES = {  # what a reader chooses: label, and the options of the design
     "50": ("leaf springs, 50 Hz mains", ("--drive", "leaf-spring", "--set", "machine.mains=50 Hz")),

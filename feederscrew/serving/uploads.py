@@ -17,8 +17,8 @@ from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.serving.refusal import Refusal, in_words_of_the_page
+from feederscrew.sorting.orientations import orientations
 from feederscrew.studies.aspects import aspects
-from feederscrew.tooling.orientations import orientations
 from feederscrew.units import MM
 
 PART_BYTES = 64 * 2**20  # that a part file may have

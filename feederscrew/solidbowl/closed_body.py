@@ -17,9 +17,9 @@ from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, CONICAL, FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.segments import Segments
-from feederscrew.tooling import whole_surface
-from feederscrew.tooling.devices.features import Blade
-from feederscrew.tooling.tooled_track import PlacedDevice
+from feederscrew.sorting import whole_surface
+from feederscrew.sorting.devices.features import Blade
+from feederscrew.sorting.tooled_track import PlacedDevice
 
 if TYPE_CHECKING:
     from feederscrew.solidbowl.exact.exact_file import StepFile

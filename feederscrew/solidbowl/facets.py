@@ -13,7 +13,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
 from feederscrew.solidbowl.plan import FULL_TURN_RAD, BowlPlan, TrackPath
-from feederscrew.tooling.solid import extrude
+from feederscrew.sorting.solid import extrude
 from feederscrew.units import MM, counted
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from feederscrew.arrays import Floats, Values, Vector
 from feederscrew.bowl.record import Sizing, Track
 from feederscrew.errors import FeederError
 from feederscrew.machine.sizing import MIN_WALL_ABOVE_PART_M, Size
-from feederscrew.tooling.devices.features import Blade
-from feederscrew.tooling.tooled_track import TooledTrack
+from feederscrew.sorting.devices.features import Blade
+from feederscrew.sorting.tooled_track import TooledTrack
 
 Extents = Floats | tuple[float, ...]  # (3,) [m] of a part along its axes
 STEEL_NAME = "steel"

@@ -6,7 +6,7 @@ from feederscrew.arrays import Points, Values
 from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.plan import CONICAL, FULL_TURN_RAD, BowlPlan
-from feederscrew.tooling.orientations import Orientation
+from feederscrew.sorting.orientations import Orientation
 
 SPACED = 1.3  # of its length: from part to part
 FIRST_RIDER_POSITION = 0.12  # of the track: where the first of them is

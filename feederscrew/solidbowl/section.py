@@ -16,11 +16,11 @@ from feederscrew.arrays import Floats, Points, Triangles
 from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import TrackPath
-from feederscrew.tooling import whole_surface
-from feederscrew.tooling.devices.features import box_ring
-from feederscrew.tooling.devices.openings import beyond_borders
-from feederscrew.tooling.solid import PLATE, WALL, WALL_OVERLAP_M, leaning_profile
-from feederscrew.tooling.tooled_track import DRAWN_CHORD_M, Ledge, TooledTrack, walls_of
+from feederscrew.sorting import whole_surface
+from feederscrew.sorting.devices.features import box_ring
+from feederscrew.sorting.devices.openings import beyond_borders
+from feederscrew.sorting.solid import PLATE, WALL, WALL_OVERLAP_M, leaning_profile
+from feederscrew.sorting.tooled_track import DRAWN_CHORD_M, Ledge, TooledTrack, walls_of
 from feederscrew.units import MM
 
 WALL_MARGIN_M = 5e-3  # [m] of the wall above the tallest part

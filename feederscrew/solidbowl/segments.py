@@ -16,7 +16,7 @@ from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.track import fillet
-from feederscrew.tooling import whole_surface
+from feederscrew.sorting import whole_surface
 from feederscrew.units import MM
 
 if TYPE_CHECKING:

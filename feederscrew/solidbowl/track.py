@@ -10,9 +10,9 @@ import numpy as np
 from feederscrew.arrays import Floats, Values
 from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.plan import CONICAL, DIP, FULL_TURN_RAD, BowlPlan
-from feederscrew.tooling.devices.features import TrackOpening
-from feederscrew.tooling.devices.openings import beyond_borders
-from feederscrew.tooling.tooled_track import GrooveStretch
+from feederscrew.sorting.devices.features import TrackOpening
+from feederscrew.sorting.devices.openings import beyond_borders
+from feederscrew.sorting.tooled_track import GrooveStretch
 
 TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet

@@ -21,7 +21,7 @@ from feederscrew.part.record import PART_MEND, Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules.formulas import EXPONENTS
 from feederscrew.signatures import with_shown_signature
-from feederscrew.tooling.devices.orientation_names import split_name
+from feederscrew.sorting.devices.orientation_names import split_name
 from feederscrew.units import Quantity
 
 Path: TypeAlias = str | PathLike[str]

@@ -26,11 +26,11 @@ from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.plan import SolidOptions, TrackTooLow
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.orientations import orientations
 from feederscrew.studies import arguments, solidbowl
 from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import MIN_POSITIVE, arriving, check_wanted
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.orientations import orientations
 from feederscrew.version import __version__
 
 ASSUMED_DENSITY = 7850.0  # [kg/m3] of a fill of which nothing is known: steel, solid

@@ -14,10 +14,10 @@ from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
+from feederscrew.sorting.devices.orientation_names import split_name
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import former_keywords
 from feederscrew.studies.rate import arriving
-from feederscrew.tooling.devices.orientation_names import split_name
 
 
 @dataclass(frozen=True, eq=False)

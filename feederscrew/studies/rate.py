@@ -28,14 +28,14 @@ from feederscrew.resting.rules.recommended import LAUNCH, launch_of_name
 from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER as RECOMMENDED
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import OnCores
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.orientation_names import rows, split_name
+from feederscrew.sorting.isolating.design import PLAY_M, TOLERANCE_M
+from feederscrew.sorting.orientations import Orientation, orientations
+from feederscrew.sorting.track_sections import Passage, until_returned
 from feederscrew.studies import arguments, simulation_cache
 from feederscrew.studies.arguments import Path, Quantity, former_keywords
 from feederscrew.studies.aspects import aspects as resting
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.orientation_names import rows, split_name
-from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
-from feederscrew.tooling.orientations import Orientation, orientations
-from feederscrew.tooling.track_sections import Passage, until_returned
 
 EQUAL_SHARE_RATIO = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 MIN_POSITIVE = 1e-6  # of what must be above 0
@@ -347,7 +347,7 @@ def rate(
     heading : str or float [rad], optional
         Without one, the most frequent that stays on the track.
     devices : sequence of Device
-        From ``feederscrew.tooling.devices``; those of the bowl without it.
+        From ``feederscrew.sorting.devices``; those of the bowl without it.
     gap : str or float [m]
         Between one part and the next.
     fill : float [1]

@@ -28,8 +28,8 @@ from feederscrew.solidbowl.plan import (
     material,
     plan,
 )
-from feederscrew.tooling.orientations import hang, neck
-from feederscrew.tooling.tooled_track import lay_out
+from feederscrew.sorting.orientations import hang, neck
+from feederscrew.sorting.tooled_track import lay_out
 
 CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is looked for that leaves room below the tooled stretch
 STEEPEST_RAD = np.radians(10.0)  # up to which it is: from there on parts slide back with most frictions

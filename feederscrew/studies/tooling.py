@@ -21,23 +21,23 @@ from feederscrew.rates.tipping import marked, remark, steady
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.studies import arguments
-from feederscrew.studies.arguments import Quantity, former_keywords
-from feederscrew.studies.rate import Shares, arriving, the_shares
-from feederscrew.tooling.devices.kinds import KINDS, CostClass, cheaper, dearer, find_kind, leaning, names
-from feederscrew.tooling.devices.orientation_names import rows
-from feederscrew.tooling.fates import at_entry
-from feederscrew.tooling.isolating import design as designing
-from feederscrew.tooling.isolating.chain import (
+from feederscrew.sorting.devices.kinds import KINDS, CostClass, cheaper, dearer, find_kind, leaning, names
+from feederscrew.sorting.devices.orientation_names import rows
+from feederscrew.sorting.fates import at_entry
+from feederscrew.sorting.isolating import design as designing
+from feederscrew.sorting.isolating.chain import (
     DESIGN_KEY,
     SHOP_ROUNDING_M,
     Design,
     DesignConstraints,
     OutcomeKind,
 )
-from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
-from feederscrew.tooling.isolating.hole_search import HoleSearch
-from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
+from feederscrew.sorting.isolating.design import DESIGN_MARGIN_M
+from feederscrew.sorting.isolating.hole_search import HoleSearch
+from feederscrew.sorting.orientations import Orientation, name_mirror_images, orientations, travel_speed
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import Quantity, former_keywords
+from feederscrew.studies.rate import Shares, arriving, the_shares
 from feederscrew.units import quantity_text
 
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine

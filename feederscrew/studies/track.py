@@ -23,10 +23,10 @@ from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import Posture, choose_posture
+from feederscrew.sorting import orientations
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import likeliest
-from feederscrew.tooling import orientations
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 

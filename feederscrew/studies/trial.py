@@ -23,20 +23,20 @@ from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.running import RunSettings
+from feederscrew.sorting.devices.orientation_names import place, rows, split_name
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Quantity, former_keywords
 from feederscrew.studies.rate import Shares, check_wanted, the_shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.studies.tooling import listed
-from feederscrew.tooling.devices.orientation_names import place, rows, split_name
-from feederscrew.trial import course, result
-from feederscrew.trial.fills import FedRow, FillLevel
-from feederscrew.trial.long_ride import long_ride
-from feederscrew.trial.part_poses import MAX_START_PLAY_M
-from feederscrew.trial.queue import MEAN_GAP_SHARE, QueuePlan, queue_of
-from feederscrew.trial.result import Outlet, TrialRun
-from feederscrew.trial.shape import solid_of
-from feederscrew.trial.wanted import states_of_name, wanted_rows
+from feederscrew.trials import course, result
+from feederscrew.trials.fills import FedRow, FillLevel
+from feederscrew.trials.long_ride import long_ride
+from feederscrew.trials.part_poses import MAX_START_PLAY_M
+from feederscrew.trials.queue import MEAN_GAP_SHARE, QueuePlan, queue_of
+from feederscrew.trials.result import Outlet, TrialRun
+from feederscrew.trials.shape import solid_of
+from feederscrew.trials.wanted import states_of_name, wanted_rows
 
 ENGINE = "feeder's own kernel"
 QUEUE_SECONDS = 10.0  # [s] for which a queue is followed

@@ -16,11 +16,11 @@ from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates import stream, well_oriented
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.orientations import orientations
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Path, Quantity, former_keywords
 from feederscrew.studies.rate import MIN_POSITIVE, RECOMMENDED, Shares, check_wanted, shares, the_shares
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.orientations import orientations
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import feederscrew as fs
 from feederscrew.advising import advice
 from feederscrew.advising.advice import Grade, Reason, ReasonKind, Way, advise
 from feederscrew.designing.record import RiskKind
-from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.sorting.devices.kinds import KINDS
 
 SENSOR = KINDS["vision reject"]
 

@@ -9,7 +9,7 @@ import trimesh
 import feederscrew as fs
 from feederscrew.advising.changes import LEAST_VOLUME, MOST_VOLUME, ChangeKind, list_changes
 from feederscrew.errors import MeshError
-from feederscrew.tooling.orientations import orientations, shoulders
+from feederscrew.sorting.orientations import orientations, shoulders
 
 MM = 1e-3
 

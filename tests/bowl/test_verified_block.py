@@ -21,9 +21,9 @@ from feederscrew.errors import FeederError
 from feederscrew.output import designs, proof
 from feederscrew.part.record import AspectNames
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.devices.pneumatics import SENSOR_VIEWS
-from feederscrew.tooling.isolating.chain import Cut
+from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.sorting.devices.pneumatics import SENSOR_VIEWS
+from feederscrew.sorting.isolating.chain import Cut
 
 BOWL, PART = bowls.default(), shapes.part(shapes.box(10, 10, 10))
 BLOCK = {

@@ -15,7 +15,7 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import design, fill_verdicts, loop
 from feederscrew.output import report
 from feederscrew.output.report import CHAPTERS
-from feederscrew.trial import fills
+from feederscrew.trials import fills
 
 FIELDS = {
     "status", "wanted", "outcome", "target_per_minute", "delivered_per_minute", "delivered_low",

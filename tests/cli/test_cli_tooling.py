@@ -10,7 +10,7 @@ from command_lines import names
 
 from feederscrew.designing import short_trials
 from feederscrew.output import tooling as tables
-from feederscrew.tooling.isolating import design as designing
+from feederscrew.sorting.isolating import design as designing
 
 WIDE = ("--set", "track.width=200 mm")
 ROW = {

@@ -7,7 +7,7 @@ import pytest
 import shapes
 from command_lines import names, rows
 
-from feederscrew.trial import runs
+from feederscrew.trials import runs
 
 BOWL = """\
 drive: {amplitude: 0.15 mm, frequency: 60 Hz, vibration_angle: 20 deg}

@@ -17,12 +17,12 @@ from feederscrew.designing import exploring, loop, nearest, proposals, queues, s
 from feederscrew.designing.findings import End, Fault, FaultKind
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.designing.search import Search
+from feederscrew.sorting.devices.base import Device
 from feederscrew.studies.rate import Shares
-from feederscrew.tooling.devices.base import Device
-from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import FilledQueue, LeavingPose, PoseKind
-from feederscrew.trial.long_ride import LongRide, RideOfTrack
-from feederscrew.trial.wanted import wanted_rows
+from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
+from feederscrew.trials.long_ride import LongRide, RideOfTrack
+from feederscrew.trials.wanted import wanted_rows
 
 SEEDS = range(3)
 

@@ -18,9 +18,9 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.trial import TrialQueue, trial
-from feederscrew.trial import fills, long_ride
-from feederscrew.trial.long_ride import LEFT, RideOfTrack
-from feederscrew.trial.wanted import states_of_name
+from feederscrew.trials import fills, long_ride
+from feederscrew.trials.long_ride import LEFT, RideOfTrack
+from feederscrew.trials.wanted import states_of_name
 
 NAMES = ("A@0", "A@180", "B@0")
 CUBE = shapes.part(shapes.box(10, 10, 10))

@@ -12,8 +12,8 @@ from feederscrew.designing import families
 from feederscrew.designing.record import DesignRequest
 from feederscrew.errors import FeederError
 from feederscrew.output import design_pages
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating.chain import Cut
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.isolating.chain import Cut
 
 SMALL, LARGE = shapes.part(shapes.box(10, 8, 4), "small"), shapes.part(shapes.box(14, 11, 6), "large")
 BOWL = bowls.default()

@@ -23,8 +23,8 @@ from feederscrew.designing.progress import SearchProgress, SearchStage
 from feederscrew.designing.record import ProofKind
 from feederscrew.running import RunSettings
 from feederscrew.studies import simulation_cache
-from feederscrew.trial import fills
-from feederscrew.trial.fills import FedRow, FillLevel
+from feederscrew.trials import fills
+from feederscrew.trials.fills import FedRow, FillLevel
 from feederscrew.units import HOUR
 
 PART = shapes.part(shapes.box(10, 10, 10))
@@ -144,7 +144,7 @@ KILLED = """
     from feederscrew.designing import long_proof, proposals
     from feederscrew.resting.aspects import find
     from feederscrew.running import RunSettings
-    from feederscrew.trial import fills
+    from feederscrew.trials import fills
     fills.TOUCHING_PARTS = 3
     part = shapes.part(shapes.box(20, 12, 5))
     aspects = find(part)

@@ -31,10 +31,10 @@ from feederscrew.designing.search import BankedTrack, Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating.chain import Cut
-from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import FillLevel, LeavingPose, PoseKind
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.isolating.chain import Cut
+from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import FillLevel, LeavingPose, PoseKind
 
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.default()

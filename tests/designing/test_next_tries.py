@@ -16,7 +16,7 @@ from feederscrew.designing.findings import Cause, Fault, FaultKind, Move, MoveKi
 from feederscrew.designing.next_tries import Evidence, TryKind, next_tries, rounded_down
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, NearestDesign
 from feederscrew.output import design_pages, designs, tables
-from feederscrew.trial.course import Fate
+from feederscrew.trials.course import Fate
 from feederscrew_cli.design import design as design_command
 
 PART = shapes.part(shapes.box(20, 12, 5))

@@ -14,8 +14,8 @@ from feederscrew.designing import calm_drive, exploring, proposals
 from feederscrew.designing.findings import Cause, Move, MoveKind
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.search import BankedTrack, Candidate, Search
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.trial.course import Fate
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.trials.course import Fate
 
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.default()

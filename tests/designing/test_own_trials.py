@@ -10,9 +10,9 @@ from feederscrew.designing import short_trials, tooling_trials
 from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling as tables
+from feederscrew.sorting.devices.kinds import CostClass, make_device
+from feederscrew.sorting.isolating import chain
 from feederscrew.studies.tooling import ToolingSearch, tooling, tooling_without
-from feederscrew.tooling.devices.kinds import CostClass, make_device
-from feederscrew.tooling.isolating import chain
 
 
 @pytest.fixture(scope="module")

@@ -21,7 +21,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output import design_pages, designs, machine_figures, marking, solidbowl, tooling_drawing
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.tooled_track import lay_out
+from feederscrew.sorting.tooled_track import lay_out
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 SHORT = "FALLS SHORT"

@@ -15,7 +15,7 @@ from feederscrew.designing.findings import Hooking
 from feederscrew.designing.record import Risk, RiskKind
 from feederscrew.output import bowl_sheet, design_pages, designs, machine, marking, proof, tables
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.orientations import orientations
+from feederscrew.sorting.orientations import orientations
 
 PART = shapes.part(shapes.box(20, 12, 5))
 HOOKING = Hooking(13, 13, 4e-3, 1.5e-3)

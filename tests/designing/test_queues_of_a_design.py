@@ -38,12 +38,12 @@ from feederscrew.output import tables as tables_of
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.trial import fills
-from feederscrew.trial.fills import FillLevel, share_interval
-from feederscrew.trial.queue import PARTS_IN_SHARES as BLOCK
-from feederscrew.trial.queue import QueuedParts
-from feederscrew.trial.wanted import aspects_at_any_heading
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.trials import fills
+from feederscrew.trials.fills import FillLevel, share_interval
+from feederscrew.trials.queue import PARTS_IN_SHARES as BLOCK
+from feederscrew.trials.queue import QueuedParts
+from feederscrew.trials.wanted import aspects_at_any_heading
 
 PART = shapes.part(shapes.box(10, 10, 10))
 BOWL = bowls.default()

@@ -14,10 +14,10 @@ from feederscrew.designing.findings import MoveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import Search
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.isolating.chain import OutcomeKind
-from feederscrew.tooling.isolating.rails import find_head
-from feederscrew.tooling.orientations import hang, may_hang
-from feederscrew.tooling.orientations import orientations as on_the_track
+from feederscrew.sorting.isolating.chain import OutcomeKind
+from feederscrew.sorting.isolating.rails import find_head
+from feederscrew.sorting.orientations import hang, may_hang
+from feederscrew.sorting.orientations import orientations as on_the_track
 
 # a sleeve of 7 mm, 9 mm long with its flange of 12 mm: its head is as long as the part
 SLEEVE = [(0, 0), (6, 0), (6, 1.5), (3.5, 1.5), (3.5, 9), (0, 9)]

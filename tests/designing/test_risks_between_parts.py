@@ -16,7 +16,7 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.lattice import cells, chords, handles
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.orientations import orientations
+from feederscrew.sorting.orientations import orientations
 
 LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 RUBBED = 0.6, 0.5

@@ -26,14 +26,14 @@ from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling import sensor_views
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.devices.pneumatics import PULSE
-from feederscrew.tooling.isolating.chain import Cut, judge_cut
-from feederscrew.tooling.verdicts import DeviceEncounter, verdict
-from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import LeavingPose, PoseKind
-from feederscrew.trial.wanted import equivalent_rows, wanted_states
+from feederscrew.sorting import sensor_views
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.devices.pneumatics import PULSE
+from feederscrew.sorting.isolating.chain import Cut, judge_cut
+from feederscrew.sorting.verdicts import DeviceEncounter, verdict
+from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import LeavingPose, PoseKind
+from feederscrew.trials.wanted import equivalent_rows, wanted_states
 
 DRAWS = 1500
 MM = 1e-3
@@ -391,7 +391,7 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged_and_sensors_see_something(
     )
     own = {"aspects": block.aspects, "chain": chain, "bowl": BOWL}
     whole = stream.along(ways.lying, **own)
-    fates = "feederscrew.tooling.fates.verdict"
+    fates = "feederscrew.sorting.fates.verdict"
     monkeypatch.setattr(fates, lambda kind, one, *more: judged.append(one) or verdict(kind, one, *more))
     rows = [names["A@90"], names["A@0"], names["B@0"]]
     some = stream.along(ways.lying, **own, rows=set(rows))

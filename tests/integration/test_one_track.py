@@ -18,10 +18,10 @@ from feederscrew.solidbowl import section as printed
 from feederscrew.solidbowl.closed_body import body, pieces
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
-from feederscrew.tooling.devices.kinds import KINDS, make_device
-from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.tooled_track import lay_out
-from feederscrew.trial import staging
+from feederscrew.sorting.devices.kinds import KINDS, make_device
+from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.tooled_track import lay_out
+from feederscrew.trials import staging
 
 NEAR = 2e-5  # [m] within which edges agree
 BESIDE = 2e-3  # [m] of bare track to either side of a device that is compared

@@ -15,8 +15,8 @@ from feederscrew.machine.vision_station import CAMERAS, choose_lens, plan_vision
 from feederscrew.output import beside_bowl
 from feederscrew.rates.stream import follow_orientations
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.devices.pneumatics import REACTION
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.devices.pneumatics import REACTION
 
 TRACK = Track(climb=np.radians(3.0), bank=0.0, radius=0.15, width=0.016)
 

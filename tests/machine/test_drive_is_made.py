@@ -28,8 +28,8 @@ from feederscrew.machine.drive_sizing import can_make
 from feederscrew.machine.springs import analyse_springs, greatest_amplitude, leaf_stress, stroke
 from feederscrew.output import bowl_sheet, design_pages, designs, machine, machine_figures, tooling_drawing
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.studies import bowl as machines
-from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 
 STEEL_PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 ABS = 1050.0  # [kg/m3]

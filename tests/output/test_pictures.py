@@ -32,14 +32,14 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.exact_tumbling import Transition
 from feederscrew.resting.rules import registry
+from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.studies import convey as convey_study
 from feederscrew.studies.aspects import aspects as aspects_study
 from feederscrew.studies.floor import floor
 from feederscrew.studies.headings import headings
 from feederscrew.studies.slide import sliding_map
 from feederscrew.studies.track import track
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.trial.course import Fate
+from feederscrew.trials.course import Fate
 
 LOOKED_AT = True
 

@@ -15,7 +15,7 @@ from feederscrew.output.tables import frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
-from feederscrew.tooling.orientations import orientations
+from feederscrew.sorting.orientations import orientations
 
 
 @pytest.fixture(scope="module")

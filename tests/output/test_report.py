@@ -29,7 +29,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.report import ReportStudy, report
-from feederscrew.trial.course import FATES
+from feederscrew.trials.course import FATES
 from feederscrew_cli.report import repeat_command
 
 PARTS = Path(__file__).parents[2] / "parts"

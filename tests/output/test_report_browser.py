@@ -18,10 +18,10 @@ from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Ta
 from feederscrew.output.report import CHAPTERS, over_cuts, page
 from feederscrew.output.trial import rides
 from feederscrew.part import load
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.orientations import orientations
 from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.orientations import orientations
 
 LOOKED_AT = True
 

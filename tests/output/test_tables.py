@@ -16,8 +16,8 @@ from feederscrew.output import record_views, tables
 from feederscrew.output.page.as_html import escape, texts_of
 from feederscrew.output.tables import heading_note
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.orientations import orientations
 from feederscrew.studies.tooling import ToolingSearch, tooling
-from feederscrew.tooling.orientations import orientations
 
 PARTS = Path(__file__).parents[2] / "parts"
 COLUMNS = {"aspect": ["A", "BB"], "stable": np.array([True, False]), "faces": np.array([1, 12])}

@@ -21,15 +21,15 @@ from feederscrew.output import shading, solid_files, tooling_drawing, tooling_fi
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.solidbowl import section as printed
+from feederscrew.sorting import track_sections
+from feederscrew.sorting.devices.base import UNSURE, Verdict
+from feederscrew.sorting.devices.features import ShopWork
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.orientations import add_travel, orientations
+from feederscrew.sorting.tooled_track import bend_ring, lay_out
+from feederscrew.sorting.verdicts import verdict
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import ToolingSearch, ToolingStudy, tooling
-from feederscrew.tooling import track_sections
-from feederscrew.tooling.devices.base import UNSURE, Verdict
-from feederscrew.tooling.devices.features import ShopWork
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.orientations import add_travel, orientations
-from feederscrew.tooling.tooled_track import bend_ring, lay_out
-from feederscrew.tooling.verdicts import verdict
 
 LOOKED_AT = True
 

@@ -73,7 +73,7 @@ def test_every_name_that_is_changed_is_there_with_something_to_change_and_with_t
         path, inside = mutants.located(name)
         assert mutants.named(ast.parse(path.read_text()), inside), name
     with pytest.raises(SystemExit, match=r"there is no such module"):
-        mutants.located("tooling_of_old.length")
+        mutants.located("sorting_of_old.length")
     with pytest.raises(SystemExit, match=r"there is no gone"):
         mutants.named(ast.parse("here = 1"), ["gone"])
 

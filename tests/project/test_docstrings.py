@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2] / "feederscrew"
-ROOMS = "bowl conveying dropping machine mechanics rates resting screw tooling trial".split()
+ROOMS = "bowl conveying dropping machine mechanics rates resting screw sorting trials".split()
 UNIT = re.compile(r"\[[^\]\n]{1,60}\]")
 SHAPE = re.compile(r"\((?:[A-Za-z0-9.][A-Za-z0-9_+* .]*)?(?:,[^)\n]*)+\)")
 ENTRY = re.compile(
@@ -110,8 +110,8 @@ def test_what_computes_says_the_unit_of_each_quantity_and_has_a_source(known):
     assert len(able) > 290
     assert [name for name, node, doc in able if not has_units(node, doc)] == []
     assert [name for name, _, doc in able if not has_source(name, doc)] == []
-    rooms = [name for name in ROOMS if name not in ("tooling", "trial")]
-    for among, least in ((rooms, 0.95), (["tooling"], 0.6)):  # in their own; the others select, sort or read
+    rooms = [name for name in ROOMS if name not in ("sorting", "trials")]
+    for among, least in ((rooms, 0.95), (["sorting"], 0.6)):  # in their own; the others select, sort or read
         docs = [doc for name, node, doc in able if name.split(".")[0] in among and returns_numbers(node)]
         assert sum(bool(SOURCE.search(doc)) for doc in docs) >= least * len(docs)
 

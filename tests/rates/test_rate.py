@@ -25,8 +25,8 @@ from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.well_oriented import Range
 from feederscrew.resting import profiles
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.studies import rate as study
-from feederscrew.tooling.devices.kinds import make_device
 
 OWN = "drive.peak_to_peak=1 mm", "drive.frequency=50 Hz", "restitution=0", "friction.static=0.4"
 BOWL = bowls.read(None, OWN)

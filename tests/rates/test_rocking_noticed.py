@@ -15,8 +15,8 @@ from feederscrew.mechanics.track_balance import seat
 from feederscrew.rates import stream, tipping
 from feederscrew.rates.tipping import ROCKING_STEPS, Rocker, goes_over, seat_in_groove
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.orientations import gyration, orientations
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.orientations import gyration, orientations
 
 GRAVITY = 9.81
 PERIOD = 1.0 / 60.0

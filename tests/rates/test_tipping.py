@@ -24,16 +24,16 @@ from feederscrew.rates import tipping as verdicts
 from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.tipping import OVER, ROCKS, STAYS, over_period, steady, tipping
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.devices.base import UNSURE
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.isolating.chain import candidates
+from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.verdicts import verdict
 from feederscrew.studies.bowl import size_machine as sized
 from feederscrew.studies.rate import Shares, passages, rate
 from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.studies.track import track
 from feederscrew.studies.tune import tune
-from feederscrew.tooling.devices.base import UNSURE
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating.chain import candidates
-from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.verdicts import verdict
 
 ROUGH = ("friction.static=0.9", "track.climb=1 deg")
 SAID = "B@0 can tip over on the track at this drive and count as returned"

@@ -11,7 +11,7 @@ import shapely
 from shapely import affinity
 
 from feederscrew.solidbowl import facets, measuring
-from feederscrew.tooling.fates import leading_devices
+from feederscrew.sorting.fates import leading_devices
 
 MM = facets.MM
 UNDER = 3e-4  # [m] below the track's surface, where its plate is cut to see its holes

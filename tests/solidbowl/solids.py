@@ -15,8 +15,8 @@ from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import ways_down
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
-from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.tooled_track import lay_out
+from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.sorting.tooled_track import lay_out
 
 RULES = record(effective({})).sizing
 TRACK = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=0.02)

@@ -14,10 +14,10 @@ from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import Search
 from feederscrew.resting.aspects import find
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME, TrackTooLow
+from feederscrew.sorting.isolating.chain import Cut
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares
-from feederscrew.tooling.isolating.chain import Cut
 
 PART = shapes.part(shapes.box(40, 12, 5))
 ASPECTS = find(PART)

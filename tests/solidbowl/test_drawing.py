@@ -23,7 +23,7 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions
-from feederscrew.tooling.pose_words import describe_pose
+from feederscrew.sorting.pose_words import describe_pose
 
 CASES = {
     "cylinder": ("narrowed and rails", TRACK, SolidOptions()),

@@ -16,9 +16,9 @@ from feederscrew.solidbowl import section as printed
 from feederscrew.solidbowl.exact import exact_body, exact_file
 from feederscrew.solidbowl.exact.exact_file import step_file
 from feederscrew.solidbowl.plan import SolidOptions
-from feederscrew.tooling import solid
-from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.tooled_track import lay_out
+from feederscrew.sorting import solid
+from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.tooled_track import lay_out
 
 PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BANKED, STEEP = replace(TRACK, bank=np.radians(6.0)), replace(TRACK, climb=np.radians(6.24), width=29.1e-3)

@@ -28,7 +28,7 @@ from feederscrew.solidbowl import facets, riding, track
 from feederscrew.solidbowl.closed_body import body, pieces, walls
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width
-from feederscrew.tooling.tooled_track import track_at_entry
+from feederscrew.sorting.tooled_track import track_at_entry
 
 LEFT = replace(STEPPED, left=True)
 STEEPER = replace(TRACK, climb=np.radians(6.5))

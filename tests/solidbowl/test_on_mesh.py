@@ -13,9 +13,9 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
-from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.tooled_track import lay_out
-from feederscrew.trial import course
+from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.tooled_track import lay_out
+from feederscrew.trials import course
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",

@@ -37,7 +37,7 @@ from feederscrew.solidbowl import facets, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
 from feederscrew.solidbowl.plan import SolidOptions
-from feederscrew.tooling import whole_surface
+from feederscrew.sorting import whole_surface
 
 
 @pytest.mark.parametrize(

@@ -18,11 +18,11 @@ from scipy.optimize import brentq
 import feederscrew as fs
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import verdicts
-from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.devices.pneumatics import thrust
-from feederscrew.tooling.orientations import add_travel, orientations
-from feederscrew.tooling.verdicts import verdict
+from feederscrew.sorting import verdicts
+from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.sorting.devices.pneumatics import thrust
+from feederscrew.sorting.orientations import add_travel, orientations
+from feederscrew.sorting.verdicts import verdict
 
 BOWL = """\
 drive: {{amplitude: 0.21 mm, frequency: {frequency} Hz, vibration_angle: 25 deg}}

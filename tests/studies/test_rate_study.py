@@ -16,11 +16,11 @@ from feederscrew.designing.record import DesignRequest
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.rates import drive_settings, stream
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.devices.kinds import KINDS
 from feederscrew.studies import rate as rates
 from feederscrew.studies.rate import Shares, most_frequent, rate, shares
 from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.studies.tune import tune
-from feederscrew.tooling.devices.kinds import KINDS
 
 OWN = ("drive.frequency=50 Hz", "drive.amplitude=0.12 mm", "restitution=0", "friction.static=0.4")
 BOWL = bowls.read(None, OWN)

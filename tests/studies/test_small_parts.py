@@ -15,10 +15,10 @@ from feederscrew.output import headings as headings_output
 from feederscrew.output import rate as rate_output
 from feederscrew.output import tooling as tooling_output
 from feederscrew.part.record import MAX_FACETS, small_part_remarks
+from feederscrew.sorting.devices.blades import Wiper
 from feederscrew.studies.headings import headings
 from feederscrew.studies.rate import passages, rate
 from feederscrew.studies.tooling import ToolingSearch, tooling
-from feederscrew.tooling.devices.blades import Wiper
 
 BOWL, MANY_BOWL = (replace(bowls.default(), devices=(Wiper("bowl.yaml:1", limit=h),)) for h in (2e-4, 5e-3))
 

@@ -7,9 +7,9 @@ import pytest
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
-from feederscrew.trial import course, result, runs
-from feederscrew.trial.course import HANGING, PASSED, RETURNED, STOPPED, STUCK, TURNED
-from feederscrew.trial.result import TrialRun
+from feederscrew.trials import course, result, runs
+from feederscrew.trials.course import HANGING, PASSED, RETURNED, STOPPED, STUCK, TURNED
+from feederscrew.trials.result import TrialRun
 
 UNKNOWN, GONE = -1, -2  # orientations a part left in
 PARTS = (  # orientation laid down in, fate, orientation at the end, velocity [m/s], station, depth [mm]

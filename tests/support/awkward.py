@@ -10,7 +10,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.orientations import add_travel, orientations
+from feederscrew.sorting.orientations import add_travel, orientations
 
 SETTINGS = (
     "track.radius=150 mm", "track.bank=3 deg", "track.climb=2 deg", "friction.static=0.5",

@@ -8,8 +8,8 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import short_trials
 from feederscrew.designing.findings import End, Fault, FaultKind
 from feederscrew.designing.record import DesignRequest, DesignStudy, RobustRun
-from feederscrew.trial.course import Fate
-from feederscrew.trial.fills import FilledQueue, LeavingPose, PoseKind
+from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
 
 TURNED_ON_TRACK = End(Fate.TURNED)
 

@@ -59,9 +59,12 @@ NAMES = re.compile(
     re.DOTALL,
 )
 FOLLOWING = (  # what the script shows: its name, what a reader calls it
-    ("velocity", "velocity"), ("regime", "the part"), ("throw", "throw number"),
-    ("stroke", "stroke, end to end"), ("rate", "rate"),
-)  # fmt: skip
+    ("velocity", "velocity"),
+    ("regime", "the part"),
+    ("throw", "throw number"),
+    ("stroke", "stroke, end to end"),
+    ("rate", "rate"),
+)
 
 
 def html(page: kinds.Page) -> str:

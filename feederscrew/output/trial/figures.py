@@ -8,10 +8,10 @@ from matplotlib.patches import Polygon
 
 from feederscrew.arrays import Floats, Points
 from feederscrew.output import style
-from feederscrew.trial import course, runs
-from feederscrew.trial.course import Fate
-from feederscrew.trial.result import TrialRun
-from feederscrew.trial.staging import Stage
+from feederscrew.trials import course, runs
+from feederscrew.trials.course import Fate
+from feederscrew.trials.result import TrialRun
+from feederscrew.trials.staging import Stage
 from feederscrew.units import MM
 
 BLOWN_OFF = None  # in place of the fate of a returned part, where a sensor saw it

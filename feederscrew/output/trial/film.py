@@ -20,12 +20,12 @@ from feederscrew.output.trial import rides as shown
 from feederscrew.output.trial.figures import LOOKS, solids, unroll_path
 from feederscrew.output.trial.rides import WALL, DeviceRide
 from feederscrew.part.record import Part
+from feederscrew.sorting import solid
 from feederscrew.studies.trial import TrialStudy
-from feederscrew.tooling import solid
-from feederscrew.trial.course import Fate
-from feederscrew.trial.queue import QueuedParts
-from feederscrew.trial.result import TrialRun
-from feederscrew.trial.staging import Stage
+from feederscrew.trials.course import Fate
+from feederscrew.trials.queue import QueuedParts
+from feederscrew.trials.result import TrialRun
+from feederscrew.trials.staging import Stage
 from feederscrew.units import MM
 
 Frame = tuple[Floats, str, str]  # image (rows, columns, 3), caption, time
@@ -41,7 +41,10 @@ SHADES = 40  # of the light on a surface: few make small files
 WALL_HEIGHT, FLOOR_DEPTH = 1.1, 3.0  # of the part's radius: wall above the track, floor below it
 STILLS, IN_A_ROW = 6, 3  # of one part
 STILL_SIZE = (400, 280)  # [px]
-GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above a part's, below each
+GAP = 10  # [px] between stills
+RIM = 24  # round all
+TITLE = 54  # above a part's
+LINE = 26  # below each
 
 
 def require_writer(path: str | os.PathLike[str]) -> None:

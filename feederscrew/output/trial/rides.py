@@ -15,13 +15,13 @@ from feederscrew.output import shading, tooling_views
 from feederscrew.output.shading import Mesh, encode_base64, join_meshes, short
 from feederscrew.output.trial.figures import solids, unroll_path
 from feederscrew.part.record import Part
-from feederscrew.tooling import solid
-from feederscrew.tooling.tooled_track import bend_ring
-from feederscrew.trial import course, runs
-from feederscrew.trial.course import Fate
-from feederscrew.trial.result import TrialRun
-from feederscrew.trial.shape import solid_of
-from feederscrew.trial.staging import Stage
+from feederscrew.sorting import solid
+from feederscrew.sorting.tooled_track import bend_ring
+from feederscrew.trials import course, runs
+from feederscrew.trials.course import Fate
+from feederscrew.trials.result import TrialRun
+from feederscrew.trials.shape import solid_of
+from feederscrew.trials.staging import Stage
 from feederscrew.units import MM
 
 ALWAYS = (-np.inf, np.inf)  # [s] when a steady jet blows

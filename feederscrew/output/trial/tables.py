@@ -13,13 +13,13 @@ from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, tables
 from feederscrew.output.convey import restitution_entry
+from feederscrew.sorting.orientations import ORIENTATION_TRIED_COLUMNS
 from feederscrew.studies.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
-from feederscrew.tooling.orientations import ORIENTATION_TRIED_COLUMNS
-from feederscrew.trial import course
-from feederscrew.trial.course import LANDING_COLUMNS, Fate
-from feederscrew.trial.fills import FILL_COLUMNS, FILL_COUNT_COLUMNS, FilledQueue
-from feederscrew.trial.queue import QUEUED_COLUMNS
-from feederscrew.trial.result import OUTLET_COLUMNS, RUN_COLUMNS, RUN_DRIVE_COLUMNS, Outlet, TrialRun
+from feederscrew.trials import course
+from feederscrew.trials.course import LANDING_COLUMNS, Fate
+from feederscrew.trials.fills import FILL_COLUMNS, FILL_COUNT_COLUMNS, FilledQueue
+from feederscrew.trials.queue import QUEUED_COLUMNS
+from feederscrew.trials.result import OUTLET_COLUMNS, RUN_COLUMNS, RUN_DRIVE_COLUMNS, Outlet, TrialRun
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
 figures = heavy("feederscrew.output.trial.figures")

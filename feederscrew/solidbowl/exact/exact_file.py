@@ -14,7 +14,7 @@ from feederscrew.solidbowl.closed_body import BowlSolid, pieces
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.facets import Body
 from feederscrew.solidbowl.section import section_body, solid
-from feederscrew.tooling.tooled_track import TooledTrack
+from feederscrew.sorting.tooled_track import TooledTrack
 from feederscrew.units import MM
 
 IFSelect = heavy("OCP.IFSelect")

@@ -1,0 +1,733 @@
+"""Several parts on one track with all its devices, in a row or poured: they push, carry, climb each other."""
+
+import itertools
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.arrays import Floats, Ints
+from feederscrew.bowl.record import Bowl
+from feederscrew.columns import Column
+from feederscrew.dropping.kernel import body
+from feederscrew.geometry import vectors
+from feederscrew.geometry.compiled import zero_rows
+from feederscrew.part.record import Part
+from feederscrew.rates import stream
+from feederscrew.resting.aspects import Aspects
+from feederscrew.running import RunSettings
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.trials import course, part_poses, runs, staging
+from feederscrew.trials.kernel import travel, workspace
+from feederscrew.trials.kernel.steps import BEHIND, BELOW
+from feederscrew.trials.looks import OTHER, AspectsBelow, Looks
+from feederscrew.trials.part_poses import State
+from feederscrew.trials.shape import round_circles, solid_of
+from feederscrew.trials.staging import Stage
+
+MEAN_GAP_SHARE = 0.2  # of a part's length: mean free way between parts as they come in a row
+JAM_SECONDS = 1.0  # a part that stands at a device so long, nothing before it, is taken out by hand
+BACKED_UP_SECONDS = 0.5  # a part that stands at a pressure break so long, and is pushed, has left the track
+STANDING_WAY = 0.05  # of the unit of length: a part that has come no further stands
+PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
+CARRIED_SHARE = 0.1  # of its weight that other parts carry, and ...
+CLIMB_HEIGHT = 0.02  # ... as high over the track: a part has climbed on others
+WHOLE_PERIOD_TOLERANCE = 1e-6  # of a period: a time so little longer than whole periods is that of them
+PITCHES_BEFORE = 2.0  # greatest pitches of parts that come with room for a sensor: track before its devices
+PARTS_IN_SHARES = 40  # parts that come in exact shares
+POURED_SPACING = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
+SPEED_PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
+TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
+
+
+@dataclass(frozen=True, eq=False)
+class CrowdedTrack:
+    """The bare track for a row, then the devices one behind the other; D devices."""
+
+    stage: Stage
+    start: float  # [m] along the wall, where the drawn track begins
+    windows: Floats  # (D, 2) [m] where each device's stretch begins and ends
+    levels: Floats  # (D + 1,) [m] of the track before the first device and behind each
+    outlet: float  # [m] behind the last of them
+
+
+def lay_out_track(
+    bowl: Bowl, orientations: Sequence[Orientation], devices: Sequence[Device], room: float
+) -> CrowdedTrack:
+    """Return the track for a row of parts: bare up to the place 0, then the devices one behind the other.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its track.
+    orientations : sequence of Orientation
+        Of the part.
+    devices : sequence of Device
+        In the order parts meet them; one that is a measured yield is left out.
+    room : float [m]
+        Length of the bare track.
+
+    Returns
+    -------
+    CrowdedTrack
+    """
+    track, place, level = bowl.track, 0.0, 0.0
+    placed, blows, windows, levels = [], [], [], [0.0]
+    size = staging.size_of(orientations)
+    for device in [device for device in devices if device.placed]:
+        features, start = device.features(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
+        last = staging.exit_place(features, start, size)
+        placed.append((features, start, last))
+        blows.append((features, start, level))
+        level -= 0.0 if features.drop is None else features.drop.height
+        windows.append((place, last))
+        levels.append(level)
+        place = last
+    if placed:  # a ledge goes on behind the outlet
+        placed[-1] = (*placed[-1][:2], place + TAIL * size)
+    # They come apart on a steeper way.
+    first = [replace(slope, climb=None) for slope in staging.entry_slopes(devices, track, orientations)]
+    blown = staging.place_air(blows, track, orientations)
+    stage = Stage(
+        staging.BARE_TRACK,
+        *staging.build_track(placed, track, size, (-room - size, place + TAIL * size)),
+        begin=-room,
+        exit=np.inf,
+        air=replace(blown, slopes=(*staging.slopes_before(first), *blown.slopes)),
+        size=size,
+        width=track.extent,
+    )
+    spans = check.frozen(np.reshape(windows, (-1, 2)).astype(float))
+    return CrowdedTrack(stage, -room, spans, check.frozen(np.array(levels)), place)
+
+
+class PartsOnTrack:
+    """N parts at most on a track, moved period by period; lengths in units of the part's, along the wall.
+
+    Parameters
+    ----------
+    part_in_bowl : BowlOfPart
+    track : CrowdedTrack
+    count : int
+        N.
+    """
+
+    def __init__(self, part_in_bowl: runs.BowlOfPart, track: CrowdedTrack, count: int) -> None:
+        self.part_in_bowl, self.solid, self.stage = part_in_bowl, part_in_bowl.solid, track.stage
+        self.hull = part_in_bowl.solid.corners[part_in_bowl.solid.outer]
+        self.windows, self.levels = track.windows, track.levels
+        self.surface = runs.surface_of(part_in_bowl, track.stage)
+        self.arrays = runs.workspace_of(part_in_bowl.solid, self.surface, count)
+        self.is_on = np.zeros(count, bool)
+        self.period = 2.0 * np.pi / part_in_bowl.floor.rate
+        self.last_ways = np.full((SPEED_PERIODS, count), np.nan)  # ways of each, of the last periods
+        self.pulses = [staging.Pulses() for _ in track.stage.air.watches]
+
+    def lay(self, n: int, state: State) -> None:
+        """Put a part onto the track.
+
+        Parameters
+        ----------
+        n : int
+            Its number, from 0.
+        state : (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+        """
+        self.arrays.states[n] = state
+        runs.forget(self.arrays, n)
+        self.last_ways[:, n] = np.nan
+        self.is_on[n] = True
+
+    def take(self, n: int) -> None:
+        """Take a part off the track.
+
+        Parameters
+        ----------
+        n : int
+            Its number, from 0.
+        """
+        self.is_on[n] = False
+
+    def ride(self, turn: int) -> float:
+        """Move all parts through one period of the drive.
+
+        Parameters
+        ----------
+        turn : int
+            Which period, from 0: it sets the time.
+
+        Returns
+        -------
+        float [L]
+            The deepest that anything was in anything.
+        """
+        journals = zero_rows(1, workspace.JOURNAL)
+        steps = round(self.period / self.part_in_bowl.floor.step)
+        crowd = workspace.QueueSteps(self.is_on, turn * self.period, steps, journals)
+        runs.move_crowd(self.part_in_bowl, self.surface, self.arrays, crowd)
+        return float(journals.depth[0])
+
+    def slides_off(self, n: int) -> bool:
+        """Tell whether a part is beyond the free edge, or too fast towards it to stay on the track.
+
+        Parameters
+        ----------
+        n : int
+            Its number, from 0.
+
+        Returns
+        -------
+        bool
+        """
+        out = travel.slides_to(self.surface, self.arrays.states[n])
+        return bool(out > self.stage.width / self.part_in_bowl.length)
+
+    def watch(self, rows: Ints, before: Floats, after: Floats, turn: int) -> None:
+        """Let sensors look at the parts whose centres of mass have come past them in a period.
+
+        What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
+        it comes to them at its mean speed of the last periods.
+
+        Parameters
+        ----------
+        rows : (K,) int
+            The parts on the track.
+        before, after : (N,) float [L]
+            Places of all parts along the wall, before the period and behind it.
+        turn : int
+            The next period, from which on jets blow.
+        """
+        if not self.pulses:
+            return
+        self.last_ways[1:] = self.last_ways[:-1]
+        self.last_ways[0] = before
+        now, length = turn * self.period, self.part_in_bowl.length
+        for watch, pulses in zip(self.stage.air.watches, self.pulses):
+            place = watch.place / length
+            for n in [n for n in rows if before[n] < place <= after[n]]:
+                states = self.arrays.states[[n, *self.parts_near(n, rows, watch.sensor.resolution)]]
+                level = float(self.levels[int(np.searchsorted(self.windows[:, 1], watch.place))])
+                if runs.blows_off(watch.sensor, self.part_in_bowl, states, level):
+                    noted = self.last_ways[np.isfinite(self.last_ways[:, n]), n]
+                    speed = (after[n] - noted[-1]) / (len(noted) * self.period)
+                    left = max(watch.nozzles / length - after[n], 0.0)
+                    pulses.set_off(now + left / speed, watch.seconds / self.part_in_bowl.unit)
+            self.surface.jets.begin[watch.jets], self.surface.jets.end[watch.jets] = pulses.next(now)
+
+    def parts_near(self, n: int, rows: Iterable[int], resolution: float) -> list[int]:
+        """Return the parts that are one with a part for a sensor, directly or by others between them.
+
+        Parameters
+        ----------
+        n : int
+            The part.
+        rows : iterable of int
+            The parts on the track, n among them.
+        resolution : float [m]
+            The least gap along the wall that the sensor tells.
+
+        Returns
+        -------
+        list of int
+            Without n.
+        """
+        reach = self.reaches(rows)
+        touching, rear, front = [], reach[n][0], reach[n][1]
+        wide = resolution / self.part_in_bowl.length
+        for m in sorted(rows, key=lambda m: abs(reach[m][0] - reach[n][0])):
+            if m != n and reach[m][0] < front + wide and reach[m][1] > rear - wide:
+                touching.append(m)
+                rear, front = min(rear, reach[m][0]), max(front, reach[m][1])
+        return touching
+
+    @property
+    def forces(self) -> Floats:
+        """Return (N, 2) mean forces of others in the last period, from behind and below, over the weight."""
+        return self.arrays.strains / self.period
+
+    def reaches(self, rows: Iterable[int]) -> dict[int, list[float]]:
+        """Return, by part, how far it reaches along the wall and down.
+
+        Parameters
+        ----------
+        rows : iterable of int
+            Parts on the track.
+
+        Returns
+        -------
+        dict of int to list of float [L]
+            Rear and front along the wall, and the height of the lowest point.
+        """
+        states = self.arrays.states[list(rows)]
+        return dict(zip(rows, part_poses.reaches(states, self.hull, self.part_in_bowl.radius).tolist()))
+
+
+@dataclass(frozen=True, eq=False)
+class QueuedParts:
+    """Counts of a queue of N parts; D devices, S orientations in which parts may leave, A aspects."""
+
+    parts: int  # N
+    on_track: int  # of them at a time, at most; the others wait to enter
+    is_poured: bool
+    seconds: float  # [s] followed
+    counted_seconds: float  # [s] of them since the first part came to the outlet; 0 where none did
+    delivered: float  # parts that left the last device then, that in the outlet as the share of its length
+    # (S + 1, A + 1) in which orientation whole ones left, the last is none of the known; on which aspect
+    # those lay, whatever their heading, the last hung
+    whole: Ints
+    left_by_entry: Ints  # (M, S + 1, A + 1) the same by the orientation in which they came
+    returned_by_entry: Ints  # (M,)
+    returned: int  # fell back into the bowl
+    jams: int  # stood at a device and were taken out
+    climbs: int  # times that a part came to lie on others
+    velocity: float  # [m/s] mean of all parts
+    gap: float  # [m] mean free way between neighbours
+    touching: float  # [1] share of the parts that are pushed from behind
+    pressure: Floats  # (D,) [N] greatest mean force of a period on a part that stands at a device
+    depth: float  # [m] the deepest that anything was in anything
+    partial: bool  # stopped by the user: of the seconds until then
+    # (M, D + 1) where those that were returned fell: on the bare track before the devices, at each device
+    returned_at: Ints = field(default_factory=lambda: np.zeros((0, 0), int))
+    relieved: int = 0  # of those returned, backed up at a pressure break and pushed off there
+    # (F, N, 7) position [m] and attitude w x y z (principal axes to bowl), evenly over the time; NaN of a
+    # part that waits to enter
+    poses: Floats = field(default_factory=lambda: np.zeros((0, 0, 7)))
+    moments: tuple[tuple[float, int, int], ...] = ()  # time [s], parts left and returned by then, of each
+    stage: Stage | None = None  # the track with all its devices, on which they lie
+    pulses: tuple[tuple[tuple[float, float], ...], ...] = ()  # [s] begin and end of each, by sensor
+
+    @property
+    def rate(self) -> float:
+        """Return delivered parts [1/s]; 0 where none came to the outlet."""
+        return self.delivered / self.counted_seconds if self.counted_seconds > 0.0 else 0.0
+
+    @property
+    def leaving_counts(self) -> Ints:
+        """Return (S + 1,) int, in which orientation whole parts left; the last is none of the known."""
+        return self.whole.sum(axis=1)
+
+    @property
+    def aspects(self) -> Ints:
+        """Return (A + 1,) int, on which aspect whole parts left, whatever their heading; the last hung."""
+        return self.whole.sum(axis=0)
+
+
+QUEUED_COLUMNS: tuple[Column[QueuedParts], ...] = (
+    Column("parts", lambda queue: queue.parts),
+    Column("on_track", lambda queue: queue.on_track),
+    Column("poured", lambda queue: queue.is_poured),
+    Column("seconds", lambda queue: queue.seconds),
+    Column("counted_seconds", lambda queue: queue.counted_seconds),
+    Column("delivered", lambda queue: queue.delivered),
+    Column("returned", lambda queue: queue.returned),
+    Column("backed_up", lambda queue: queue.relieved),
+    Column("jams", lambda queue: queue.jams),
+    Column("climbs", lambda queue: queue.climbs),
+    Column("velocity_mm_s", lambda queue: queue.velocity, "mm/s"),
+    Column("mean_gap_mm", lambda queue: queue.gap, "mm"),
+    Column("touching", lambda queue: queue.touching),
+)
+
+
+@dataclass(frozen=True)
+class QueuePlan:
+    """Plan of a queue: its number of parts, how they come, and how long they are followed."""
+
+    parts: int
+    seconds: float  # [s] at most
+    # [1] mean free way between parts as they come in a row, over their length, beside the room that devices
+    # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
+    gaps: float | None = MEAN_GAP_SHARE
+    frames: int = 0  # poses of all parts that are noted for a film
+    is_balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
+    is_ridden: bool = False  # they come as they are behind a ride: where devices need room, on a short way
+
+
+def queue_of(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    orientations: Sequence[Orientation],
+    poses: Sequence[Orientation],
+    shares: Floats,
+    plan: QueuePlan,
+    run: RunSettings,
+) -> QueuedParts:
+    """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    aspects : Aspects
+        Of the part.
+    orientations : sequence of Orientation
+        The M in which parts come.
+    poses : sequence of Orientation
+        The S in which they may leave: those M, then those that hang.
+    shares : (M,) float [1]
+        In which they come; the sum is 1.
+    plan : QueuePlan
+    run : RunSettings
+        It is told how many periods of the drive are done, of how many. A queue takes one core.
+
+    Returns
+    -------
+    QueuedParts
+        Of the periods until the user stopped it, if he did.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before the first period is done.
+    FeederError
+        If the part has no shape or too many facets.
+    """
+    run.begin()
+    queue = PartsQueue(part, bowl, aspects, (orientations, shares), poses, plan, run.seed)
+    try:
+        queue.follow(plan.seconds, run.tell)
+    except KeyboardInterrupt:
+        if not queue.periods:
+            raise
+    return queue.result(partial=queue.periods < queue.periods_in(plan.seconds))
+
+
+class PartsQueue:
+    """A queue that is followed bit by bit; lengths in units of the part's, times in seconds.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+    aspects : Aspects
+    supply : (sequence of Orientation, (M,) float [1])
+        The M orientations in which parts come, and their shares.
+    poses : sequence of Orientation
+        As of ``queue_of``.
+    plan : QueuePlan
+        Its seconds are not looked at: ``follow`` says how long the queue goes on.
+    seed : int
+        Of play, gaps, tilt and the order of the orientations.
+    """
+
+    def __init__(
+        self,
+        part: Part,
+        bowl: Bowl,
+        aspects: Aspects,
+        supply: tuple[Sequence[Orientation], Floats],
+        poses: Sequence[Orientation],
+        plan: QueuePlan,
+        seed: int,
+    ) -> None:
+        self.part, self.bowl, self.plan, (self.orientations, shares) = part, bowl, plan, supply
+        solid, length, self.principal = solid_of(part)
+        solid = round_circles(solid, course.roll_axes(self.orientations, self.principal))
+        self.part_in_bowl = runs.setting(solid, length, bowl)
+        count, self.chances = plan.parts, np.cumsum(shares)
+        self.rng, self.tilts = (np.random.default_rng(key) for key in ((seed, count), (seed, count, 1)))
+        longest = max(orientation.length for orientation in self.orientations)
+        turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
+        room = min(1.5 * longest * count + 2.0 * longest, max(turn, 2.0 * longest))
+        spacing = stream.needed_spacing(bowl.devices, self.orientations, bowl)
+        if plan.is_ridden and spacing > 0.0:  # parts that come with room do not push each other
+            room = min(room, PITCHES_BEFORE * (spacing + (1.0 + 2.0 * (plan.gaps or 0.0)) * longest))
+        self.track = lay_out_track(bowl, self.orientations, bowl.devices, room)
+        self.devices = [device for device in bowl.devices if device.placed]
+        self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
+        self.spacing = spacing / length
+        self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
+        self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
+        self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
+        # Of each part: where it was last on its way, since when, whether it lies on others, how it came.
+        self.mark, self.since = np.zeros((2, count))
+        self.on_others, self.entry_rows = np.zeros(count, bool), np.zeros(count, int)
+        self.drawn_rows: list[int] = []  # orientations of the parts to come
+        # drawn, without room yet; as `_next_part` returns it
+        self.next_part: tuple[int, State, float, float, float] | None = None
+        self.waiting_parts, self.periods = list(range(count)), 0
+        # What has been counted.
+        self.left = np.zeros((len(self.orientations), len(poses) + 1, len(aspects.names) + 1), int)
+        self.returned_at = np.zeros((len(self.orientations), len(self.windows) + 1), int)
+        self.returned = self.jams = self.climbs = self.relieved = self.whole = self.max_on_track = 0
+        self.pressure, self.depth = np.zeros(len(self.windows)), 0.0
+        self.ways: list[float] = []
+        self.free_ways: list[float] = []
+        self.touch_shares: list[float] = []
+        self.first_time: float | None = None  # when the first part came to the outlet
+        self.first_share = 0.0  # how much of it had left
+        self.poses: list[Floats] = []
+        self.moments: list[tuple[float, int, int]] = []
+        self.enter()
+
+    @property
+    def time(self) -> float:
+        """Return the time followed so far [s]."""
+        return self.periods / self.bowl.drive.frequency
+
+    def periods_in(self, seconds: float) -> int:
+        """Return how many periods of the drive are followed in a time.
+
+        Parameters
+        ----------
+        seconds : float [s]
+
+        Returns
+        -------
+        int
+            No less than the time, and one at least.
+        """
+        return max(math.ceil(seconds * self.bowl.drive.frequency - WHOLE_PERIOD_TOLERANCE), 1)
+
+    def follow(self, seconds: float, tell: Callable[[int, int], None] | None = None) -> None:
+        """Go on until a time since the queue began; what was followed before is not followed again.
+
+        Parameters
+        ----------
+        seconds : float [s]
+            Since the queue began.
+        tell : callable, optional
+            Told after each period how many are done, of how many.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If the user stops it: ``result`` has the periods until then.
+        """
+        count = self.periods_in(seconds)
+        while self.periods < count:
+            self.ride(self.periods)
+            if self.periods * self.plan.frames >= (len(self.poses) + 1) * count:
+                # Where all parts are, for a film.
+                states = self.crowd.arrays.states
+                places, attitudes = states[:, :3] * self.part_in_bowl.length, states[:, body.Q : body.Q + 4]
+                poses = np.concatenate([places, attitudes], axis=1)
+                poses[~self.crowd.is_on] = np.nan
+                self.poses.append(poses)
+                self.moments.append((self.time, self.whole, self.returned))
+            if tell:
+                tell(self.periods, count)
+
+    def enter(self, reach: dict[int, list[float]] | None = None) -> None:
+        """Let waiting parts in at the end of the row, as long as there is room.
+
+        What has no room yet is the next one to come: were another drawn for it, short ones would come more
+        often than they do.
+
+        Parameters
+        ----------
+        reach : dict of int to list of float [L], optional
+            Of all parts, as ``PartsOnTrack.reaches`` returns it; some may have been taken off since. Found
+            here without it.
+        """
+        if not self.waiting_parts:
+            return
+        if reach is None:
+            reach = self.crowd.reaches(np.flatnonzero(self.crowd.is_on))
+        rears = [rear for n, (rear, _, _) in reach.items() if self.crowd.is_on[n]]
+        end = min(rears, default=0.0)
+        while self.waiting_parts:
+            self.next_part = self.next_part or self._next_part()
+            row, state, gap, rear, front = self.next_part
+            place = min(end, 0.0) - gap - front
+            if place + rear < self.track.start / self.part_in_bowl.length:
+                break
+            self.next_part = None
+            n = self.waiting_parts.pop(0)
+            self.crowd.lay(n, part_poses.move_along_wall(state[None], place, self.part_in_bowl.radius)[0])
+            self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
+            self.entry_rows[n] = row
+            end = place + rear
+        self.max_on_track = max(self.max_on_track, int(self.crowd.is_on.sum()))
+
+    def _next_part(self) -> tuple[int, State, float, float, float]:
+        """A part to come: its orientation, state at the place 0, free way before it, rear and front."""
+        k = self._next_orientation()
+        orientation, solid, length = self.orientations[k], self.part_in_bowl.solid, self.part_in_bowl.length
+        if self.plan.gaps is not None:
+            track, play = orientation.track, part_poses.MAX_START_PLAY_M * self.rng.random()
+            state = part_poses.pose_on_track(orientation, self.principal, length, track, place=0.0)
+            state = part_poses.tilt_state(state, solid.corners, self.tilts)
+            state = part_poses.set_play(state, solid, track, length, play, orientation.wall_leans)
+            gap = self.spacing + 2.0 * self.plan.gaps * self.rng.random() * orientation.length / length
+        else:
+            state, turn, gap = np.zeros(body.STATE), self.rng.standard_normal(4), 0.0
+            over = solid.radius * POURED_SPACING
+            state[:3] = 0.0, over, over * (1.0 + self.rng.random())
+            state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
+        rear, front, _ = part_poses.reaches(state[None], self.crowd.hull, self.part_in_bowl.radius)[0]
+        return k, state, gap, rear, front
+
+    def _next_orientation(self) -> int:
+        """The row of the orientation in which the next part comes.
+
+        Balanced, PARTS_IN_SHARES parts come in their shares as nearly as whole parts can, in random order: a
+        systematic sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
+        """
+        last, most = len(self.orientations) - 1, self.chances[-1]
+        if not self.plan.is_balanced:
+            return min(int(np.searchsorted(self.chances, self.rng.random() * most)), last)
+        if not self.drawn_rows:
+            points = (np.arange(PARTS_IN_SHARES) + self.rng.random()) / PARTS_IN_SHARES * most
+            rows = np.minimum(np.searchsorted(self.chances, points), last)
+            self.drawn_rows = self.rng.permutation(rows).tolist()
+        return self.drawn_rows.pop()
+
+    def ride(self, turn: int) -> None:
+        """Move all parts for one period of the drive, and look what became of them.
+
+        Parameters
+        ----------
+        turn : int
+            Which period, from 0.
+        """
+        lying, radius = np.flatnonzero(self.crowd.is_on), self.part_in_bowl.radius
+        before = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
+        self.depth = max(self.depth, self.crowd.ride(turn))
+        self.periods += 1
+        after = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
+        self.crowd.watch(lying, before, after, turn + 1)
+        # Blown off: so far beyond the free edge that the track holds them no more. Fallen: those, and what is
+        # below the track's lowest level.
+        length, size = self.part_in_bowl.length, self.part_in_bowl.solid.radius
+        x, y, z = self.crowd.arrays.states[:, body.X : body.Z + 1].T
+        out = radius - np.sqrt(x * x + (radius - y) * (radius - y))
+        blown = out > self.track.stage.width / length + runs.OVER_EDGE_SHARE * size
+        fallen = blown | (z * length < self.track.levels.min() - size * length)
+        on = lying[~blown[lying]]
+        if len(on):
+            self.ways.append((after - before)[on].mean())
+        reach = self.crowd.reaches(lying)
+        order = lying[np.argsort(-after[lying], kind="stable")].tolist()
+        self.free_ways += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
+        forces = self.crowd.forces
+        self.touch_shares.append((forces[lying, BEHIND] > 0.0).mean())
+        for n in lying.tolist():  # parts that have come to lie on others
+            climbed = bool(forces[n, BELOW] > CARRIED_SHARE and reach[n][2] > CLIMB_HEIGHT)
+            self.climbs += climbed and not self.on_others[n]
+            self.on_others[n] = climbed
+        for n in order:
+            self._look(n, after[n], reach, order, fallen[n])
+        self.enter(reach)
+
+    def _look(
+        self, n: int, place: float, reach: dict[int, list[float]], order: Sequence[int], has_fallen: bool
+    ) -> None:
+        """Look what became of one part: it left, fell, stands at a device, or goes on."""
+        rear, front, _ = reach[n]
+        if self.first_time is None and front > self.outlet and not has_fallen:
+            self.first_time = self.time
+            self.first_share = self._outside(rear, front)
+        if rear > self.outlet and not has_fallen and not self.crowd.slides_off(n):
+            # It has left: its orientation, and the aspect on which it lies, as if the track were at the level
+            # at which it began.
+            state = np.array(self.crowd.arrays.states[n])
+            state[body.Z] -= self.track.levels[-1] / self.part_in_bowl.length
+            orientation = self.looks.find_orientations([state])[0]
+            hangs = orientation != OTHER and self.hanging[orientation]
+            self.whole += 1
+            aspect = OTHER if hangs else self.below.find_aspects([state])[0]
+            self.left[self.entry_rows[n], orientation, aspect] += 1
+            self._send_back(n)
+        elif has_fallen or front < self.track.start / self.part_in_bowl.length:
+            self._send_back(n, fell_at=front)
+        elif place - self.mark[n] > STANDING_WAY:
+            self.mark[n], self.since[n] = place, self.time
+        elif self.time - self.since[n] >= BACKED_UP_SECONDS and self._is_pushed_off(n, rear, front):
+            self.relieved += 1
+            self._send_back(n, fell_at=front)
+        else:
+            # It stands: what pushes it, and whether it is what holds the others up.
+            at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
+            if not len(at):
+                return
+            self.pressure[at[0]] = max(self.pressure[at[0]], self.crowd.forces[n, BEHIND])
+            ahead = [
+                reach[m][0] - front for m in order if m != n and self.crowd.is_on[m] and reach[m][1] > front
+            ]
+            if self.time - self.since[n] >= JAM_SECONDS and min(ahead, default=np.inf) > MEAN_GAP_SHARE:
+                self.jams += 1
+                self._send_back(n)
+
+    def _is_pushed_off(self, n: int, rear: float, front: float) -> bool:
+        """Tell whether a part that stands is at a pressure break, reaches over its ledge, and is pushed.
+
+        Source: the trade's use of a pressure break: parts that back up leave the track there.
+        """
+        limits = [
+            device.limit
+            for device, (begin, end) in zip(self.devices, self.windows)
+            if device.relieves and rear < end and front > begin
+        ]
+        if not limits or not self.crowd.forces[n, BEHIND] > 0.0:
+            return False
+        state, solid, radius = self.crowd.arrays.states[n], self.part_in_bowl.solid, self.part_in_bowl.radius
+        x, y, _ = (state[:3] + vectors.product(solid.corners, part_poses.matrix(state).T)).T
+        across = float(radius - np.hypot(x, radius - y).min())
+        return across * self.part_in_bowl.length > min(limits)
+
+    def _send_back(self, n: int, *, fell_at: float | None = None) -> None:
+        """Take a part off the track; it waits to enter again.
+
+        ``fell_at`` is where the front of one that fell back into the bowl was along the wall: that counts at
+        the last device it has come to.
+        """
+        if fell_at is not None:
+            self.returned += 1
+            device = int(np.searchsorted(self.windows[:, 0], fell_at))  # 0 before the first
+            self.returned_at[self.entry_rows[n], device] += 1
+        self.crowd.take(n)
+        self.waiting_parts.append(n)
+
+    def _outside(self, rear: float, front: float) -> float:
+        """Return the share of a part's length that has left [1]."""
+        return float(np.clip((front - self.outlet) / (front - rear), 0.0, 1.0))
+
+    def result(self, partial: bool = False) -> QueuedParts:
+        """Return the counts of the queue so far, in SI units.
+
+        Parameters
+        ----------
+        partial : bool, optional
+            Whether the user stopped it.
+
+        Returns
+        -------
+        QueuedParts
+            Valid once one period has been followed.
+        """
+        length, unit, seconds = self.part_in_bowl.length, self.part_in_bowl.unit, self.time
+        reach = self.crowd.reaches(np.flatnonzero(self.crowd.is_on))  # none of them has fallen
+        part = sum(self._outside(rear, front) for rear, front, _ in reach.values())
+        counted_seconds = 0.0 if self.first_time is None else seconds - self.first_time
+        logs = [pulses.log for pulses in self.crowd.pulses]
+        return QueuedParts(
+            parts=self.plan.parts,
+            on_track=self.max_on_track,
+            is_poured=self.plan.gaps is None,
+            seconds=seconds,
+            counted_seconds=counted_seconds,
+            delivered=self.whole + part - self.first_share if counted_seconds else 0.0,
+            whole=check.frozen(self.left.sum(axis=0)),
+            left_by_entry=check.frozen(np.array(self.left)),
+            returned_by_entry=check.frozen(self.returned_at.sum(axis=1)),
+            returned_at=check.frozen(np.array(self.returned_at)),
+            returned=self.returned,
+            jams=self.jams,
+            climbs=self.climbs,
+            velocity=float(np.mean(self.ways)) * length * self.bowl.drive.frequency,
+            gap=float(np.mean(self.free_ways)) * length if self.free_ways else 0.0,
+            touching=float(np.mean(self.touch_shares)),
+            pressure=check.frozen(self.pressure * self.part.mass * self.bowl.gravity),
+            depth=self.depth * length,
+            partial=partial,
+            relieved=self.relieved,
+            poses=check.frozen(np.reshape(self.poses, (len(self.poses), self.plan.parts, 7))),
+            moments=tuple(self.moments),
+            stage=self.track.stage,
+            pulses=tuple(tuple((begin * unit, end * unit) for begin, end in log) for log in logs),
+        )

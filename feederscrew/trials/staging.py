@@ -1,0 +1,513 @@
+"""Each device along the track as the trial takes it: plates with borders in the bowl's own frame.
+
+With them the jets of air and the lean of the track, as the kernel takes them.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import shapely
+
+from feederscrew.arrays import Floats
+from feederscrew.bowl.record import Track
+from feederscrew.geometry.compiled import frozen_rows
+from feederscrew.geometry.polygons import cross
+from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.features import Blade, Features, Sensor, Slope, box_ring
+from feederscrew.sorting.devices.openings import beyond_borders
+from feederscrew.sorting.fates import leading_devices
+from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M, Orientation
+from feederscrew.sorting.tooled_track import bend_ring, continue_slots
+from feederscrew.trials.kernel.workspace import BORDER, JET, PLATE_RECORD, Rows
+
+DRAWN_BEHIND_WALL = 0.5  # of the part's size: how far the track is drawn behind the wall
+MAX_SAGITTA_M = 5e-6  # by which an arc may be seen too flat
+SMOOTHING_M = 2e-6  # corners of a border that stand out by less are left out
+CORNER_ANGLE = 1e-4  # [rad] a border that turns by less has no corner
+SPARE_WAY = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
+# of the part's size
+DRAWN_BEFORE = 1.2  # track before where they begin
+DRAWN_AFTER = 0.8  # track behind their end
+BEYOND_OPENINGS_M = 10.0  # beyond any opening
+TRACK_DEPTH_M = 4e-3  # of the track: deeper down its sides hold nothing
+TRACK_FRICTION = np.nan  # friction of a plate that has that of the track
+# of the part's size
+BLEND = 0.25  # way over which a lean of track becomes the next
+OPENS = 1.0  # way over which a lean of wall becomes the next
+
+# A slope where it begins: [m] place, [rad] climb, bank and lean of the wall from there.
+PlacedSlope = tuple[float, float | None, float | None, float | None]
+# A plate: frame (4, 3), depth [m], friction [1], and borders (B, 10).
+Plate = tuple[Floats, float, float, Floats]
+
+BARE_TRACK = Device("")
+
+
+@dataclass(frozen=True, eq=False)
+class Watch:
+    """A sensor at its place, and which jets it sets off."""
+
+    place: float  # [m] along the wall
+    nozzles: float  # [m] where those jets are
+    sensor: Sensor
+    jets: slice  # rows of the stage's jets
+    seconds: float  # [s] for which those blow
+
+
+class Pulses:
+    """Pulses of some jets that are set off, each for one part: they blow one after the other."""
+
+    def __init__(self) -> None:
+        self.log: list[tuple[float, float]] = []  # (begin, end) of all
+
+    def set_off(self, begin: float, seconds: float) -> None:
+        """Let the jets blow from a time on, for so long.
+
+        Parameters
+        ----------
+        begin, seconds : float [s]
+            Any unit of time, the same in all calls.
+        """
+        self.log.append((begin, begin + seconds))
+
+    def next(self, now: float) -> tuple[float, float]:
+        """Return when the jets next blow, or blow now; pulses that overlap are one.
+
+        Parameters
+        ----------
+        now : float [s]
+            In the unit of ``set_off``.
+
+        Returns
+        -------
+        begin, end : float [s]
+            Infinite, both, where no pulse is left.
+        """
+        spans = sorted(span for span in self.log if span[1] > now)
+        if not spans:
+            return np.inf, np.inf
+        begin, end = spans[0]
+        for other in spans[1:]:
+            if other[0] <= end:
+                end = max(end, other[1])
+        return begin, end
+
+
+@dataclass(frozen=True, eq=False)
+class Air:
+    """Jets, sensors and slopes along a stretch of track."""
+
+    jets: Rows  # (J,) `trials.kernel.workspace.JET` [m], [1], [m/s2], [s]
+    watches: tuple[Watch, ...]
+    slopes: tuple[PlacedSlope, ...]
+
+
+STILL_AIR = Air(frozen_rows([], JET), (), ())
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
+
+    device: Device
+    plates: Rows  # (P,) `trials.kernel.workspace.PLATE_RECORD` [m], [1]
+    borders: Rows  # (B,) `trials.kernel.workspace.BORDER` [m], [1]
+    begin: float  # [m] along the wall, where the part's centre of mass starts
+    exit: float  # [m] where it has passed
+    cut: tuple[float, float] = (np.inf, -np.inf)  # [m] along the wall, where the device begins and ends
+    drop: float = 0.0  # [m] by which the track lies lower there
+    aside: float = 0.0  # [m] from the wall, where a track that lies lower begins
+    leaves_hanging: bool = False  # whether parts leave hanging, their centres of mass below the track
+    air: Air = STILL_AIR  # what blows there, and how the track leans
+    size: float = 0.0  # [m] of the part, the greatest length of its orientations
+    width: float = np.inf  # [m] of the track
+
+
+def size_of(orientations: Sequence[Orientation]) -> float:
+    """Return the greatest length of orientations, in the plane of the track or across it.
+
+    It is the diagonal of an orientation's length and the greater of its width and height.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    float [m]
+    """
+    return max(np.hypot(own.length, max(own.width, own.height)) for own in orientations)
+
+
+def stage_device(
+    device: Device,
+    track: Track,
+    orientations: Sequence[Orientation],
+    start: float = 0.0,
+    slopes: Sequence[Slope] = (),
+    slot: tuple[float, ...] = (),
+) -> Stage:
+    """Return one device with enough track before and behind it; a measured yield is bare track.
+
+    Parameters
+    ----------
+    device : Device
+    track : Track
+    orientations : sequence of Orientation
+        The longest sets how long a device is that goes on along the track.
+    start : float [m], optional
+        Where the device begins, along the wall.
+    slopes : sequence of Slope, optional
+        Of the devices before it: they go on.
+    slot : tuple of float [m], optional
+        Of the rails before it: two distances from the wall. What hangs there goes on hanging up to other
+        rails.
+
+    Returns
+    -------
+    Stage
+    """
+    features, size = device.features(track, orientations), size_of(orientations)
+    blows = place_air([(features, start, 0.0)], track, orientations)
+    blows = replace(blows, slopes=(*slopes_before(slopes), *blows.slopes))
+    begin, beyond = start - (0.5 + SPARE_WAY) * size, exit_place(features, start, size)
+    ends = begin - DRAWN_BEFORE * size, beyond + DRAWN_AFTER * size
+    return Stage(
+        device,
+        *build_track([(features, start, ends[1])], track, size, ends, slot),
+        begin=begin,
+        exit=beyond,
+        cut=(start, start + features.length),
+        drop=0.0 if features.drop is None else features.drop.height,
+        aside=0.0 if features.drop is None else features.drop.aside,
+        leaves_hanging=features.hangs or bool(slot),
+        air=blows,
+        size=size,
+        width=track.extent,
+    )
+
+
+def stage_bare_track(
+    track: Track, orientations: Sequence[Orientation], length: float, slopes: Sequence[Slope] = ()
+) -> Stage:
+    """Return a stretch of the bare track, from the place 0 on.
+
+    Parameters
+    ----------
+    track : Track
+    orientations : sequence of Orientation
+        The longest sets how much track is drawn before and behind.
+    length : float [m]
+        Of the stretch.
+    slopes : sequence of Slope, optional
+        As for ``stage_device``.
+
+    Returns
+    -------
+    Stage
+    """
+    size = size_of(orientations)
+    bare = build_track((), track, size, (-DRAWN_BEFORE * size, length + DRAWN_AFTER * size))
+    blows = replace(STILL_AIR, slopes=slopes_before(slopes))
+    return Stage(BARE_TRACK, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
+
+
+def entry_slopes(
+    devices: Sequence[Device], track: Track, orientations: Sequence[Orientation]
+) -> tuple[Slope, ...]:
+    """Return the slopes of the devices that come first and lean the track: they begin at its entry.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    track : Track
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    tuple of Slope
+    """
+    return tuple(
+        slope for device in leading_devices(devices) for slope in device.features(track, orientations).slopes
+    )
+
+
+def slopes_before(slopes: Sequence[Slope]) -> tuple[PlacedSlope, ...]:
+    """Return slopes placed far before what is drawn, where they began.
+
+    Parameters
+    ----------
+    slopes : sequence of Slope
+
+    Returns
+    -------
+    tuple of PlacedSlope
+        Place [m], climb, bank and lean of the wall [rad], None where a slope leaves one as it was.
+    """
+    return tuple((-BEYOND_OPENINGS_M, slope.climb, slope.bank, slope.wall) for slope in slopes)
+
+
+def exit_place(features: Features, start: float, size: float) -> float:
+    """Return the place along the wall at which a centre of mass has passed a device.
+
+    Parameters
+    ----------
+    features : Features
+        Of the device.
+    start : float [m]
+        Where it begins.
+    size : float [m]
+        Of the part, as ``size_of`` returns it.
+
+    Returns
+    -------
+    float [m]
+    """
+    return start + features.length + (features.settles + 0.5 + SPARE_WAY) * size
+
+
+def build_track(
+    placements: Sequence[tuple[Features, float, float]],
+    track: Track,
+    size: float,
+    ends: tuple[float, float],
+    slot: tuple[float, ...] = (),
+) -> tuple[Rows, Rows]:
+    """Return plates and borders of a stretch of track with its devices.
+
+    Parameters
+    ----------
+    placements : sequence of (Features, float, float) [m]
+        The devices in the order parts meet them: where each begins, and where the track above its drop ends.
+    track : Track
+    size : float [m]
+        Of the part, as ``size_of`` returns it.
+    ends : (float, float) [m]
+        The stretch, along the wall.
+    slot : tuple of float [m], optional
+        Of rails before the devices: two distances from the wall.
+
+    Returns
+    -------
+    plates : (P,) record
+        ``trials.kernel.workspace.PLATE_RECORD`` [m], [1].
+    borders : (B,) record
+        ``trials.kernel.workspace.BORDER`` [m], [1].
+    """
+    level, first, holes = 0.0, ends[0], []
+    plates: list[Plate] = []
+    blades: list[Plate] = []
+    behind = DRAWN_BEHIND_WALL * size
+    cuts = [[opening.shifted(start) for opening in item.openings] for item, start, _ in placements]
+    openings = continue_slots(cuts, ends[1] + behind, SMOOTHING_M, enough=ends[1])
+    slots = [opening.ring for some in openings for opening in some if opening.hangs]
+    if slot:  # between the rails before them, up to the first of their own
+        until = min((ring[:, 0].min() + SMOOTHING_M for ring in slots), default=ends[1] + behind)
+        slots.append(box_ring(ends[0] - behind, until, *slot))
+    for (item, start, last), some in zip(placements, openings):
+        holes += [opening.ring for opening in some if not opening.hangs]
+        blades += [_blade(blade, track, start, size, level) for blade in item.blades]
+        if item.drop is not None and item.drop.height > 0.0:
+            holes.append(item.drop.beside(track.extent) + [start, 0.0])
+            depth = item.drop.height + TRACK_DEPTH_M
+            plates.append(_floor([*holes, *slots], track, size, ends, (first, last), level, depth))
+            level, first, holes = level - item.drop.height, start - TRACK_DEPTH_M, []
+    plates.append(_floor([*holes, *slots], track, size, ends, (first, ends[1]), level))
+    # All as records, the plates with boxes around their borders.
+    rows, borders, count = [], [], 0
+    for frame, depth, friction, own in [*plates, *blades]:
+        box = [end for k in (0, 1) for end in (own[:, k:4:2].min(), own[:, k:4:2].max())]
+        rows.append((*frame.ravel(), depth, CUT_BORDER_RADIUS_M, count, count + len(own), friction, *box))
+        borders += [(*row, 0.0, 0.0) for row in own]
+        count += len(own)
+    return frozen_rows(rows, PLATE_RECORD), frozen_rows(borders, BORDER)
+
+
+def _floor(
+    holes: Sequence[Floats],
+    track: Track,
+    size: float,
+    ends: tuple[float, float],
+    span: tuple[float, float],
+    level: float,
+    depth: float = TRACK_DEPTH_M,
+) -> Plate:
+    """A level surface: a sector about the bowl's axis between two places, without the holes."""
+    behind, width, radius = DRAWN_BEHIND_WALL * size, track.extent, track.radius
+    first, last = span
+    length = last - first
+    # At lengths along the wall and two distances from it; nothing comes behind the wall.
+    coarse = np.linspace(first, last, max(int(length / behind), 2) + 1)
+    fine = np.linspace(first, last, int(length / np.sqrt(8.0 * radius * MAX_SAGITTA_M)) + 2)[::-1]
+    ring = [
+        np.column_stack([off * np.sin(places / radius), radius - off * np.cos(places / radius)])
+        for places, off in ((coarse, radius + behind), (fine, radius - width))
+    ]
+    area = shapely.Polygon(np.vstack(ring))
+    for outline in holes:
+        if outline[:, 0].min() >= last + behind:  # of a device further on, on a lower track
+            continue
+        taken = np.column_stack([np.minimum(outline[:, 0], last + behind), outline[:, 1]])
+        bent = bend_ring(
+            np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind)), radius, chord=MAX_SAGITTA_M
+        )
+        area = area.difference(shapely.make_valid(shapely.Polygon(bent)))
+    frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    near = 1e-6 * radius
+
+    def ends_drawing(a: Floats, b: Floats) -> bool:
+        """Tell whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
+        off = [np.hypot(x, radius - y) for x, y in (a, b)]
+        place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
+        return bool(min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near)
+
+    return frame, depth, TRACK_FRICTION, _borders(area, ends_drawing)
+
+
+def _blade(blade: Blade, track: Track, start: float, size: float, level: float) -> Plate:
+    """A blade as a plate seen by the part that arrives: along its face from the foot, and upwards.
+
+    It goes on into wall and track where it reaches them: a corner that touches either does not slip past it.
+    """
+    behind, at_wall = DRAWN_BEHIND_WALL * size, blade.foot[1] <= 0.0
+    solid = blade.carried_into(behind, behind, SMOOTHING_M)
+    theta = (start + blade.foot[0]) / track.radius
+    ahead = np.array([np.cos(theta), np.sin(theta), 0.0])
+    inwards = np.array([-ahead[1], ahead[0], 0.0])
+    origin = np.array([0.0, track.radius, level]) - (track.radius - blade.foot[1]) * inwards
+    along = np.cos(blade.heading) * ahead + np.sin(blade.heading) * inwards
+    front = np.array([-along[1], along[0], 0.0])  # against the part that arrives
+    frame = np.array([origin, along, [0.0, 0.0, 1.0], front])
+    own = TRACK_FRICTION if blade.friction is None else blade.friction
+    near = 0.0 if at_wall else -np.inf
+    borders = _borders(solid, lambda a, b: max(a[0], b[0]) <= near or max(a[1], b[1]) <= 0.0)
+    return frame, blade.thickness, own, borders
+
+
+def _borders(area: Any, is_end: Callable[..., bool]) -> Floats:
+    """Borders (B, 10) [m] of a solid area, columns as the fields of BORDER but for the last two.
+
+    ``is_end`` tells of both ends (2,) of a border whether what is drawn ends there, not what is solid.
+    """
+    borders: list[list[float]] = []
+    polygons = [part for part in shapely.get_parts(shapely.simplify(area, SMOOTHING_M)) if part.area > 0.0]
+    for polygon in map(shapely.geometry.polygon.orient, polygons):  # the solid on the left
+        for ring in (polygon.exterior, *polygon.interiors):
+            points = np.asarray(ring.coords)[:-1, :2]
+            for o, p, q in zip(np.roll(points, 1, axis=0), points, np.roll(points, -1, axis=0)):
+                along, came = q - p, p - o
+                size = np.hypot(*along)
+                bend = np.arctan2(cross(came, along), came[0] * along[0] + came[1] * along[1])
+                end = is_end(p, q)
+                corner = bend > CORNER_ANGLE and not end and not is_end(o, p)
+                before = np.array([came[1], -came[0]]) / np.hypot(*came)
+                normal = along[1] / size, -along[0] / size
+                borders.append([*p, *q, *normal, float(corner), float(end), *before])
+    return np.array(borders).reshape(-1, 10)
+
+
+def place_air(
+    placements: Sequence[tuple[Features, float, float]], track: Track, orientations: Sequence[Orientation]
+) -> Air:
+    """Return the jets, sensors and slopes of devices along a track, in the bowl's frame.
+
+    Parameters
+    ----------
+    placements : sequence of (Features, float, float) [m]
+        The devices, where each begins along the wall, and the level of the track there.
+    track : Track
+    orientations : sequence of Orientation
+        Of one part: its mass makes an acceleration of a jet's thrust.
+
+    Returns
+    -------
+    Air
+        Jets that a sensor sets off do not blow yet.
+    """
+    rows: list[list[float]] = []
+    watches: list[Watch] = []
+    slopes: list[PlacedSlope] = []
+    mass = orientations[0].posture.mass
+    for features, start, level in placements:
+        first = len(rows)
+        for jet in features.jets:  # in the bowl's frame; one that a sensor sets off does not blow
+            x, y, z = jet.at
+            theta, off = (start + x) / track.radius, track.radius - y
+            c, s, (a, b, up) = np.cos(theta), np.sin(theta), jet.towards
+            size = np.sqrt(a * a + b * b + up * up)
+            towards = (a * c - b * s) / size, (a * s + b * c) / size, up / size
+            mouth = off * s, track.radius - off * c, z + level
+            times = (0.0, np.inf) if np.isinf(jet.seconds) else (np.inf, np.inf)
+            rows.append([*mouth, *towards, jet.radius, jet.spread, jet.thrust / mass, jet.reach, *times])
+        if features.sensor is not None:
+            seconds = max((jet.seconds for jet in features.jets), default=0.0)
+            place, nozzles = start + features.sensor.at, start + features.jets[0].at[0]
+            watches.append(Watch(place, nozzles, features.sensor, slice(first, len(rows)), seconds))
+        slopes += [(start + slope.begin, slope.climb, slope.bank, slope.wall) for slope in features.slopes]
+    return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
+
+
+def scale_jets(rows: Rows, length: float, unit: float) -> Rows:
+    """Return jets without dimensions.
+
+    Parameters
+    ----------
+    rows : (J,) record
+        ``trials.kernel.workspace.JET`` [m], [1], [m/s2], [s].
+    length : float [m]
+        The unit of length.
+    unit : float [s]
+        The unit of time.
+
+    Returns
+    -------
+    (J,) record
+    """
+    out = rows.copy()
+    for name in ("mouth_x", "mouth_y", "mouth_z", "radius", "reach"):
+        out[name] /= length
+    out["thrust"] *= unit**2 / length
+    for name in ("begin", "end"):
+        out[name] /= unit
+    return out
+
+
+def tabulate_leans(
+    slopes: Sequence[PlacedSlope], climb: float, bank: float, size: float, length: float
+) -> Floats:
+    """Return how gravity, the bowl's axis and the wall lie in the track's frame, along the wall.
+
+    Parameters
+    ----------
+    slopes : sequence of PlacedSlope
+        In any order.
+    climb, bank : float [rad]
+        Before the slopes.
+    size : float [m]
+        Of the part: over a share of it one lean becomes the next, ``BLEND``, or ``OPENS`` where the wall
+        leans.
+    length : float [m]
+        The unit of length L.
+
+    Returns
+    -------
+    (K, 8) float [L] and [1]
+        Place; gravity along, inwards and up; the bowl's axis and the wall's upright, each inwards and up.
+        Between places it is linear.
+    """
+    here: Any = (climb, bank, 0.0)
+    rows = [] if slopes else [(0.0, *here)]
+    for place, *new in sorted(slopes, key=lambda slope: slope[0]):
+        rows.append((place / length, *here))
+        before, here = here, tuple(old if value is None else value for old, value in zip(here, new))
+        blend = BLEND if here[-1] == before[-1] else OPENS
+        rows.append((place / length + blend * size / length, *here))
+    leans = []
+    for place, rise, tilt, wall in rows:
+        c, s, off = np.cos(rise), np.sin(rise), tilt - wall
+        axis, upright = [np.sin(tilt), np.cos(tilt)], [np.sin(off), np.cos(off)]
+        leans.append([place, -s, -c * np.sin(tilt), -c * np.cos(tilt), *axis, *upright])
+    return np.array(leans)

@@ -1,0 +1,300 @@
+"""Parts that touch: momentum, weight and energy of a few; what a queue does at a device, blade or break."""
+
+from dataclasses import replace
+
+import awkward
+import numpy as np
+import pytest
+from block_rides import ALONG, ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SHARES, SOLID, laid, lying, still
+
+from feederscrew import bowl as bowls
+from feederscrew.bowl.record import Friction
+from feederscrew.conveying import answer
+from feederscrew.dropping.kernel import body
+from feederscrew.rates import stream
+from feederscrew.resting import profiles
+from feederscrew.running import USUAL_RUN, RunSettings
+from feederscrew.sorting.devices.kinds import KINDS, make_device
+from feederscrew.sorting.verdicts import verdict
+from feederscrew.trials import part_poses, queue, result, runs
+from feederscrew.trials.kernel.steps import BEHIND, BELOW
+
+STILL = still(climb=0.0)
+# throw number 2.27 at 100 Hz, no rebound: 83.2 mm/s
+HOPPING = bowls.read(
+    None,
+    ["drive.amplitude=0.1647 mm", "drive.frequency=100 Hz", "drive.vibration_angle=20 deg",
+     "track.radius=50 m", "track.climb=3 deg", "track.bank=0 deg", "friction.static=0.6", "restitution=0",
+     "track.width=30 mm"],
+)  # fmt: skip
+BLADE = make_device("wiper", "w", limit=4e-3)
+SLOPE = np.radians(5.0)
+BANKED = bowls.read(None, ["track.bank=3 deg"])
+
+
+def parts_on(bowl, *places, heights=None, friction=None):
+    """Blocks laid lengthwise with their middles at places [m] along the wall, some heights [m] over it."""
+    known = runs.setting(SOLID, LENGTH, bowl)
+    if friction is not None:
+        known = replace(known, friction=np.full(5, friction))
+    on = queue.PartsOnTrack(known, queue.lay_out_track(bowl, EVERY, (), 0.5), len(places))
+    for n, place in enumerate(places):
+        state = laid(PART, FLAT, bowl, place=place, aside=1e-3)
+        state[body.Z] += 0.0 if heights is None else heights[n] / LENGTH
+        on.lay(n, state)
+    return on
+
+
+def ride(row, turns, begin=0):
+    """Follow parts for some periods; the deepest of the last one."""
+    for turn in range(begin, begin + turns):
+        depth = row.ride(turn)
+    return depth
+
+
+def queued(bowl, *planned, run=USUAL_RUN, **own):
+    plan = queue.QueuePlan(*planned, **own)
+    return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, SHARES, plan, run)
+
+
+def row_of(bowl, *planned, shares=SHARES, seed=3):
+    every = lying(PART, bowl)
+    return queue.PartsQueue(PART, bowl, ASPECTS, (every, shares), every, queue.QueuePlan(*planned), seed)
+
+
+def ways(row):
+    """How far along the wall its parts are [m]."""
+    return part_poses.ways_along_wall(row.crowd.arrays.states, row.part_in_bowl.radius) * LENGTH
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
+def test_a_part_that_strikes_another_shares_its_momentum(restitution):
+    on = parts_on(replace(STILL, restitution=restitution), -0.10, -0.0795, friction=0.0)
+    on.arrays.states[0, body.VX] = 0.3
+    ride(on, 20)
+    first, second = on.arrays.states[:, body.VX]
+    assert first + second == pytest.approx(0.3, rel=1e-6)
+    assert second - first == pytest.approx(0.3 * restitution, abs=1e-3)
+    assert (on.reaches([1])[1][0] - on.reaches([0])[0][1] > 1e-2) == (restitution > 0.0)
+
+
+def test_parts_in_each_other_are_pushed_apart():
+    on = parts_on(STILL, -0.10, -0.0801)
+    before = np.array(on.arrays.states[:, body.X]) * LENGTH
+    ride(on, 4)
+    moved = on.arrays.states[:, body.X] * LENGTH - before
+    assert moved[0] < -2e-5 and moved[1] > 2e-5
+    assert np.diff(moved)[0] == pytest.approx(1e-4, abs=2e-5)
+
+
+def test_a_part_on_another_bears_with_its_weight_and_falling_over_it_wins_no_energy():
+    on = parts_on(STILL, -0.10, -0.097, heights=(0.0, 5e-3))
+    assert ride(on, 40) * LENGTH < 1e-5
+    assert on.arrays.states[1, body.Z] * LENGTH == pytest.approx(7.5e-3, abs=1e-5)
+    assert on.forces[:, BELOW] == pytest.approx([0.0, 1.0], abs=0.02)
+    assert on.forces[:, BEHIND] == pytest.approx(0.0, abs=0.02)
+    on = parts_on(STILL, -0.10, -0.094, -0.11, heights=(0.0, 12e-3, 24e-3))
+    on.arrays.states[1, body.W : body.W + 3] = 1.0, 2.0, 0.5
+    energies = []
+    for turn in range(30):
+        states = on.arrays.states
+        moving = sum(body.moving_energy(state, SOLID.inertia) for state in states)
+        energies.append(moving + states[:, body.Z].sum())
+        on.ride(turn)
+    assert np.diff(energies).max() < 2e-4  # of m g L
+    assert (np.array([on.reaches([n])[n][2] for n in range(3)]) * LENGTH > -2e-4).all()
+
+
+@pytest.mark.parametrize("room", [0, 6])
+def test_lists_of_what_may_touch_decide_nothing(monkeypatch, room):
+    """Parts that fall onto each other move by the same bytes where lists have no room, or only some have."""
+    rows = [row_of(HOPPING, 8, 0.5, None), None]
+    monkeypatch.setattr(runs, "MAX_NEAR_FACES", room)
+    monkeypatch.setattr(runs, "MAX_CROSSINGS", room)
+    rows[1] = row_of(HOPPING, 8, 0.5, None)
+    for row in rows:
+        row.follow(0.5)
+    kept, without = (row.crowd.arrays for row in rows)
+    assert kept.states.tobytes() == without.states.tobytes() and kept.strains.any()
+    assert (kept.pair_lists.reach > 0.0).sum() > 1 and (without.pair_lists.reach < 0.0).any()
+    assert (without.pair_lists.reach > 0.0).any() == (room > 0)
+
+
+@pytest.mark.parametrize(("bowl", "gaps", "seconds", "near"), [
+    (BOWL, 0.0, 3.0, 0.02),
+    (BOWL, queue.MEAN_GAP_SHARE, 12.0, 0.05),  # so few uneven gaps are off by 1 mm in the mean
+    (HOPPING, 0.0, 3.0, 0.08),
+    (HOPPING, queue.MEAN_GAP_SHARE, 3.0, 0.08),
+])  # fmt: skip
+def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(bowl, gaps, seconds, near):
+    """It travels as the point mass, and the rate is its pitch's."""
+    found = queued(bowl, 4, seconds, gaps=gaps)
+    assert found.velocity == pytest.approx(answer.answer(bowl).velocity, rel=0.04)
+    assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=near)
+    assert found.jams == found.returned == found.climbs == 0
+    if bowl is BOWL:
+        assert found.gap == pytest.approx(gaps * 0.02, abs=1e-4 if gaps == 0.0 else 2e-3)
+        assert found.depth < 5e-6
+
+
+@pytest.mark.parametrize("gaps", [queue.MEAN_GAP_SHARE, 0.5, 0.0, None])
+def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
+    """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
+    row = row_of(STILL, 300, 1.0, gaps)
+    ends = np.array([row.crowd.reaches([n])[n][:2] for n in range(300)])
+    free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
+    assert not row.waiting_parts and ends[0, 1] <= 1e-9 and row.max_on_track == 300
+    if gaps:
+        assert free.min() > 0.0 and 1.9 * gaps < free.max() < 2.0 * gaps
+        assert free.mean() == pytest.approx(gaps, abs=4.0 * 2.0 * gaps / np.sqrt(12 * 300))
+    else:
+        assert np.abs(free).max() < 1e-9
+
+
+def test_parts_wait_where_the_track_is_full_and_come_next_however_long_they_are():
+    row = row_of(still(climb=0.0, radius=0.08, width=0.04), 40, 1.0)
+    on = np.flatnonzero(row.crowd.is_on)
+    rears = [row.crowd.reaches([n])[n][0] * LENGTH for n in on]
+    room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
+    assert len(on) + len(row.waiting_parts) == 40 and row.waiting_parts
+    assert -room <= min(rears) < -room + 1.4 * FLAT.length + 1e-9
+    bowl = replace(BOWL, track=replace(BOWL.track, radius=0.15))
+    row = row_of(bowl, 40, 1.0, 0.0, shares=np.full(len(EVERY), 1.0 / len(EVERY)), seed=5)
+    waits, came = row.next_part, list(row.waiting_parts)
+    assert waits is not None and came  # the row reaches back to where the track begins
+    for _ in range(20):
+        row.enter()
+        assert row.next_part is waits and row.waiting_parts == came
+    on = np.flatnonzero(row.crowd.is_on)
+    for n in on[np.argsort(ways(row)[on])][:3]:
+        row.crowd.take(int(n))
+    row.enter()
+    assert len(row.waiting_parts) < len(came)
+
+
+def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
+    on = parts_on(STILL, -0.1)
+    on.arrays.jet_loads[0, 0], on.arrays.jets_until[0] = 5.0, 1.0
+    on.lay(0, np.array(on.arrays.states[0]))
+    on.ride(0)
+    assert abs(on.arrays.states[0, body.VX]) < 1e-3
+
+
+def test_what_left_stands_beside_what_was_measured():
+    told = replace(queued(BOWL, 1, 0.02), whole=np.array([[9, 3, 0, 2]]))
+    sheet = profiles.parse_count_sheet("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "c.csv")
+    columns = profiles.parse_profiles(sheet, "c.csv", "", ASPECTS.names).profiles
+    shares = np.full(len(EVERY), 1.0 / len(EVERY))
+    seen = result.outlet(told, EVERY, shares, ASPECTS.names, columns)
+    assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other_count == 2
+    assert seen.offered.sum() == pytest.approx(1.0)
+    low, high = seen.ends
+    assert (low <= seen.shares).all() and (seen.shares <= high).all()
+    deviation, total = seen.distances["MDFT"]
+    assert total == pytest.approx(0.25)
+    assert deviation == pytest.approx(np.sqrt((0.25**2 + 0.05**2 + 0.2**2) / 3.0))
+
+
+def test_a_queue_followed_bit_by_bit_is_that_of_one_go_and_an_interrupt_keeps_it():
+    """It goes on where it was, and its times are no shorter than was asked for."""
+    bits, told = row_of(BOWL, 2, 9.0), []
+    for seconds in (0.2, 0.2, 0.41):
+        bits.follow(seconds, lambda *row: told.append(row))
+    first, whole = bits.result(), queued(BOWL, 2, 0.41, run=RunSettings(3))
+    assert first.seconds == whole.seconds == pytest.approx(25 / 60) and not first.partial
+    assert (first.velocity, first.gap, first.depth) == (whole.velocity, whole.gap, whole.depth)
+    assert told == [(k, 12) for k in range(1, 13)] + [(k, 25) for k in range(13, 26)]
+    bits.follow(1.0)
+    assert first.seconds < bits.result().seconds == pytest.approx(1.0)
+
+    def stop(done, total):
+        assert total == 180
+        if done == 6:
+            raise KeyboardInterrupt
+
+    found = queued(BOWL, 2, 3.0, run=RunSettings(1, progress=stop))
+    assert found.partial and found.seconds == pytest.approx(0.1)
+
+
+def test_parts_reach_as_far_together_as_alone_all_round_the_bowl():
+    """A block in closed form: half its length before and behind it at the wall's angle, its foot at 0."""
+    places = np.radians([10.0, 100.0, -150.0]) * 50.0
+    on = parts_on(STILL, *places)
+    reach = on.reaches([2, 0, 1])
+    assert list(reach) == [2, 0, 1]
+    for n, place in enumerate(places):
+        off = 50.0 - 1e-3 - 12e-3  # [m] from the bowl's axis to the block's inner side
+        half = 50.0 * np.arctan2(10e-3, off)
+        assert np.array(reach[n]) * LENGTH == pytest.approx([place - half, place + half, 0.0], abs=1e-7)
+        assert on.reaches([n])[n] == reach[n]
+
+
+def slope():
+    """A still track that falls and has no friction, with a blade; it is banked, or a row would slip out."""
+    bowl = still(awkward.bowl("track.radius=50 m", "restitution=0"), climb=-SLOPE)
+    return replace(bowl, friction=Friction(0.0, 0.0, 0.0, 0.0, 0.0), devices=(BLADE,))
+
+
+@pytest.mark.parametrize("parts", [1, 3])
+def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
+    row = row_of(slope(), parts, 1.0, 0.0)
+    ride(row, 30)
+    row.pressure[:], row.touch_shares = 0.0, []  # without the impact
+    ride(row, 10, 30)
+    found, weight = row.result(), PART.mass * 9.81
+    assert found.pressure[0] == pytest.approx((parts - 1) * weight * np.sin(SLOPE), abs=1e-3 * weight)
+    assert found.touching == pytest.approx(1.0 - 1.0 / parts) and found.jams == found.returned == 0
+
+
+def test_what_stands_at_a_blade_for_a_second_is_taken_out():
+    row, seen = row_of(slope(), 1, 3.0, 0.0), []
+    while not row.jams and len(seen) < 200:
+        seen.append(ways(row)[0])
+        row.ride(len(seen) - 1)
+    came = np.sqrt(2.0 * (seen[-1] - seen[0]) / (9.81 * np.sin(SLOPE)))
+    assert row.time == pytest.approx(came + 1.0, abs=2.5 / row.bowl.drive.frequency)
+    assert row.jams == 1 and row.whole == row.returned == 0
+    row = row_of(STILL, 5, 1.0, 0.5)
+    row.ride(0)
+    free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
+    assert free.min() > 0.0 and row.result().gap == pytest.approx(free.mean(), rel=0.01)
+
+
+def test_poured_parts_come_to_lie_and_travel():
+    row = row_of(BOWL, 3, 2.0, None)
+    ride(row, 60)
+    before = ways(row)
+    ride(row, 60, 60)
+    velocities = ways(row) - before  # [m/s] over the last second
+    onwards = velocities > 0.0  # not one that left and was poured again
+    assert onwards.sum() >= 2 and row.result().is_poured
+    assert velocities[onwards] == pytest.approx(answer.answer(BOWL).velocity, rel=0.05)
+    heights = row.crowd.arrays.states[onwards, body.Z] * LENGTH
+    assert np.abs(heights[:, None] - [2.5e-3, 6e-3, 10e-3]).min(axis=1).max() < 1e-5  # on a face
+    assert row.depth * LENGTH < 1e-4
+
+
+@pytest.mark.parametrize("ledge, stop, leaves", [(6.5, True, True), (14.0, True, False), (6.5, False, False)])
+def test_parts_that_back_up_and_reach_over_the_ledge_of_a_pressure_break_leave_there(ledge, stop, leaves):
+    """Eight blocks that touch, 12 mm wide: they reach over a ledge of 6.5 mm, not over one of 14 mm."""
+    chain = (make_device("pressure break", "", limit=1e-3 * ledge),)
+    chain += (make_device("height bar", "", limit=4e-3),) * stop  # everything stands before it
+    known = stream.follow_orientations(PART, ASPECTS, BANKED.track, chain, bowl=BANKED)
+    plan, bowl = queue.QueuePlan(8, 5.0, 0.0), replace(BANKED, devices=chain)
+    found = queue.queue_of(PART, bowl, ASPECTS, known.lying, known.states, SHARES, plan, RunSettings(2))
+    assert (found.relieved > 0) == leaves and found.returned == found.relieved
+    assert (found.jams > 0) == stop and (found.leaving_counts.sum() > 0 or stop)
+
+
+def test_the_break_that_is_proposed_carries_what_is_wanted_and_no_more_than_it_has_to():
+    every = stream.follow_orientations(PART, ASPECTS, BANKED.track, bowl=BANKED).lying
+    one = every[ALONG]
+    (kind,) = [kind for kind in KINDS.values() if kind.relieves]
+    device = kind.relieving([one], 2.5e-4, "design")
+    assert device.kind == "pressure break"
+    assert device.text == "6.15 mm"  # half the width less 2.5 tan(3 deg), plus 0.25 mm, in steps of 0.05 mm
+    assert verdict(device, one, every).margin == pytest.approx(device.limit - one.balcony)
+    assert 2.5e-4 <= device.limit - one.balcony < 3e-4 and device.limit < one.width
+    assert kind.relieving([one, replace(one, width=6.3e-3)], 2.5e-4, "design") is None
+    hopping = kind.relieving([replace(one, hop=1e-3)], 2.5e-4, "design")
+    assert hopping.limit == pytest.approx(device.limit + 1e-3)
