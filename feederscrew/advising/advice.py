@@ -164,10 +164,15 @@ class ChangedPart:
     @property
     def text(self) -> str:
         """Say what the change brings: 'a flat ...: steel, 120 a minute, for a camera, 42 a minute'."""
+        return f"{self.change.text}: {self.outcome}"
+
+    @property
+    def outcome(self) -> str:
+        """Say how the changed part is fed, and how the part as it is: 'steel, 120 a minute, for ...'."""
         if self.way is None:
-            return f"{self.change.text}: no way was found"
+            return "no way was found"
         former = "no way at all" if self.before is None else self.before.text
-        return f"{self.change.text}: {self.way.text}, for {former}"
+        return f"{self.way.text}, for {former}"
 
 
 @dataclass(frozen=True, eq=False)

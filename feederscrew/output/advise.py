@@ -28,6 +28,7 @@ from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.posture import posture
 from feederscrew.units import MINUTE
 
+GAINS = {True: "easier to feed", False: "no gain"}
 SHOWN = 3  # changes with pictures of before and after, at least those that were tried
 DRAWN_NAME = re.compile(r"(?P<aspect>[^@]+)@")
 
@@ -154,7 +155,7 @@ def page(study: AdviceStudy) -> str:
         now = _cell(changed.part, find(changed.part), changed.way, f"after_{number}")
         changes += [
             Heading(f"{number}. {changed.change.text}"),
-            Text(changed.text),
+            Text(f"{changed.outcome}: {GAINS[changed.gains]}."),
             Matrix(("as it is", "changed"), ((former, now),)),
         ]
     if study.changes:
