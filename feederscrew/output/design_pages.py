@@ -12,6 +12,7 @@ from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.verified import (
     AMONG,
     DRAWS_HELD,
+    HANGING,
     HELD,
     PURE,
     RATE_KEPT,
@@ -234,6 +235,12 @@ def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
         instead = texts.leaving_texts(study.left_instead)
         others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
         seen = [(name, f"left in its place: {instead[name]}") for name in others[:1]]
+        tooling = study.tooling
+        if wanted == HANGING and tooling is not None and tooling.wanted is not None:  # no pose on a face
+            wanted, words = (
+                tooling.orientations[tooling.wanted].name,
+                "arrives so, leaves hanging by its head",
+            )
         return [(wanted, words), *seen]
     tried = study.wanted_trials
     seen = [

@@ -4,6 +4,7 @@ import re
 import shlex
 from dataclasses import fields, replace
 from html import unescape
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -139,6 +140,15 @@ def test_what_holds_has_nothing_to_try():
     held = design_study(PART, *(queue(fill=fill) for fill in ("low", "normal", "high")))
     assert held.status is Status.HOLDS and next_tries(held) == ()
     assert designs.document(held)["next"] == []
+
+
+def test_the_page_of_what_hangs_begins_with_the_pose_in_which_it_arrives():
+    """It began with the one part of 157 that left otherwise: 'hanging' is no pose on a face."""
+    poses = [SimpleNamespace(name=name) for name in ("B@0", "A@354")]
+    queues = (queue(fill=fill) for fill in ("low", "normal", "high"))
+    tooling = SimpleNamespace(wanted=1, orientations=poses)
+    study = replace(design_study(PART, *queues), wanted="hanging", tooling=tooling)
+    assert study.delivers and design_pages.first_seen(study)[0][0] == "A@354"
 
 
 def test_the_answer_says_each_thing_once_and_ends_in_commands():
