@@ -320,9 +320,9 @@ def advise(
 ) -> AdviceStudy:
     """Grade how easy a part is to feed, and find the changes of its shape that help, as ``feeder advise``.
 
-    The grade begins with the cheapest class that isolates one of the orientations that come often: A of steel
-    alone, B of steady air, C of a camera, E where nothing does. It is one less below a yield of 25 %, one less below 30
-    parts a minute, one less for parts that nest, two for parts that hook.
+    The grade begins with the cheapest class that isolates one of the orientations that come often: A of
+    steel alone, B of steady air, C of a camera, E where nothing does. It is one less below a yield of 25
+    %, one less below 30 parts a minute, one less for parts that nest, two for parts that hook.
 
     Parameters
     ----------
