@@ -212,6 +212,8 @@ def draw(kind, rng):
                           **some(lead=(span[0] - 5e-4, span[1] + length(), length(), length()))},
         "cut-out": lambda: {"corners": hole},
         "dish-out": lambda: {"limit": length(), "radius": length(1e-3)},
+        "cap selector": lambda: {"limit": first, "length": length(3e-2, 4e-2), "tongue": length(),
+                                 "reach": first + length()},
         "profile gate": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),
         "V groove": lambda: {"angle": number(0.2, 1.0)},
         "banked track": lambda: {"angle": number(0.0, 0.7)},

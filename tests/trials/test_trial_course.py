@@ -70,6 +70,19 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
         assert (seen.orientations[-1] == seen.entry_rows).all() and (seen.end_stations == 2).all()
 
 
+def test_a_cap_on_its_bottom_rides_over_a_selector_and_one_on_its_mouth_falls(bowl):
+    cap, one = (
+        load("parts/cap_14x10.stl"),
+        bowl("cap selector: {land: 3.85 mm, length: 22.1 mm, tongue: 3 mm, reach: 11.8 mm}"),
+    )
+    every = lying(cap, one)
+    flat = sorted((k for k, own in enumerate(every) if own.kind == "flat"), key=lambda k: every[k].foot.mouth)
+    assert len(flat) == 2 and every[flat[0]].foot.mouth == 0.0 < every[flat[1]].foot.mouth
+    seen = sent(cap, one, flat, 4, one.devices)
+    assert (seen.fates[seen.entry_rows == flat[0]] == course.PASSED).all()
+    assert (seen.fates[seen.entry_rows == flat[1]] == course.RETURNED).all()
+
+
 def test_a_fall_down_a_step_or_over_the_free_edge_wins_nothing_and_sinks_nowhere(bowl):
     """A bracket that falls down a step onto an edge won 6 to 8 um at once there."""
     bracket, one = load("parts/lbracket_30x20x15.stl"), bowl("step: 4 mm", "gap: 7 mm", own=())

@@ -207,10 +207,10 @@ def candidates(
     encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
     rows = sorted({wanted, *same})
     competitors = [encounter for k, encounter in enumerate(encounters) if k not in rows]
-    blowing: list[Any] = [
-        kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)
-    ]
-    for kind in (kind for kind in blowing if air and constraints.allows(kind.kind)):
+    shaped: list[Any] = [kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)]
+    for kind in (kind for kind in shaped if constraints.allows(kind.kind)):
+        if kind.cost_class > 1 and not air:
+            continue
         devices += kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY)
 
     def unlike(view: str) -> list[Orientation]:
