@@ -152,6 +152,5 @@ def trial(
             films.write_film(film, study)
             out.say(f"Wrote {film}")
         out.write(folder, tables.offers(study))
-        frame = tables.frame(study, people=out.format == "table")
         hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")
-        out.show(frame, document, hidden=hidden, spare=tables.spare(study))
+        out.show(tables.frame(study), document, hidden=hidden, spare=tables.spare(study))
