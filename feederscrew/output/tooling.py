@@ -15,7 +15,7 @@ from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import tooling_text
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.kinds import CostClass
 from feederscrew.sorting.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
@@ -237,23 +237,19 @@ def status(study: ToolingStudy, place: int) -> str:
     return "confirmed"
 
 
-def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
+def frame(study: ToolingStudy) -> Frame:
     """Return the rows as a table.
 
     Parameters
     ----------
     study : ToolingStudy
-    people : bool, optional
-        Whether devices are named as the trade does.
 
     Returns
     -------
     Frame
     """
     rows = _rows(study)
-    for row, design in zip(rows, study.designs):
-        if people and design is not None:
-            row["devices"] = [cut.device.kind for cut in design.cuts]
+    for row in rows:
         for name, between in (("devices", ", "), ("left_over", " "), ("reasons", "; ")):
             row[name] = between.join(row[name] or ())
     return Frame.of_rows(rows).headed(ROW_HEADS)
@@ -275,7 +271,7 @@ def summary(study: ToolingStudy, format: str = "csv") -> Frame:
     """
     people, rows = format == "table", []
     if study.design is None:
-        return frame(study, people=people)
+        return frame(study)
     orientations: dict[str, set[str]] = {}  # of each aspect
     for orientation in study.orientations:
         orientations.setdefault(orientation.aspect, set()).add(orientation.name)
@@ -420,7 +416,7 @@ def passages(study: PassagesStudy) -> Frame:
             doubt = "" if last.verdict.sure else ", not sure"
             outcomes.append(f"{last.fate} by the {last.device.kind}{doubt}")
         else:
-            outcomes.append(track_sections.passage_fate(orientation, ridden))
+            outcomes.append(device_passages.passage_fate(orientation, ridden))
     return Frame.of(table, above)
 
 
