@@ -26,7 +26,7 @@ FAMILY_FOLDER = "family"  # the folder of what is of all parts
 
 
 @dataclass(frozen=True, eq=False)
-class FamilyStudy(ReadableRecord):
+class FamilyStudy(ReadableRecord, view="design_pages.FAMILY_VIEW"):
     """Designs of several parts that are to run in one bowl."""
 
     members: tuple[DesignStudy, ...]

@@ -357,7 +357,7 @@ class Risk:
 
 
 @dataclass(frozen=True, eq=False)
-class DesignStudy(ReadableRecord):
+class DesignStudy(ReadableRecord, view="design_pages.DESIGN_VIEW"):
     """A bowl for a part and a rate, with everything that was tried on the way."""
 
     part: Part

@@ -42,7 +42,8 @@ from feederscrew.output import slide as slide_output
 from feederscrew.output import tooling as tooling_output
 from feederscrew.output import track as track_output
 from feederscrew.output.folder import LIBRARIES, ResultFolder
-from feederscrew.output.offers import Offer, by_name
+from feederscrew.output.offers import Offer, RecordView, by_name
+from feederscrew.output.offers import text as text_file
 from feederscrew.output.page.as_html import NOTHING, SHORT, html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import (
@@ -61,6 +62,7 @@ from feederscrew.output.page.blocks import (
     Tile,
     Views,
 )
+from feederscrew.output.record_lines import aspects_text
 from feederscrew.output.shading import short
 from feederscrew.output.trial import rides
 from feederscrew.output.trial import tables as trial_tables
@@ -871,3 +873,10 @@ def _pictures_of(offers: Iterable[Offer], *starts: str) -> list[Picture]:
 
 def _notes(lines: Sequence[str]) -> list[Notes]:
     return [Notes(tuple(lines))] if lines else []
+
+
+REPORT_VIEW = RecordView(
+    lambda study: f"{study.part.name} {aspects_text(study.shares.aspects)}",
+    command="report",
+    files=lambda study: [text_file("report.html", lambda: html(page(study)))],
+)

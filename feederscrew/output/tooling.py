@@ -13,6 +13,8 @@ from feederscrew.designing import texts
 from feederscrew.heavy import heavy
 from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import tooling_text
 from feederscrew.sorting import track_sections
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.kinds import CostClass
@@ -23,6 +25,7 @@ from feederscrew.sorting.orientations import (
     Orientation,
 )
 from feederscrew.sorting.tooled_track import TooledTrack, lay_out
+from feederscrew.studies.arguments import settings_of
 from feederscrew.studies.rate import PassagesStudy
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.units import MM, counted
@@ -615,3 +618,11 @@ def _step(section: Callable[[], TooledTrack], mark: str) -> bytes:
     from feederscrew.solidbowl.exact import exact_file
 
     return marking.mark_step(exact_file.section_file(section()), mark)
+
+
+TOOLING_VIEW = RecordView(
+    tooling_text,
+    lambda study: offers(study, ()),
+    "tooling",
+    lambda study: offers(study, settings_of(study.bowl)),  # with a bowl file that says what its bowl is
+)

@@ -75,7 +75,7 @@ class Lowest:
 
 
 @dataclass(frozen=True, eq=False)
-class MachineSheet(ReadableRecord):
+class MachineSheet(ReadableRecord, view="machine.MACHINE_VIEW"):
     """A machine and what it does; with an order, that of the sized bowl."""
 
     bowl: Bowl

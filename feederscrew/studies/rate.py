@@ -46,7 +46,7 @@ FEED_SEED = 1  # of the parts that are fed onto the moving floor
 
 
 @dataclass(frozen=True, eq=False)
-class Shares(ReadableRecord):
+class Shares(ReadableRecord, view="record_lines.SHARES_VIEW"):
     """The aspects of a part with the one answer that is taken for their shares."""
 
     aspects: Aspects  # their ``recommended`` is that answer
@@ -223,7 +223,7 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
 
 
 @dataclass(frozen=True, eq=False)
-class RateStudy(ReadableRecord):
+class RateStudy(ReadableRecord, view="rate.RATE_VIEW"):
     """The rate of one orientation, and the chain of factors behind it."""
 
     part: Part

@@ -38,7 +38,7 @@ STROKE_RANGE = 2.5  # and to so many times the bowl's own stroke
 
 
 @dataclass(frozen=True, eq=False)
-class ReportStudy(ReadableRecord):
+class ReportStudy(ReadableRecord, view="report.REPORT_VIEW"):
     """A part, the aspect wanted of it, and a bowl, checked; every chapter's study when it is asked for."""
 
     resting: AspectsStudy

@@ -153,7 +153,7 @@ LATE = "the search stopped at the time limit: another machine may find more - ra
 
 
 @dataclass(frozen=True, eq=False)
-class ToolingStudy(ReadableRecord):
+class ToolingStudy(ReadableRecord, view="tooling.TOOLING_VIEW"):
     """Every orientation of a part on a track, and what isolates it behind the bowl's devices; M of them."""
 
     part: Part

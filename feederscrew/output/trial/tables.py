@@ -13,6 +13,8 @@ from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, tables
 from feederscrew.output.convey import restitution_entry
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import trial_text
 from feederscrew.sorting.orientations import ORIENTATION_TRIED_COLUMNS
 from feederscrew.studies.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
 from feederscrew.trials import course
@@ -409,3 +411,6 @@ def _most(values: Floats) -> float:
 def _mean(values: Floats) -> float:
     finite = values[np.isfinite(values)]
     return float(finite.mean()) if len(finite) else np.nan
+
+
+TRIAL_VIEW = RecordView(trial_text, offers, "trial")
