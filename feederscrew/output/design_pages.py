@@ -64,6 +64,7 @@ from feederscrew.output.style import png
 from feederscrew.output.trial import rides
 from feederscrew.output.trial.tables import queues_table
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.studies.arguments import settings_of
 from feederscrew.studies.bowl import MachineSheet
 
@@ -451,7 +452,11 @@ def _changes(study: FamilyStudy) -> list[Change]:
         own = [[d for d in list[Any](member.devices) if d.kind == kind] for member in study.members]
         for place, row in enumerate(zip_longest(*own), start=1):
             first = row[0]
-            views = {device and device.sees for device in row} if first is not None and first.senses else ()
+            views = (
+                {device and device.sees for device in row}
+                if first is not None and first.action is Action.SENSE
+                else ()
+            )
             texts = tuple("-" if device is None else device.text for device in row)
             rows.append((f"{kind} {place}", TAUGHT if len(views) == 1 else SWAPPED, texts))
     return [row for row in [*rows, *values("drive", SET)] if len(set(row[2])) > 1]

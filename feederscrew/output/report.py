@@ -573,7 +573,7 @@ def tooling(case: ReportStudy) -> Chapter | None:
         "it passes or fails. Verdicts are quasi-static: they hold while the part slides without hopping."
     )
     blocks: list[Block] = [Text(lead)]
-    if kinds := dict.fromkeys(device.kind for device in study.devices if device.turns):
+    if kinds := dict.fromkeys(device.kind for device in study.devices if device.action.turns):
         turned = f"Where parts land that {' and '.join(kinds)} turn over"
         blocks.append(Text(f"{turned} is quasi-static, until a trial confirms it."))
     # the part over the track, to be turned: the most frequent that leaves, and the nearest that falls

@@ -82,7 +82,7 @@ def _views(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> list[Any]:
     """Return what leaves, and what falls by least, of the frequent: passage, lines of text, colour."""
-    placed, views, rejected = [device for device in devices if device.placed], [], []
+    placed, views, rejected = [device for device in devices if device.action.has_place], [], []
     passages = _drawable(device_passages.until_returned(placed, orientations[wanted_row], orientations))
     if passages:
         least = min(passages, key=lambda passage: passage.verdict.margin)
