@@ -57,7 +57,7 @@ class TrialQueue:
 
 
 @dataclass(frozen=True, eq=False)
-class TrialStudy(ReadableRecord):
+class TrialStudy(ReadableRecord, view="trial.tables.TRIAL_VIEW"):
     """Parts of one kind on the tracks of one bowl at one or several amplitudes."""
 
     part: Part

@@ -19,6 +19,7 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
 from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.trials import course, part_poses, runs, staging
 from feederscrew.trials.kernel import travel, workspace
@@ -77,7 +78,7 @@ def lay_out_track(
     track, place, level = bowl.track, 0.0, 0.0
     placed, blows, windows, levels = [], [], [], [0.0]
     size = staging.size_of(orientations)
-    for device in [device for device in devices if device.placed]:
+    for device in [device for device in devices if device.action.has_place]:
         features, start = device.features(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
         last = staging.exit_place(features, start, size)
         placed.append((features, start, last))
@@ -437,7 +438,7 @@ class PartsQueue:
         if plan.is_ridden and spacing > 0.0:  # parts that come with room do not push each other
             room = min(room, PITCHES_BEFORE * (spacing + (1.0 + 2.0 * (plan.gaps or 0.0)) * longest))
         self.track = lay_out_track(bowl, self.orientations, bowl.devices, room)
-        self.devices = [device for device in bowl.devices if device.placed]
+        self.devices = [device for device in bowl.devices if device.action.has_place]
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
         self.spacing = spacing / length
         self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
@@ -661,7 +662,7 @@ class PartsQueue:
         limits = [
             device.limit
             for device, (begin, end) in zip(self.devices, self.windows)
-            if device.relieves and rear < end and front > begin
+            if device.action is Action.RELIEVE and rear < end and front > begin
         ]
         if not limits or not self.crowd.forces[n, BEHIND] > 0.0:
             return False

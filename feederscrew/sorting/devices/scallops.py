@@ -4,7 +4,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from feederscrew.sorting.devices.base import (
 from feederscrew.sorting.devices.features import Features, TrackOpening
 from feederscrew.sorting.devices.ledges import SHOP_STEP_M
 from feederscrew.sorting.devices.openings import Across, judge_hole
+from feederscrew.sorting.devices.trade import ProposedBy, Trade, ValueSearch
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 DISH_CHORD_M = 1e-5  # [m] by which the arc of a dish may be seen too flat
 MAX_DISH_RADIUS_M = 1.0  # [m] of a dish
 CAP_SELECTOR_KEYS = ("land", "length", "tongue", "reach")
+CAP_SELECTOR_EXAMPLE = "{land: 2 mm, length: 20 mm, tongue: 4 mm, reach: 11 mm}"
 LEAST_MOUTH_M = 1e-3  # [m] from the weight to the rim: nearer to it no tongue fits
 # what a design tries of a cap selector
 LANDS = (0.2, 0.3, 0.4, 0.55)  # [1] of the way from the wall to the weight
@@ -81,11 +83,11 @@ class DishOut(_Bay):
     radius: float = 0.0  # [m] of the bay; its ends go on straight to the free edge
 
     kind = "dish-out"
-    form = forms.mapping(leaves=forms.LENGTH_FORM, radius=forms.LENGTH_FORM)
-    example = "{leaves: 7 mm, radius: 12 mm}"
-    meaning = (
+    trade = Trade(
+        "{leaves: 7 mm, radius: 12 mm}",
         "round bay in the free edge that leaves a waist of track of that width; returns orientations whose "
-        "weight lies beyond the waist and which are too short along the track to bridge the bay"
+        "weight lies beyond the waist and which are too short along the track to bridge the bay",
+        forms.mapping(leaves=forms.LENGTH_FORM, radius=forms.LENGTH_FORM),
     )
 
     @staticmethod
@@ -131,20 +133,19 @@ class CapSelector(_Bay):
     reach: float = 0.0  # [m] off the wall, to which the tongue goes
 
     kind = "cap selector"
-    form = forms.mapping(**dict.fromkeys(CAP_SELECTOR_KEYS, forms.LENGTH_FORM))
-    example = "{land: 2 mm, length: 20 mm, tongue: 4 mm, reach: 11 mm}"
-    meaning = (
+    trade = Trade(
+        CAP_SELECTOR_EXAMPLE,
         "bay in the free edge that leaves a land of that width along the wall and in its middle a tongue, so "
         "wide and up to that reach off the wall: carries caps and cups that stand on their bottom and lets "
-        "fall those that stand on the rim of their mouth"
+        "fall those that stand on the rim of their mouth",
+        forms.mapping(**dict.fromkeys(CAP_SELECTOR_KEYS, forms.LENGTH_FORM)),
+        measures="mouth around the weight",
     )
-    feature: ClassVar[str] = "mouth around the weight"
-    proposed: ClassVar[bool] = True
+    search = ValueSearch(ProposedBy.VALUE)
 
     @staticmethod
     def read(entry: Entry) -> dict[str, Any]:
-        mend = f"write {CapSelector.example}"
-        own = values.mapping(entry, CAP_SELECTOR_KEYS, mend)
+        own = values.mapping(entry, CAP_SELECTOR_KEYS, f"write {CAP_SELECTOR_EXAMPLE}")
         land, length, tongue, reach = (
             values.within(own, name, "length", 1e-5, values.MAX_LENGTH_M) for name in CAP_SELECTOR_KEYS
         )
