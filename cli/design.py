@@ -65,7 +65,7 @@ REQUEST = (  # what shall leave, and what may be used
     ),
     options.flag(
         "--alternatives",
-        "Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
+        "Prove the best design of each class: steel, steady air, sensor with valve.",
     ),
     options.flag(
         "--quick",
@@ -126,10 +126,12 @@ def design(
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
     what its trial denies is changed. What gets through goes through a queue at low, normal and high fill,
     and through draws of part, friction, drive and cuts. Chains of steel come first, then steady air, then
-    cameras with a valve: the first that holds is taken. The answer is one of holds, holds if parts arrive
-    single (two of them hook), falls short and none, with the numbers it rests on. What falls short says
-    where, with the nearest design that would hold, and ends in commands to try. The exit status is 3
-    where the bowl holds if parts arrive single, and else 0 of a run that came to its end.
+    cameras with a valve: the first that holds is taken. What falls short says where, with the nearest
+    design that would hold, and ends in commands to try.
+
+    The answer is one of holds, holds if parts arrive single (two of them hook), falls short and none, with
+    the numbers it rests on. The exit status is 3 where the bowl holds if parts arrive single, and else 0 of
+    a run that came to its end.
 
     The drive is the calmest on one set of leaf springs that is fast enough, at the frequency of the mains
     (machine.mains) or twice that. What --config says of track, drive, machine and friction is kept. Its

@@ -140,7 +140,7 @@ class RunCounts:
         known, aspects, devices = row.orientations, row.aspects.names, row.bowl.devices
         shapes = {
             "left": (len(known.lying), len(known.states) + 1, len(aspects) + 1),
-            "returned": (len(known.lying), sum(device.placed for device in devices) + 1),
+            "returned": (len(known.lying), sum(device.action.has_place for device in devices) + 1),
         }
         if set(arrays) != {each.name for each in fields(cls)}:
             raise ValueError("other counts")

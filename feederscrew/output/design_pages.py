@@ -64,6 +64,7 @@ from feederscrew.output.style import png
 from feederscrew.output.trial import rides
 from feederscrew.output.trial.tables import queues_table
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.studies.arguments import settings_of
 from feederscrew.studies.bowl import MachineSheet
 
@@ -324,7 +325,7 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
         yield Chapter((lead, Table(beside_bowl.table(beside))), anchor="beside", title="Beside the bowl")
     if build.sheet is not None:
         rows = [row for row in machine.summary(build.sheet).rows() if row["quantity"] in SHOP]
-        blocks: list[Block] = [Table(tables.of_rows(rows, ("quantity", "value")))]
+        blocks: list[Block] = [Table(Frame.of_rows(rows, ("quantity", "value")))]
         if drawing := papers.get("bowl.png"):
             blocks.append(Picture(drawing.name, tables.file_bytes(drawing.make()), drawing.alt))
         yield Chapter(tuple(blocks), anchor="springs", title="Springs and drive")
@@ -451,7 +452,11 @@ def _changes(study: FamilyStudy) -> list[Change]:
         own = [[d for d in list[Any](member.devices) if d.kind == kind] for member in study.members]
         for place, row in enumerate(zip_longest(*own), start=1):
             first = row[0]
-            views = {device and device.sees for device in row} if first is not None and first.senses else ()
+            views = (
+                {device and device.sees for device in row}
+                if first is not None and first.action is Action.SENSE
+                else ()
+            )
             texts = tuple("-" if device is None else device.text for device in row)
             rows.append((f"{kind} {place}", TAUGHT if len(views) == 1 else SWAPPED, texts))
     return [row for row in [*rows, *values("drive", SET)] if len(set(row[2])) > 1]
@@ -546,7 +551,7 @@ def family_page(study: FamilyStudy) -> str:
     answer: list[Block] = [Text(status), Table(Frame.of_rows(rows).headed(above))]
     answer += [Text("The machine that each part asks for:"), Notes(tuple(machines))]
     answer += [Notes(tuple(lines), loud=True) for lines in (warned, risks) if lines]
-    changes, changed = _changes(study), tables.frame(changeover(study))
+    changes, changed = _changes(study), Frame.of(changeover(study))
     by_hand = sum(how == SWAPPED for _, how, _ in changes)
     tiles = (
         Tile("status", study.status, "the worst of all parts"),

@@ -54,6 +54,7 @@ from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
 from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
@@ -266,7 +267,7 @@ def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
     table |= {"becomes": becomes, "left": [row["left"] for row in rows]}
     for name in ("entering", "arriving"):
         table[f"{name} [%]"] = [round(100.0 * row[f"share_{name}"], 1) for row in rows]
-    return tables.frame(table)
+    return Frame.of(table)
 
 
 def nearest(study: DesignStudy) -> dict[str, Any] | None:
@@ -315,7 +316,7 @@ def machine_facts(study: DesignStudy) -> dict[str, Any] | None:
         return None
     drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
     velocity, leap = answer(study.bowl).velocity, hop(study.bowl)
-    sensing = [device for device in list[Any](study.devices) if device.senses]
+    sensing = [device for device in list[Any](study.devices) if device.action is Action.SENSE]
     one_set = "one set of leaf springs makes it"
     needs = one_set if study.drive_mismatch is None else "the leaf springs that are drawn make another one"
     return {
@@ -568,7 +569,7 @@ def acceptance(study: DesignStudy) -> Frame:
                 line = SheetLine(name, "", unit, None, None, float(value))
                 lines.append(replace(line, low=line.demand[0], high=line.demand[1]))
     cells = ([_cell(getattr(line, name)) for name in acceptance_sheet.SHEET_COLUMNS] for line in lines)
-    return tables.of_cells(acceptance_sheet.SHEET_COLUMNS, cells)
+    return Frame.of_cells(acceptance_sheet.SHEET_COLUMNS, cells)
 
 
 def _cell(value: str | float | None) -> str:
@@ -784,7 +785,7 @@ def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
         ends = (end if np.isfinite(end) else None for end in line.demand)
         low, high, *others = map(_cell, (*ends, line.measured, line.sample, line.computed))
         rows.append((line.quantity, line.fill, low, high, line.unit, *others, verdict.value, why))
-    return tables.of_cells(names, rows)
+    return Frame.of_cells(names, rows)
 
 
 def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:

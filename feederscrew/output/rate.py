@@ -155,7 +155,7 @@ def remarks(study: RateStudy) -> list[str]:
             f"needs {offered / share / PER_MINUTE:,.0f} parts a minute there{none}"
         )
     # what turns parts, or lets nothing through
-    if turning := [device.kind for device in study.devices if device.turns]:
+    if turning := [device.kind for device in study.devices if device.action.turns]:
         lines.append(f"{', '.join(turning)}: quasi-static, until a trial confirms it")
     if wanted.turns_over or chain.through != 0.0:
         return lines

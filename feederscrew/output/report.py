@@ -70,8 +70,8 @@ from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.rates.well_oriented import Rate, fed
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.device_passages import Passage
 from feederscrew.sorting.orientations import Orientation
-from feederscrew.sorting.track_sections import Passage
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
 from feederscrew.trials.course import Fate
@@ -573,7 +573,7 @@ def tooling(case: ReportStudy) -> Chapter | None:
         "it passes or fails. Verdicts are quasi-static: they hold while the part slides without hopping."
     )
     blocks: list[Block] = [Text(lead)]
-    if kinds := dict.fromkeys(device.kind for device in study.devices if device.turns):
+    if kinds := dict.fromkeys(device.kind for device in study.devices if device.action.turns):
         turned = f"Where parts land that {' and '.join(kinds)} turn over"
         blocks.append(Text(f"{turned} is quasi-static, until a trial confirms it."))
     # the part over the track, to be turned: the most frequent that leaves, and the nearest that falls
@@ -648,7 +648,7 @@ def trial(case: ReportStudy) -> Chapter | None:
     played, captions = rides.scene(study.part, run)
     views = Views(played, tuple((*item, ()) for item in captions), "trial-views", "Orientation", plays=True)
     matrix, paths, stills = map(_picture, trial_tables.pictures(study))
-    table = Table(trial_tables.frame(study, people=True).only(columns(run.counts)))
+    table = Table(trial_tables.frame(study).only(columns(run.counts)))
     result = Notes(tuple(trial_tables.summary(study)))
     blocks = (lead, result, views, replace(stills, printed=True), table, matrix, paths)
     return Chapter(blocks, warnings=study.warnings)

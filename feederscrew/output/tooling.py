@@ -15,7 +15,7 @@ from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import tooling_text
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.kinds import CostClass
 from feederscrew.sorting.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
@@ -96,7 +96,7 @@ def document(study: ToolingStudy) -> dict[str, Any]:
             "serves": cut.device.serves or None,
         }
         chain.append(entry)
-        if cut.device.turns:  # what it does, and how sure that is
+        if cut.device.action.turns:  # what it does, and how sure that is
             entry["turns"] = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
             entry["basis"] = QUASI_STATIC
     return entries | {
@@ -113,7 +113,7 @@ def document(study: ToolingStudy) -> dict[str, Any]:
         **efficiency_and_purity(design, study.trial_of(wanted_row)),
         "before": [f"{device.kind}: {device.text}" for device in design.before],
         "chain": chain,
-        "quasi_static": [cut.device.kind for cut in cuts if cut.device.turns],
+        "quasi_static": [cut.device.kind for cut in cuts if cut.device.action.turns],
         "reasons": list(design.reasons),
     }
 
@@ -237,23 +237,19 @@ def status(study: ToolingStudy, place: int) -> str:
     return "confirmed"
 
 
-def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
+def frame(study: ToolingStudy) -> Frame:
     """Return the rows as a table.
 
     Parameters
     ----------
     study : ToolingStudy
-    people : bool, optional
-        Whether devices are named as the trade does.
 
     Returns
     -------
     Frame
     """
     rows = _rows(study)
-    for row, design in zip(rows, study.designs):
-        if people and design is not None:
-            row["devices"] = [cut.device.kind for cut in design.cuts]
+    for row in rows:
         for name, between in (("devices", ", "), ("left_over", " "), ("reasons", "; ")):
             row[name] = between.join(row[name] or ())
     return Frame.of_rows(rows).headed(ROW_HEADS)
@@ -275,7 +271,7 @@ def summary(study: ToolingStudy, format: str = "csv") -> Frame:
     """
     people, rows = format == "table", []
     if study.design is None:
-        return frame(study, people=people)
+        return frame(study)
     orientations: dict[str, set[str]] = {}  # of each aspect
     for orientation in study.orientations:
         orientations.setdefault(orientation.aspect, set()).add(orientation.name)
@@ -420,7 +416,7 @@ def passages(study: PassagesStudy) -> Frame:
             doubt = "" if last.verdict.sure else ", not sure"
             outcomes.append(f"{last.fate} by the {last.device.kind}{doubt}")
         else:
-            outcomes.append(track_sections.passage_fate(orientation, ridden))
+            outcomes.append(device_passages.passage_fate(orientation, ridden))
     return Frame.of(table, above)
 
 
@@ -467,7 +463,7 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
     lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in design.before]
     for cut in design.cuts:
-        doubt = f"  # {QUASI_STATIC}" if cut.device.turns else ""
+        doubt = f"  # {QUASI_STATIC}" if cut.device.action.turns else ""
         lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{doubt}"]
     return "\n".join(lines) + "\n"
 
@@ -547,7 +543,9 @@ def offers(
     ]
     if step:
         files.append(offer.text(marking.file_name("tooling.step", mark), _step, section, mark))
-    if any(device.picture for device in devices if device.placed and not device.turns):  # a cut to see
+    placed = [device for device in devices if device.action.has_place]
+    seen = {device.features(study.bowl.track, study.orientations).seen_from for device in placed}
+    if seen - {"", "turned"}:  # a cut to see
         files.append(solid_picture(*chain))
     return marking.pictures(files, mark)
 

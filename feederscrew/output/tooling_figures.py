@@ -16,11 +16,12 @@ from shapely import affinity
 from feederscrew.arrays import Floats
 from feederscrew.designing import texts
 from feederscrew.output import style
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
+from feederscrew.sorting.device_passages import Passage
 from feederscrew.sorting.devices.base import Device, Verdict
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import LEAST_SHARE  # what comes less often has no row
 from feederscrew.sorting.orientations import Hanging, Orientation
-from feederscrew.sorting.track_sections import Passage
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.units import MM
 
@@ -70,7 +71,7 @@ def chain(
     -------
     matplotlib.figure.Figure
     """
-    placed = [device for device in devices if device.placed]
+    placed = [device for device in devices if device.action.has_place]
     rows, count = _rows(orientations, shares, wanted_row), max(len(placed), 1)
     room = min(max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count), 420)
     wide = max(900, FATE_COLUMN_PX + room * len(placed) + OUT)  # the lines over the rows need 900
@@ -98,13 +99,13 @@ def chain(
         panel, line = divmod(place, high)
         left, top = panel * wide, PAGE_HEAD_PX + line * ROW
         orientation = orientations[k]
-        passages = track_sections.until_returned(placed, orientation, orientations)
+        passages = device_passages.until_returned(placed, orientation, orientations)
         if panel == 0:
             _draw_rule(page, top)
         # what becomes of it, at the left of its row
         through = all(passage.verdict.passes > 0.0 for passage in passages)
         if through:
-            word = track_sections.passage_fate(orientation, passages)
+            word = device_passages.passage_fate(orientation, passages)
             if orientation.returned and (other := _would_return(placed, orientation, orientations)):
                 word = f"{word}; else returned by {other.kind}"
         else:
@@ -133,7 +134,7 @@ def _would_return(
     devices: Sequence[Device], orientation: Orientation, orientations: Sequence[Orientation]
 ) -> Device | None:
     """The first device that returns an orientation, should the bare track carry it after all."""
-    passages = (track_sections.worst_passage(device, orientation, orientations) for device in devices)
+    passages = (device_passages.worst_passage(device, orientation, orientations) for device in devices)
     return next((passage.device for passage in passages if passage.verdict.passes <= 0.0), None)
 
 
@@ -211,7 +212,10 @@ def _cell(page: Figure, box: Box, passage: Passage, size: float) -> None:
         _draw_from_above(axes, passage.orientation, passage.hole, passage, colour)
     else:
         _draw_ahead(
-            axes, passage.after if passage.device.leans else passage.orientation, passage.opening, colour
+            axes,
+            passage.after if passage.device.action.leans else passage.orientation,
+            passage.opening,
+            colour,
         )
     write_text(page, box[0] + 8, box[1] + ROW - 12, words, colour=colour)
 
@@ -222,7 +226,7 @@ def _draw_turned(axes: Axes, passage: Passage, colour: str) -> str:
     for orientation in (passage.orientation, passage.after):
         x, y, up = np.asarray(orientation.posture.corners).T
         c, s = np.cos(orientation.heading), np.sin(orientation.heading)
-        level = s * x + c * y if passage.device.inwards else c * x - s * y
+        level = s * x + c * y if passage.device.action is Action.ROLL else c * x - s * y
         sides.append(shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull)
     before, after = sides
     wide = before.bounds[2] - before.bounds[0]
@@ -255,7 +259,7 @@ def _draw_from_above(
     _fill_area(axes, curved if hole is None else curved.difference(in_mm(hole)), TRACK_FACE, "#b8c2cb", 1)
     outline = np.add(orientation.outline, [0.0, orientation.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART_FACE, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
-    touching = in_mm(track_sections.foot_area(orientation))
+    touching = in_mm(device_passages.foot_area(orientation))
     if hole is not None:
         _fill_area(axes, in_mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
     left_over = touching if hole is None else touching.difference(in_mm(hole))

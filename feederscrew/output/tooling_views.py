@@ -16,12 +16,12 @@ from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera, Mesh
 from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, margin_words
 from feederscrew.solidbowl import section as printed
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
+from feederscrew.sorting.device_passages import Passage
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.isolating.chain import LEAST_SHARE
 from feederscrew.sorting.orientations import Orientation
 from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, lay_out
-from feederscrew.sorting.track_sections import Passage
 
 # pixels of one view and of two lines over it
 VIEW_WIDTH_PX = 620
@@ -82,8 +82,8 @@ def _views(
     devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
 ) -> list[Any]:
     """Return what leaves, and what falls by least, of the frequent: passage, lines of text, colour."""
-    placed, views, rejected = [device for device in devices if device.placed], [], []
-    passages = _drawable(track_sections.until_returned(placed, orientations[wanted_row], orientations))
+    placed, views, rejected = [device for device in devices if device.action.has_place], [], []
+    passages = _drawable(device_passages.until_returned(placed, orientations[wanted_row], orientations))
     if passages:
         least = min(passages, key=lambda passage: passage.verdict.margin)
         words = _caption(least, "passes")
@@ -93,7 +93,7 @@ def _views(
         views.append((least, words, PASSED_COLOUR))
     for k, orientation in enumerate(orientations):
         if k != wanted_row and shares[k] >= LEAST_SHARE and not orientation.returned:
-            passages = track_sections.until_returned(placed, orientation, orientations)
+            passages = device_passages.until_returned(placed, orientation, orientations)
             rejected += [last for last in passages[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
     if rejected:
         nearest = max(rejected, key=lambda passage: round(passage.verdict.margin, 9))

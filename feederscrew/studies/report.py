@@ -128,7 +128,7 @@ class ReportStudy(ReadableRecord, view="report.REPORT_VIEW"):
     @cached_property
     def passages(self) -> rates.PassagesStudy | None:
         """Return the passage of each orientation through the bowl's devices; None without such devices."""
-        if not any(device.placed for device in self.bowl.devices):
+        if not any(device.action.has_place for device in self.bowl.devices):
             return None
         return rates.passages(self.part, self.bowl, self.resting.aspects, self.rule)
 

@@ -324,7 +324,7 @@ class FedRow:
         # where parts that came as wanted fell back
         rows = wanted_rows(self.orientations, self.states)
         fallen = outcome.returned_at[rows].sum(axis=0) if outcome.returned_at.size else np.zeros(0, int)
-        names = [BARE_TRACK, *(device.kind for device in self.bowl.devices if device.placed)]
+        names = [BARE_TRACK, *(device.kind for device in self.bowl.devices if device.action.has_place)]
         lost = Counter[str]()
         for name, number in zip(names, fallen.tolist()):
             lost[name] += number

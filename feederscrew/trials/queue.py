@@ -19,6 +19,7 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
 from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.trials import course, part_poses, runs, staging
 from feederscrew.trials.kernel import travel, workspace
@@ -76,7 +77,7 @@ def lay_out_track(
     track, place, level = bowl.track, 0.0, 0.0
     placed, blows, windows, levels = [], [], [], [0.0]
     size = staging.size_of(orientations)
-    for device in [device for device in devices if device.placed]:
+    for device in [device for device in devices if device.action.has_place]:
         features, start = device.features(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
         last = staging.exit_place(features, start, size)
         placed.append((features, start, last))
@@ -362,7 +363,7 @@ class PartsQueue:
         self.part_in_bowl = runs.setting(solid, length, bowl)
         count, spacing = plan.parts, stream.needed_spacing(bowl.devices, self.orientations, bowl)
         self.track = lay_out_track(bowl, self.orientations, bowl.devices, self._room(spacing))
-        self.devices = [device for device in bowl.devices if device.placed]
+        self.devices = [device for device in bowl.devices if device.action.has_place]
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
         self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
         self.looks = Looks(poses, solid, length, principal, bowl.track.radius)
@@ -582,7 +583,7 @@ class PartsQueue:
         limits = [
             device.limit
             for device, (begin, end) in zip(self.devices, self.windows)
-            if device.relieves and rear < end and front > begin
+            if device.action is Action.RELIEVE and rear < end and front > begin
         ]
         if not limits or not self.crowd.forces[n, BEHIND] > 0.0:
             return False

@@ -21,7 +21,7 @@ from feederscrew.output import shading, solid_files, tooling_drawing, tooling_fi
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.solidbowl import section as printed
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
 from feederscrew.sorting.devices.base import UNSURE, Verdict
 from feederscrew.sorting.devices.features import ShopWork
 from feederscrew.sorting.devices.kinds import make_device
@@ -71,7 +71,7 @@ def at_gates(lying):
     """How each orientation stands at the wiper and at the profile."""
     bowl, every = lying
     gates = [device for device in bowl.devices if device.kind in ("wiper", "profile gate")]
-    return [track_sections.worst_passage(device, one, every) for device in gates for one in every]
+    return [device_passages.worst_passage(device, one, every) for device in gates for one in every]
 
 
 def even(every):
@@ -125,7 +125,7 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
     bowl, every = lying
     cut = next(device for device in bowl.devices if device.kind == "cut-out")
     for one in every:
-        passage = track_sections.worst_passage(cut, one, every)
+        passage = device_passages.worst_passage(cut, one, every)
         hull, weight = shapely.MultiPoint(passage.supported).convex_hull, shapely.Point(passage.weight)
         away = hull.boundary.distance(weight) if hull.contains(weight) else -hull.distance(weight)
         assert away == pytest.approx(passage.verdict.margin, abs=2e-5), one.name

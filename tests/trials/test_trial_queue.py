@@ -15,6 +15,7 @@ from feederscrew.rates import stream
 from feederscrew.resting import profiles
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.sorting.devices.kinds import KINDS, make_device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import part_poses, queue, result, runs
 from feederscrew.trials.kernel.steps import BEHIND, BELOW
@@ -290,7 +291,7 @@ def test_parts_that_back_up_and_reach_over_the_ledge_of_a_pressure_break_leave_t
 def test_the_break_that_is_proposed_carries_what_is_wanted_and_no_more_than_it_has_to():
     every = stream.follow_orientations(PART, ASPECTS, BANKED.track, bowl=BANKED).lying
     one = every[ALONG]
-    (kind,) = [kind for kind in KINDS.values() if kind.relieves]
+    (kind,) = [kind for kind in KINDS.values() if kind.action is Action.RELIEVE]
     device = kind.relieving([one], 2.5e-4, "design")
     assert device.kind == "pressure break"
     assert device.text == "6.15 mm"  # half the width less 2.5 tan(3 deg), plus 0.25 mm, in steps of 0.05 mm
