@@ -19,7 +19,9 @@ from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.orientations import Hanging
-from feederscrew.trials.queue import MEAN_GAP_SHARE, PartsQueue, QueuedParts, QueuePlan
+from feederscrew.trials.queue import PartsQueue
+from feederscrew.trials.queue_counts import QueuedParts
+from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 from feederscrew.trials.wanted import find_poses, wanted_rows
 
 TOUCHING_PARTS = 12  # in a row of parts that touch

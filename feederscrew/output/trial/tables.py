@@ -20,7 +20,7 @@ from feederscrew.studies.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
 from feederscrew.trials import course
 from feederscrew.trials.course import LANDING_COLUMNS, Fate
 from feederscrew.trials.fills import FILL_COLUMNS, FILL_COUNT_COLUMNS, FilledQueue
-from feederscrew.trials.queue import QUEUED_COLUMNS
+from feederscrew.trials.queue_counts import QUEUED_COLUMNS
 from feederscrew.trials.result import OUTLET_COLUMNS, RUN_COLUMNS, RUN_DRIVE_COLUMNS, Outlet, TrialRun
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
