@@ -47,8 +47,8 @@ def matrix(run: TrialRun, ax: "style.Axes | None" = None) -> Figure:
     matplotlib.figure.Figure
     """
     order = [int(k) for k in np.argsort(-run.shares, kind="stable") if run.tried_counts[k]]
-    leaving = run.matrix.any(axis=1)  # of what is wanted parts leave: it has a row however seldom it comes
-    shown = set(sorted(order, key=lambda k: not leaving[k])[:MOST])
+    leaving = run.matrix.sum(axis=1)  # of what is wanted parts leave: it has a row however seldom it comes
+    shown = set(sorted(order, key=lambda k: leaving[k] == 0)[:MOST])
     rows = [k for k in order if k in shown]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
     names = [item.name for item in run.orientations.states] + ["other"]
