@@ -110,6 +110,7 @@ docs: $(PICTURES:%=docs/%.png) docs/trial_film.gif $(READY) ## pictures, outputs
 	$(BIN)/python docs/equations.py
 	$(BIN)/python docs/rules.py
 	$(BIN)/python docs/bowl_file.py
+	$(BIN)/python docs/columns.py
 	$(BIN)/python docs/validation.py
 	$(BIN)/python docs/designs.py
 

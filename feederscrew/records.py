@@ -9,7 +9,7 @@ from dataclasses import fields, is_dataclass
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from feederscrew.units import printable
 
@@ -27,8 +27,13 @@ VIEWS_MODULE = "feederscrew.output.record_views"
 class ReadableRecord:
     """A record whose text is short, and that has a table and, where its command draws, pictures."""
 
-    def __init_subclass__(cls, **keywords: Any) -> None:
+    _view_name: ClassVar[str] = ""  # of a ``RecordView``: its module in ``feederscrew.output``, and its name
+
+    def __init_subclass__(cls, view: str = "", **keywords: Any) -> None:
+        """Note the view of a class; a class without one shows that of the class it is made from."""
         super().__init_subclass__(**keywords)
+        if view:
+            cls._view_name = view
         cls.__repr__ = ReadableRecord.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
 
     def __repr__(self) -> str:

@@ -206,7 +206,7 @@ class ChangedPart:
 
 
 @dataclass(frozen=True, eq=False)
-class AdviceStudy(ReadableRecord):
+class AdviceStudy(ReadableRecord, view="advise.ADVICE_VIEW"):
     """How hard a part is to feed, why, and what changes of it would bring."""
 
     part: Part

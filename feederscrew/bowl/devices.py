@@ -8,6 +8,7 @@ from feederscrew import documents, units
 from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.sorting.devices.base import WRITTEN_STEP_M, Device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.devices.values import written
 
 DEVICES_SECTION = "devices"  # of a bowl file
@@ -68,7 +69,7 @@ def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
 def unfit(chain: Sequence[Device]) -> list[ConfigError]:
     """Return the faults of devices where those before them leave them no meaning."""
     # behind rails, to parts that hang
-    first = next((place for place, device in enumerate(chain) if device.hangs), len(chain))
+    first = next((place for place, device in enumerate(chain) if device.action is Action.HANG), len(chain))
     faults = [
         ConfigError(
             device.where,
@@ -76,13 +77,13 @@ def unfit(chain: Sequence[Device]) -> list[ConfigError]:
             "list it before the rails",
         )
         for device in chain[first:]
-        if not device.hanging
+        if not device.action.suits_hanging
     ]
     # in a groove, which holds parts on both its faces, where one is cut or stood over alone
-    grooved: bool | None = False
+    grooved = False
     for device in chain:
-        grooved = grooved if device.grooved is None else device.grooved
-        if grooved and device.placed and not device.leans:
+        grooved = device.action is Action.GROOVE or (grooved and device.action is not Action.BANK)
+        if grooved and device.action.has_place and not device.action.leans:
             mend = "list 'bank: 6 deg' before it, which ends the groove"
             faults.append(ConfigError(device.where, f"{device.kind} stands in a groove", mend))
     return faults
@@ -116,7 +117,7 @@ def unknown_aspects(chain: Sequence[Device], aspects: Sequence[str]) -> list[str
 
 def shank_remarks(chain: Iterable[Device]) -> tuple[str, ...]:
     """Return what to say of a chain in which parts hang by their heads, a line; else nothing."""
-    return (THREADED_SHANK,) if any(device.hangs for device in chain) else ()
+    return (THREADED_SHANK,) if any(device.action is Action.HANG for device in chain) else ()
 
 
 def value_text(device: Device) -> str:

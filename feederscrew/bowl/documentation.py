@@ -60,7 +60,7 @@ def template() -> str:
         start = behind + indent if section in OPTIONAL else indent + behind
         lines.append(f"{f'{start}{key.word}: {default(key).text}':<25}  # {key.meaning}{left_out}")
     lines += ["", f"# {DEVICES_SECTION}:  # along the track, in the order parts meet them"]
-    lines += [f"#   - {kind}: {key.example}  # {key.meaning}" for kind, key in KINDS.items()]
+    lines += [f"#   - {kind}: {key.trade.example}  # {key.trade.meaning}" for kind, key in KINDS.items()]
     return "\n".join(lines) + "\n"
 
 
@@ -139,9 +139,9 @@ def json_schema() -> dict[str, Any]:
         "items": {
             "type": "object",
             "properties": {
-                name: _device_form(kind) | ({"deprecated": True} if name == kind.old_kind else {})
+                name: _device_form(kind) | ({"deprecated": True} if name == kind.trade.old_name else {})
                 for kind in KINDS.values()
-                for name in filter(None, (kind.kind, kind.old_kind))
+                for name in filter(None, (kind.kind, kind.trade.old_name))
             },
             "additionalProperties": False,
             "minProperties": 1,
@@ -189,7 +189,7 @@ def write_beside(path: str | PathLike[str]) -> Path:
 
 def _device_form(kind: type[Device]) -> dict[str, Any]:
     """The schema of one kind of device."""
-    return {"description": f"{kind.meaning}. Example: {kind.example}", **kind.form}
+    return {"description": f"{kind.trade.meaning}. Example: {kind.trade.example}", **kind.trade.form}
 
 
 def _value(key: Key) -> dict[str, Any]:

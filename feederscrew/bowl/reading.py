@@ -217,7 +217,7 @@ def of_device(place: int, device: Device) -> Setting:
     -------
     Setting
     """
-    key = Key(f"{DEVICES_SECTION}.{place}", DEVICES_SECTION, "", "", "", "", device.meaning)
+    key = Key(f"{DEVICES_SECTION}.{place}", DEVICES_SECTION, "", "", "", "", device.trade.meaning)
     return Setting(key, f"{device.kind}: {device.text}", device, device.where)
 
 

@@ -185,7 +185,7 @@ class Sizing:
 
 
 @dataclass(frozen=True)
-class Bowl(ReadableRecord):
+class Bowl(ReadableRecord, view="record_lines.BOWL_VIEW"):
     """Drive, surface, track and devices of one bowl."""
 
     drive: Drive

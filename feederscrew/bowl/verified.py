@@ -17,6 +17,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.columns import Column
 from feederscrew.part.record import Part
 from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.trade import Action
 
 VERIFIED_SECTION = "verified"
 SHARED = {field.name for field in fields(Device)}  # what every device has
@@ -131,7 +132,7 @@ class Verified:
         if wanted is not None and not self.counts(wanted):
             tried, other = units.one_line(self.wanted), units.one_line(wanted)
             yield f"{tried} was tried, and {other} is another orientation"
-        leaving = HANGING if any(device.hangs for device in bowl.devices) else LYING
+        leaving = HANGING if any(device.action is Action.HANG for device in bowl.devices) else LYING
         if self.outcome not in ("", leaving):
             yield f"its outcome is {self.outcome}, and parts leave these devices {leaving}"
         if fingerprint(bowl) != self.bowl:
@@ -222,7 +223,7 @@ def fingerprint(bowl: Bowl) -> str:
         also = [end for other in device.also for end in other]
         numbers = " ".join(f"{end:.5g}" for end in (*device.span, *flat, *device.like[1:], *also[1::2]))
         own = " ".join(_own(getattr(device, e.name)) for e in fields(device) if e.name not in SHARED)
-        name = device.old_kind or device.kind  # as in the fingerprints of files that were tried before
+        name = device.trade.old_name or device.kind  # as in the fingerprints of files that were tried before
         listed.append(f"{name} {limit} {(*device.like[:1], *also[::2])} {numbers} {own}")
     return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]
 

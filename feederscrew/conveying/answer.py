@@ -57,7 +57,7 @@ class UnsteadyMotion(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Answer(ReadableRecord):
+class Answer(ReadableRecord, view="record_lines.ANSWER_VIEW"):
     """Motion of a part at one operating point."""
 
     setting: OperatingPoint

@@ -26,6 +26,7 @@ from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.devices.base import ComparedValue
 from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.sorting.isolating.rails import find_head
 from feederscrew.sorting.orientations import Hanging, Orientation
@@ -555,7 +556,7 @@ def _try_and_mend(search: Search, track: BankedTrack, proposal: Proposal) -> Ite
         return
     # at which devices what is wanted was lost; rails are the only way to hang
     place, trial = (plain_bowl.bowl.track.bank, proposal.row), candidate.trial
-    lost_at = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
+    lost_at = {cut.device.kind for cut in proposal.cuts if cut.device.action is not Action.HANG}
     kinds = sorted(kind for kind in lost_at if proposals.lost_at(trial, kind))
     state.avoided_kinds[place] = tuple(dict.fromkeys((*state.avoided_kinds.get(place, ()), *kinds)))
     # where all of it ended at one of them: another chain that begins so does no better
@@ -628,7 +629,7 @@ def devices_to(end: End, proposal: Proposal) -> int:
     int
         0 on the bare track.
     """
-    placed = [k for k, device in enumerate(proposal.devices) if device.placed]
+    placed = [k for k, device in enumerate(proposal.devices) if device.action.has_place]
     return 0 if end.on_bare_track else placed[end.station - 1] + 1
 
 
@@ -693,7 +694,7 @@ def stays_at_steel(proposal: Proposal, faults: Iterable[Fault]) -> bool:
     -------
     bool
     """
-    steel = {cut.device.kind for cut in proposal.cuts if cut.device.overhead or cut.device.hangs}
+    steel = {cut.device.kind for cut in proposal.cuts if cut.device.action in (Action.OVERHEAD, Action.HANG)}
     return any(fault.stops_at(steel) for fault in faults)
 
 
@@ -785,7 +786,7 @@ def try_proposal(
     Candidate
     """
     check_written(proposal.devices, "design.yaml")
-    if not search.keeps("track.climb") and any(device.leans for device in proposal.devices):
+    if not search.keeps("track.climb") and any(device.action.leans for device in proposal.devices):
         # as steep as a spacing section that leads down needs the track: else it has no solid
         bowl = replace(plain_bowl.bowl, devices=proposal.devices)
         climb = solidbowl.drawable_climb(bowl, search.part, search.through(bowl))

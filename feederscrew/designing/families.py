@@ -16,16 +16,17 @@ from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import Cut
 from feederscrew.studies.aspects import find_aspects
 
-PROPOSED = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed))
+PROPOSED = tuple(sorted(name for name, kind in KINDS.items() if kind.search.is_proposed))
 SHARED_TRACK_KEYS = ("track.radius", "track.width", "track.bank", "track.climb")
 FAMILY_FOLDER = "family"  # the folder of what is of all parts
 
 
 @dataclass(frozen=True, eq=False)
-class FamilyStudy(ReadableRecord):
+class FamilyStudy(ReadableRecord, view="design_pages.FAMILY_VIEW"):
     """Designs of several parts that are to run in one bowl."""
 
     members: tuple[DesignStudy, ...]
@@ -47,7 +48,9 @@ class FamilyStudy(ReadableRecord):
             if member.bowl is None:
                 return False
             track, own = member.bowl.track, list[Any](member.devices)  # without what a sensor is taught
-            devices = tuple((device.kind, device.sees if device.senses else device.text) for device in own)
+            devices = tuple(
+                (device.kind, device.sees if device.action is Action.SENSE else device.text) for device in own
+            )
             steel.add(((track.radius, track.width, track.bank, track.climb), devices))
         return len(steel) <= 1
 
@@ -219,8 +222,8 @@ def common_limits(chains: Sequence[Sequence[Cut]]) -> list[float | None] | None:
     limits: list[float | None] = []
     for cuts in zip(*chains, strict=True):
         own = [cut.device for cut in cuts]
-        if own[0].senses or not own[0].bound:
-            if not own[0].senses and len({device.text for device in own}) > 1:
+        if own[0].action is Action.SENSE or not own[0].search.bound:
+            if own[0].action is not Action.SENSE and len({device.text for device in own}) > 1:
                 return None
             limits.append(None)
             continue

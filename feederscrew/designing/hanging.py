@@ -21,6 +21,7 @@ from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.blades import Wiper
 from feederscrew.sorting.devices.kinds import dearer
 from feederscrew.sorting.devices.ledges import Rails
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating import chain, rails
 from feederscrew.sorting.isolating.chain import Design, DesignConstraints, DesignTask
 from feederscrew.sorting.isolating.design import design_around_rails
@@ -247,11 +248,11 @@ class RailsSearch:
 
     def _proposal(self, design: Design, move: Move) -> Proposal:
         cuts = design.cuts
-        changed = next((cut.device for cut in reversed(cuts) if cut.device.overhead), None)
+        changed = next((cut.device for cut in reversed(cuts) if cut.device.action is Action.OVERHEAD), None)
         if move.kind in (MoveKind.BLADE_BEHIND, MoveKind.SWEEP) and changed is not None:
             move = replace(move, device=changed.kind, device_text=changed.text)
         if move.kind is MoveKind.WIDER_SLOT:
-            slot = next(cut.device.span for cut in cuts if cut.device.hangs)
+            slot = next(cut.device.span for cut in cuts if cut.device.action is Action.HANG)
             move = replace(move, value=slot[1] - slot[0])
         return Proposal(self.row, cuts, self.before, move, margin=MARGINS[-1])
 
@@ -295,8 +296,8 @@ def shown_by(trial: ShortTrial, proposal: Proposal, count: int) -> Shown:
     -------
     Shown
     """
-    placed = [device for device in proposal.devices if device.placed]
-    station = next((n for n, device in enumerate(placed, start=1) if device.hangs), -1)
+    placed = [device for device in proposal.devices if device.action.has_place]
+    station = next((n for n, device in enumerate(placed, start=1) if device.action is Action.HANG), -1)
     hangs, gone, stands, unswept = np.zeros((4, count), bool)
     held_hanging = False
     for n, row in enumerate(trial.rows.tolist()):
@@ -314,7 +315,7 @@ def _sweep_of(proposal: Proposal) -> float | None:
     """The sweep [deg] of the blade behind the rails; None without one."""
     behind = False
     for cut in proposal.cuts:
-        behind = behind or cut.device.hangs
+        behind = behind or cut.device.action is Action.HANG
         if behind and isinstance(cut.device, Wiper):
             return round(math.degrees(cut.device.sweep), 6)
     return None

@@ -43,6 +43,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating import chain as static
 from feederscrew.sorting.isolating.chain import DesignConstraints
 from feederscrew.studies.rate import Shares
@@ -556,7 +557,7 @@ def alternatives(
             study = max(own, key=merit)
             purity, share = study.purity[0], study.efficiency
             counts = bool(study.queues) and not study.partial  # what was stopped is no evidence
-            sensors: list[Any] = [device for device in study.devices if device.senses]
+            sensors: list[Any] = [device for device in study.devices if device.action is Action.SENSE]
             words = tuple(f"{device.full_name}: {device.value_words}" for device in study.devices)
             best_of.append(
                 Alternative(

@@ -18,10 +18,11 @@ from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.kinds import KINDS, CostClass, cost_class, dearer, names
+from feederscrew.sorting.devices.kinds import KINDS, CostClass, cost_class, dearer, names, shaped
 from feederscrew.sorting.devices.orientation_names import nearest
 from feederscrew.sorting.devices.orientation_names import rows as rows_of
 from feederscrew.sorting.devices.pneumatics import PULSE
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
 from feederscrew.sorting.isolating.rails import RAIL
 from feederscrew.sorting.orientations import Hanging, Orientation, neck
@@ -31,8 +32,12 @@ from feederscrew.trials.fills import LeavingCounts, PoseKind
 from feederscrew.trials.wanted import aspects_at_any_heading, equivalent_rows, wanted_rows, wanted_states
 
 PROPOSED_ROWS = 6  # orientations for which chains are proposed, the most frequent first
-HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
-TOUCHING_KINDS = tuple(sorted(names(proposed=True, senses=False)))  # a sensor and air are left out
+# holes of several corners, which a shop's tolerance soon spoils
+HOLES = shaped()
+# a sensor and air are left out
+TOUCHING_KINDS = tuple(
+    sorted(names(lambda kind: kind.search.is_proposed and kind.action is not Action.SENSE))
+)
 CLASSES = tuple(CostClass)
 COST_CLASSES = tuple(one.number for one in CLASSES)  # steel alone, steady air, a sensor with a valve
 SENSED = COST_CLASSES[-1]
@@ -40,7 +45,8 @@ MARGINS = (5e-4, 2.5e-4)  # [m] to either side
 SWEEPS = (35, 20, 45, 30, 55)  # [deg] of a blade's face, in the order in which they are tried
 RARE_ORIENTATION = 0.2  # [1] share below which an orientation is worth a device that turns others into it
 ENOUGH_PURITY = 0.985  # purity at which a chain is not made longer
-ON_THE_TRACK = names(leans=True, grooved=False)  # a bank is the bowl's own, and tried by the loop
+# a bank is the bowl's own, and tried by the loop
+ON_THE_TRACK = names(lambda kind: kind.action is Action.BANK)
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
 VALUE_STEP_M = 5e-5  # [m] to which a shop makes a value
@@ -81,7 +87,11 @@ def recipes_of(cost_class: int, request: DesignRequest) -> list[Recipe]:
         device may be used.
     """
     left_out = (*dearer(cost_class), *request.without)
-    if not set(names(cost_class=cost_class, proposed=True)) - set(left_out):
+
+    def is_tried(kind: type[Device]) -> bool:
+        return kind.search.is_proposed and kind.trade.cost_class == cost_class
+
+    if not set(names(is_tried)) - set(left_out):
         return []
     both = (OutcomeKind.HANGING, OutcomeKind.LYING)
     outcomes = both if request.outcome is OutcomeKind.ANY else (request.outcome,)
@@ -165,7 +175,7 @@ class Proposal:
     @property
     def hangs(self) -> bool:
         """Tell whether parts leave hanging."""
-        return any(cut.device.hangs for cut in self.cuts)
+        return any(cut.device.action is Action.HANG for cut in self.cuts)
 
     @property
     def chain(self) -> tuple[str, ...]:
@@ -404,7 +414,7 @@ def _mend_cut(proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orie
     device that should have returned it towards the greatest.
     """
     for place, cut in enumerate(proposal.cuts):
-        if not cut.device.bound:
+        if not cut.device.search.bound:
             continue
         lost = lost_at(trial, cut.device.kind)
         if lost == _slips(cut, trial, orientations):
@@ -443,7 +453,7 @@ def sweep_blade(
     stays_at = {end.kind for n in range(len(trial.rows)) if trial.held[n] for end in trial.ends[n]}
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device  # a blade, where it is overhead
-        if not device.overhead or not device.face or device.kind not in stays_at:
+        if device.action is not Action.OVERHEAD or not device.face or device.kind not in stays_at:
             continue
         used = proposal.sweeps or (round(np.degrees(device.sweep)),)
         grip = orientations[proposal.row].grip
@@ -513,7 +523,7 @@ def _cut_more(
     """The proposal that cuts more of an orientation that is carried through; None where nothing does."""
     name = orientations[row].name
     for place, cut in enumerate(proposal.cuts):
-        if not cut.device.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
+        if not cut.device.search.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
             continue
         other = move_cut(cut, 0.5 * (cut.device.limit + cut.largest.limit), orientations, proposal.row)
         if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
@@ -559,10 +569,10 @@ def add_pressure_break(candidate: Any) -> Proposal | None:
         None where it has one, or a wanted orientation does not reach over any.
     """
     proposal, lying = candidate.proposal, candidate.orientations.lying
-    if any(device.relieves for device in proposal.devices):
+    if any(device.action is Action.RELIEVE for device in proposal.devices):
         return None
     wanted = [lying[k] for k in candidate.trial.wanted]
-    makers = [KINDS[kind] for kind in names(relieves=True)]
+    makers = [KINDS[kind] for kind in names(lambda kind: kind.action is Action.RELIEVE)]
     breaks = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
     device = next((device for device in breaks if device is not None), None)
     if device is None:
@@ -597,8 +607,8 @@ def add_drop(
     if not reject_rows or not wanted_rows:
         return None
     best, chosen, own = (0, 0.0), None, {*excluded_kinds, *(cut.device.kind for cut in proposal.cuts)}
-    for kind in (kind for kind in numeric_kinds() if kind.carries):
-        sign = 1.0 if kind.bound == "lower" else -1.0
+    for kind in (kind for kind in numeric_kinds() if kind.action.carries):
+        sign = 1.0 if kind.search.bound == "lower" else -1.0
         # what no width of the track carries falls off as well from one that is as wide as the track
         values = sign * np.minimum(limits(kind, orientations), orientations[0].track.width)
         least = values[wanted_rows].min()
@@ -698,7 +708,7 @@ def shorten_pulse(cut: Cut, orientations: Sequence[Orientation]) -> Cut:
     docs/design.md, "The loop".
     """
     device: Any = cut.device  # a sorter, where it senses
-    if not device.senses:
+    if device.action is not Action.SENSE:
         return cut
     encounters = [
         DeviceEncounter(orientation, orientations)
@@ -735,7 +745,7 @@ def lengthen_pulse(
     """
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device
-        if device.senses and _slips(cut, trial, orientations) and device.time < PULSE:
+        if device.action is Action.SENSE and _slips(cut, trial, orientations) and device.time < PULSE:
             other = device.with_pulse(min(LONGER_PULSE * device.time, PULSE))
             move = _move_of(MoveKind.LONGER_PULSE, other, other.time)
             return proposal.with_cut(place, replace(cut, device=other), move)
@@ -749,7 +759,7 @@ def _widen_slot(proposal: Proposal, orientations: Sequence[Orientation]) -> Prop
     slot grows towards the head, about its middle, as long as the head is held by the rails.
     """
     for place, cut in enumerate(proposal.cuts):
-        shank = neck(orientations[proposal.row]) if cut.device.hangs else None
+        shank = neck(orientations[proposal.row]) if cut.device.action is Action.HANG else None
         if shank is None:
             continue
         device: Any = cut.device

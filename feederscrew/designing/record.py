@@ -31,6 +31,7 @@ from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
 from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.sorting.isolating.design import DESIGN_MARGIN_M
 from feederscrew.studies.tooling import ToolingStudy, listed
@@ -356,7 +357,7 @@ class Risk:
 
 
 @dataclass(frozen=True, eq=False)
-class DesignStudy(ReadableRecord):
+class DesignStudy(ReadableRecord, view="design_pages.DESIGN_VIEW"):
     """A bowl for a part and a rate, with everything that was tried on the way."""
 
     part: Part
@@ -397,7 +398,7 @@ class DesignStudy(ReadableRecord):
     @property
     def outcome(self) -> OutcomeKind:
         """Return whether what leaves lies on the track or hangs by its head."""
-        hangs = any(device.hangs for device in self.devices)
+        hangs = any(device.action is Action.HANG for device in self.devices)
         own = OutcomeKind.HANGING if hangs else OutcomeKind.LYING
         return self.request.outcome if self.bowl is None else own
 

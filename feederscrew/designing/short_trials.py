@@ -30,6 +30,7 @@ from feederscrew.resting.aspects import Aspects, find
 from feederscrew.running import RunSettings
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.orientation_names import place_of
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.fates import at_entry
 from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.sorting.orientations import orientations as on_the_track
@@ -432,7 +433,7 @@ def draw_bowl(bowl: Bowl, orientations: Sequence[Orientation], rng: np.random.Ge
 def _draw_device(device: Any, orientations: Sequence[Orientation], rng: np.random.Generator) -> Any:
     """A device whose every length is off by up to CUT."""
     more: dict[str, Any] = {}
-    if device.like and not device.senses:  # an opening: a gate by an orientation and its play
+    if device.like and device.action is not Action.SENSE:  # an opening: a gate by an orientation and its play
         grown = _named_orientation(device, device.like[:2], orientations).view_ahead.buffer(device.like[2])
         device = replace(device, corners=_corners(grown), like=())
     elif device.like:  # a sensor: by how much a part may differ that it takes for the wanted one

@@ -26,8 +26,9 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.kinds import KINDS, CostClass, names
+from feederscrew.sorting.devices.kinds import CostClass, names
 from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating import chain as static
 from feederscrew.sorting.isolating.chain import Design, DesignConstraints, OutcomeKind
 from feederscrew.studies.rate import Shares
@@ -40,7 +41,7 @@ BEST = 3  # designs of a table that are tried
 TRIES = 5  # designs of one orientation that are tried where the first ones are denied
 SEARCHES = 8  # designs that are looked for after a denied one
 # stretches that reject nothing: to leave them out makes no other chain
-KEPT = tuple(name for name in names(leans=True) if not KINDS[name].grooved)
+KEPT = names(lambda kind: kind.action in (Action.CLIMB, Action.BANK))
 RARE_SHARE = 1e-3  # [1] of the wanted share: what comes less often than that changes no purity
 FURTHER = 8  # orientations that come less often than that and may leave, and are tried as well
 SLIGHT = 1e-9  # [1] of rounding
@@ -415,7 +416,7 @@ def _search_on(asked: AskedOrientation, *, only_hanging: bool = False) -> Search
         heading=None if only_hanging else own.heading,
         up=study.up,
         outcome=OutcomeKind.HANGING if only_hanging else asked.outcome,
-        without=(*asked.without, *names(turns=True)),
+        without=(*asked.without, *names(lambda kind: kind.action.turns)),
         rule=study.rule,
         budget=SEARCH_TRIALS,
         draws=0,

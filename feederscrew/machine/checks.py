@@ -10,6 +10,7 @@ from feederscrew.bowl.record import Sizing
 from feederscrew.conveying import hop
 from feederscrew.errors import FeederError
 from feederscrew.machine.springs import fewest_leaves, greatest_amplitude
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.units import MM, MM_S, MPA
 
 VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
@@ -137,7 +138,11 @@ def _limits(sheet: Any) -> Iterator[FeederError]:
         what = f"{there} is more than drives are built for"
         yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
     # devices that a part meets on the track, where it hops higher than their margin
-    over = [device.kind for device in bowl.devices if device.placed and not device.overhead]
+    over = [
+        device.kind
+        for device in bowl.devices
+        if device.action.has_place and device.action is not Action.OVERHEAD
+    ]
     for remark in hop.remark(bowl) if over else ():
         names = units.listed(list(dict.fromkeys(over)))
         what = f"at the throw number {sheet.answer.throw_number:.3g} {remark}"

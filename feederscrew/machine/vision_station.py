@@ -176,7 +176,7 @@ def plan_vision_stations(bowl: Bowl, orientations: Sequence[Orientation]) -> tup
     here, stations = orientations[0], []
     room, tallest = room_of(orientations), max(one.height for one in orientations)
     shaking = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
-    placed = [device for device in bowl.devices if device.placed]
+    placed = [device for device in bowl.devices if device.action.has_place]
     for number, device in enumerate(placed, start=1):
         here = device.onward(here)
         if not isinstance(device, Sorter):

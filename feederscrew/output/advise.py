@@ -9,6 +9,7 @@ from feederscrew.advising.advice import CLASS_WORDS, AdviceStudy, ChangedPart, R
 from feederscrew.columns import Column, Frame, of_records, values
 from feederscrew.output import offers as offer
 from feederscrew.output import poses, solid_files
+from feederscrew.output.offers import RecordView
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Block,
@@ -185,3 +186,6 @@ def _cell(part: Part, aspects: Aspects, way: Way | None, name: str) -> MarkedCel
         return MarkedCell("no way was found")
     drawn = poses.picture(posture(part, aspects, found["aspect"]), way.heading)
     return MarkedCell(way.text, picture=Picture(f"{name}.png", drawn, f"{part.name}, {way.orientation}"))
+
+
+ADVICE_VIEW = RecordView(lambda study: f"{study.part.name}: {study.answer}", offers, "advise")

@@ -13,6 +13,8 @@ from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, style, tables
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import aspects_text
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, names_text
 from feederscrew.resting.exact_tumbling import Transition
@@ -546,3 +548,6 @@ def _curve(start: Vector, end: Vector, shares: Floats) -> Points:
 
 def _half(text: str) -> tuple[float, float]:
     return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]
+
+
+ASPECTS_VIEW = RecordView(lambda study: f"{study.part.name} {aspects_text(study.aspects)}", offers, "aspects")

@@ -11,12 +11,14 @@ from feederscrew.columns import Frame, of_arrays, of_records, values
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import calibrate_text
 from feederscrew.resting.deviation import PAIR_COLUMNS, Comparison
 from feederscrew.resting.profiles import PROFILE_COLUMNS
 from feederscrew.resting.rules import registry
 from feederscrew.resting.rules.recommended import RECOMMENDED_COLUMNS
 from feederscrew.studies import compare as studies
-from feederscrew.units import MM_S
+from feederscrew.units import MM_S, counted
 
 mpl_patches = heavy("matplotlib.patches")
 
@@ -395,3 +397,15 @@ def calibration_offers(study: studies.CalibrateStudy) -> list[offer.Offer]:
         offer.table("calibrate.csv", exponents, study),
         offer.document("calibrate.json", calibration_document, study),
     ]
+
+
+COMPARE_VIEW = RecordView(
+    lambda study: (
+        f"{study.part.name}: {counted(len(study.rules), 'rule')} beside counts of {study.measured.source}"
+    ),
+    offers,
+    "compare",
+)
+SETS_VIEW = RecordView(None, sets_offers, "compare")
+FEEDING_VIEW = RecordView(None, offers, "compare")
+CALIBRATE_VIEW = RecordView(calibrate_text, calibration_offers, "calibrate")

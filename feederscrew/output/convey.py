@@ -26,6 +26,8 @@ from feederscrew.heavy import heavy
 from feederscrew.mechanics.limits import Regime
 from feederscrew.output import offers as offer
 from feederscrew.output import style
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import convey_text
 from feederscrew.output.tables import PHASE_WORDS, regime_words
 from feederscrew.studies.convey import ConveyCurve, ConveyMap, ConveyPhase, ConveyStudy
 from feederscrew.units import MM_S, factor
@@ -485,3 +487,9 @@ def _curve(study: ConveyCurve, title: str, ax: "style.Axes | None" = None) -> "s
     axes.plot(x, frame["velocity_mm_s"], color=style.ACCENT, label="from rest")
     axes.legend(**style.LEGEND)
     return figure
+
+
+CONVEY_VIEW = RecordView(lambda study: convey_text(study.answer), offers, "convey")
+CURVE_VIEW = RecordView(None, curve_offers, "convey")
+PHASE_VIEW = RecordView(None, phase_offers, "convey")
+MAP_VIEW = RecordView(None, map_offers, "convey")

@@ -40,6 +40,7 @@ from feederscrew.output import (
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import LOWER_BOUND
 from feederscrew.output.next_tries import reason
+from feederscrew.output.offers import RecordView
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Block,
@@ -58,10 +59,13 @@ from feederscrew.output.page.blocks import (
     Tile,
     Views,
 )
+from feederscrew.output.record_lines import design_text, family_text
 from feederscrew.output.style import png
 from feederscrew.output.trial import rides
 from feederscrew.output.trial.tables import queues_table
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.devices.trade import Action
+from feederscrew.studies.arguments import settings_of
 from feederscrew.studies.bowl import MachineSheet
 
 MEASURE = (
@@ -448,7 +452,11 @@ def _changes(study: FamilyStudy) -> list[Change]:
         own = [[d for d in list[Any](member.devices) if d.kind == kind] for member in study.members]
         for place, row in enumerate(zip_longest(*own), start=1):
             first = row[0]
-            views = {device and device.sees for device in row} if first is not None and first.senses else ()
+            views = (
+                {device and device.sees for device in row}
+                if first is not None and first.action is Action.SENSE
+                else ()
+            )
             texts = tuple("-" if device is None else device.text for device in row)
             rows.append((f"{kind} {place}", TAUGHT if len(views) == 1 else SWAPPED, texts))
     return [row for row in [*rows, *values("drive", SET)] if len(set(row[2])) > 1]
@@ -584,3 +592,16 @@ def family_offers(study: FamilyStudy) -> list[offer.Offer]:
         return files
     changed = offer.table("changeover.csv", changeover, study)
     return [*files, changed, offer.text("family.html", family_page, study)]
+
+
+def _files_with_machine(study: DesignStudy) -> list[offer.Offer]:
+    """The files of a design, with the machine below its bowl."""
+    from feederscrew.designing.design import Built, build_machine, with_machine
+
+    settings = () if study.bowl is None else settings_of(study.bowl)
+    built = Built() if study.partial else build_machine(study, settings)
+    return offers(with_machine(study, built), settings, built)
+
+
+DESIGN_VIEW = RecordView(design_text, lambda study: offers(study, ()), "design", _files_with_machine)
+FAMILY_VIEW = RecordView(family_text, family_offers, "design")

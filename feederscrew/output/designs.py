@@ -54,6 +54,7 @@ from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
 from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
@@ -315,7 +316,7 @@ def machine_facts(study: DesignStudy) -> dict[str, Any] | None:
         return None
     drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
     velocity, leap = answer(study.bowl).velocity, hop(study.bowl)
-    sensing = [device for device in list[Any](study.devices) if device.senses]
+    sensing = [device for device in list[Any](study.devices) if device.action is Action.SENSE]
     one_set = "one set of leaf springs makes it"
     needs = one_set if study.drive_mismatch is None else "the leaf springs that are drawn make another one"
     return {

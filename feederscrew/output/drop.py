@@ -15,6 +15,8 @@ from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, style
 from feederscrew.output.aspects import MARKS, PROBABILITIES
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import shares_text
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.drop import (
@@ -472,3 +474,12 @@ def _toss_plan(
     axes.scatter(*measured.T, marker=".", s=6, color=style.INK, label="measured")
     style.legend(figure, ax=ax, ncols=3)
     return figure
+
+
+DROP_VIEW = RecordView(
+    lambda study: (
+        f"{study.part.name}: {study.drops} drops, {shares_text(study.aspects.names, study.tally.p)}"
+    ),
+    offers,
+    "drop",
+)

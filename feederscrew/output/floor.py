@@ -25,10 +25,12 @@ from feederscrew.mechanics.floor_balance import (
 from feederscrew.mechanics.track_balance import TrackMotion
 from feederscrew.output import offers as offer
 from feederscrew.output import style
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import figure, motion_text
 from feederscrew.resting.posture import Posture
 from feederscrew.studies.floor import FLOOR_COLUMNS, FloorStudy
 from feederscrew.studies.track import TrackStudy
-from feederscrew.units import MM
+from feederscrew.units import DEGREE, MM
 
 mpl_lines = heavy("matplotlib.lines")
 mpl_patches = heavy("matplotlib.patches")
@@ -780,3 +782,6 @@ def _throws(axes: "style.Axes", grid: Grid) -> None:
     lines = axes.contour(grid.first.in_unit, grid.second.in_unit, throw, levels, **look)
     for text in axes.clabel(lines, fmt=lambda k: f"k = {k:g}", fontsize=7):
         text.set_path_effects(style.halo())
+
+
+FLOOR_VIEW = RecordView(lambda study: motion_text(study, figure(study.heading, DEGREE)), offers, "floor")

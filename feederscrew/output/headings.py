@@ -12,6 +12,8 @@ from feederscrew.mechanics.headings import Headings
 from feederscrew.output import offers as offer
 from feederscrew.output import style
 from feederscrew.output.floor import CONTACT, polygon
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import headings_text
 from feederscrew.output.track import wall_and_edge
 from feederscrew.part.record import small_part_remarks
 from feederscrew.resting.posture import Posture
@@ -150,3 +152,6 @@ def headings(posture: Posture, stable: Headings, track: Track, title: str) -> "s
     figure.supxlabel("along the track [mm]", fontsize=9, color=style.INK)
     figure.supylabel("away from the wall [mm]", fontsize=9, color=style.INK)
     return figure
+
+
+HEADINGS_VIEW = RecordView(headings_text, offers, "headings")

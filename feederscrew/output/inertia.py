@@ -10,6 +10,8 @@ from feederscrew.arrays import Vector
 from feederscrew.columns import Column, ColumnHead, Frame, UnitName, of_records, quantities, values
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import inertia_text
 from feederscrew.part.density import MATERIAL_COLUMNS, MATERIALS
 from feederscrew.studies.aspects import INERTIA_COLUMNS, InertiaStudy
 
@@ -129,3 +131,6 @@ def offers(study: InertiaStudy, format: str = "csv") -> list[offer.Offer]:
     if format == "json":
         return [offer.document("inertia.json", document, study)]
     return [offer.table("inertia.csv", rows, study)]
+
+
+INERTIA_VIEW = RecordView(inertia_text, offers, "inertia")

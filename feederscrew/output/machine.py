@@ -12,6 +12,8 @@ from feederscrew.machine.springs import LEAF_SET_COLUMNS, ROCKING_COLUMNS, LeafS
 from feederscrew.output import beside_bowl, marking, proof, solidbowl
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import offers as offer
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import machine_text
 from feederscrew.studies.bowl import (
     DRIVE_COLUMNS,
     FULL_BOWL_COLUMNS,
@@ -155,3 +157,6 @@ def measured_summary(condition: MeasuredMachine) -> Frame:
 def measured_document(condition: MeasuredMachine) -> dict[str, Any]:
     """Return a MeasuredMachine as the JSON document."""
     return values(CONDITION_COLUMNS, condition)
+
+
+MACHINE_VIEW = RecordView(machine_text, offers, "bowl")

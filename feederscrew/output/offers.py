@@ -39,6 +39,20 @@ class Offer:
         return self.name.endswith((".html", ".png", ".svg")) and not self.is_apart
 
 
+@dataclass(frozen=True)
+class RecordView:
+    """What a record shows of itself: its answer in a line, and the files of its command.
+
+    The class of the record names it, ``class RateStudy(ReadableRecord, view="rate.RATE_VIEW")``: a module of
+    ``feederscrew.output``, which is imported when a view is asked for, and a name in it.
+    """
+
+    line: Callable[[Any], str] | None = None  # None: its fields are the line
+    offers: Callable[[Any], Sequence[Offer]] | None = None  # its tables, documents and pictures
+    command: str = ""  # under which its files are recorded
+    files: Callable[[Any], Sequence[Offer]] | None = None  # what is saved, where that is more than ``offers``
+
+
 class FileStore(Protocol):
     """Takes files: a ResultFolder, or what keeps them in memory."""
 

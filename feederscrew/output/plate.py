@@ -12,6 +12,8 @@ from feederscrew.dropping.plate_test import MIN_TRANSITIONS, Occupancy, PlateRes
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import plate_text
 from feederscrew.resting.rules import registry
 from feederscrew.studies.drop import (
     PLATE_COLUMNS,
@@ -258,3 +260,6 @@ def label_strokes(axes: "Axes", x: Floats, results: Sequence[PlateResult], names
 
 def _colour(k: int) -> Any:
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)
+
+
+PLATE_VIEW = RecordView(plate_text, offers, "drop")

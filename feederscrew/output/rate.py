@@ -10,6 +10,8 @@ from feederscrew import units
 from feederscrew.columns import ColumnHead, Frame, quantities, values
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, tables
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import rate_text, tune_text
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import entering
@@ -154,7 +156,7 @@ def remarks(study: RateStudy) -> list[str]:
             f"needs {offered / share / PER_MINUTE:,.0f} parts a minute there{none}"
         )
     # what turns parts, or lets nothing through
-    if turning := [device.kind for device in study.devices if device.turns]:
+    if turning := [device.kind for device in study.devices if device.action.turns]:
         lines.append(f"{', '.join(turning)}: quasi-static, until a trial confirms it")
     if wanted.turns_over or chain.through != 0.0:
         return lines
@@ -311,3 +313,7 @@ def tune_offers(study: TuneStudy) -> list[offer.Offer]:
         offer.document("tune.json", tune_document, study),
         offer.table("tune.csv", study.table),
     ]
+
+
+RATE_VIEW = RecordView(lambda study: f"{study.part.name} {rate_text(study.rate)}", offers, "rate")
+TUNE_VIEW = RecordView(tune_text, tune_offers, "tune")

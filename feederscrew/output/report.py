@@ -42,7 +42,8 @@ from feederscrew.output import slide as slide_output
 from feederscrew.output import tooling as tooling_output
 from feederscrew.output import track as track_output
 from feederscrew.output.folder import LIBRARIES, ResultFolder
-from feederscrew.output.offers import Offer, by_name
+from feederscrew.output.offers import Offer, RecordView, by_name
+from feederscrew.output.offers import text as text_file
 from feederscrew.output.page.as_html import NOTHING, SHORT, html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import (
@@ -61,6 +62,7 @@ from feederscrew.output.page.blocks import (
     Tile,
     Views,
 )
+from feederscrew.output.record_lines import aspects_text
 from feederscrew.output.shading import short
 from feederscrew.output.trial import rides
 from feederscrew.output.trial import tables as trial_tables
@@ -571,7 +573,7 @@ def tooling(case: ReportStudy) -> Chapter | None:
         "it passes or fails. Verdicts are quasi-static: they hold while the part slides without hopping."
     )
     blocks: list[Block] = [Text(lead)]
-    if kinds := dict.fromkeys(device.kind for device in study.devices if device.turns):
+    if kinds := dict.fromkeys(device.kind for device in study.devices if device.action.turns):
         turned = f"Where parts land that {' and '.join(kinds)} turn over"
         blocks.append(Text(f"{turned} is quasi-static, until a trial confirms it."))
     # the part over the track, to be turned: the most frequent that leaves, and the nearest that falls
@@ -871,3 +873,10 @@ def _pictures_of(offers: Iterable[Offer], *starts: str) -> list[Picture]:
 
 def _notes(lines: Sequence[str]) -> list[Notes]:
     return [Notes(tuple(lines))] if lines else []
+
+
+REPORT_VIEW = RecordView(
+    lambda study: f"{study.part.name} {aspects_text(study.shares.aspects)}",
+    command="report",
+    files=lambda study: [text_file("report.html", lambda: html(page(study)))],
+)

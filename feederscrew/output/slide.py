@@ -14,6 +14,8 @@ from feederscrew.heavy import heavy
 from feederscrew.mechanics.limits import Regime
 from feederscrew.output import offers as offer
 from feederscrew.output import style
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import slide_text
 from feederscrew.output.tables import regime_words
 from feederscrew.studies.slide import SlideMap, SlideStudy
 
@@ -419,3 +421,6 @@ def _label_region(axes: "Axes", slide: SlideMap, name: str) -> bool:
 
 def _shades(count: int) -> Floats:
     return matplotlib.colormaps[LEVEL_COLOURS](np.linspace(0.05, 0.8, count))
+
+
+SLIDE_VIEW = RecordView(slide_text, offers, "slide")

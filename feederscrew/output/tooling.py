@@ -13,6 +13,8 @@ from feederscrew.designing import texts
 from feederscrew.heavy import heavy
 from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import tooling_text
 from feederscrew.sorting import device_passages
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.kinds import CostClass
@@ -23,6 +25,7 @@ from feederscrew.sorting.orientations import (
     Orientation,
 )
 from feederscrew.sorting.tooled_track import TooledTrack, lay_out
+from feederscrew.studies.arguments import settings_of
 from feederscrew.studies.rate import PassagesStudy
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.units import MM, counted
@@ -93,7 +96,7 @@ def document(study: ToolingStudy) -> dict[str, Any]:
             "serves": cut.device.serves or None,
         }
         chain.append(entry)
-        if cut.device.turns:  # what it does, and how sure that is
+        if cut.device.action.turns:  # what it does, and how sure that is
             entry["turns"] = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
             entry["basis"] = QUASI_STATIC
     return entries | {
@@ -110,7 +113,7 @@ def document(study: ToolingStudy) -> dict[str, Any]:
         **efficiency_and_purity(design, study.trial_of(wanted_row)),
         "before": [f"{device.kind}: {device.text}" for device in design.before],
         "chain": chain,
-        "quasi_static": [cut.device.kind for cut in cuts if cut.device.turns],
+        "quasi_static": [cut.device.kind for cut in cuts if cut.device.action.turns],
         "reasons": list(design.reasons),
     }
 
@@ -460,7 +463,7 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
     lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in design.before]
     for cut in design.cuts:
-        doubt = f"  # {QUASI_STATIC}" if cut.device.turns else ""
+        doubt = f"  # {QUASI_STATIC}" if cut.device.action.turns else ""
         lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{doubt}"]
     return "\n".join(lines) + "\n"
 
@@ -543,7 +546,9 @@ def offers(
     ]
     if step:
         files.append(offer.text(marking.file_name("tooling.step", mark), _step, section, mark))
-    if any(device.picture for device in devices if device.placed and not device.turns):  # a cut to see
+    placed = [device for device in devices if device.action.has_place]
+    seen = {device.features(study.bowl.track, study.orientations).seen_from for device in placed}
+    if seen - {"", "turned"}:  # a cut to see
         files.append(solid_picture(*chain))
     return marking.pictures(files, mark)
 
@@ -619,3 +624,11 @@ def _step(section: Callable[[], TooledTrack], mark: str) -> bytes:
     from feederscrew.solidbowl.exact import exact_file
 
     return marking.mark_step(exact_file.section_file(section()), mark)
+
+
+TOOLING_VIEW = RecordView(
+    tooling_text,
+    lambda study: offers(study, ()),
+    "tooling",
+    lambda study: offers(study, settings_of(study.bowl)),  # with a bowl file that says what its bowl is
+)

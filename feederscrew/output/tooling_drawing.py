@@ -361,7 +361,10 @@ def device_rows(
             wide, narrow = ((far - near) / MM for near, far in (lead[:2], device.span))
             long, taper = (size / MM for size in lead[2:])
             words += f": {wide:.5g} mm wide for {long:.5g} mm, then over {taper:.5g} mm to {narrow:.5g} mm"
-        listed = [f"{words}{': quasi-static, until a trial confirms it' * device.turns}", *device.shop_words]
+        listed = [
+            f"{words}{': quasi-static, until a trial confirms it' * device.action.turns}",
+            *device.shop_words,
+        ]
         if placed.features.sensor is not None:
             listed[1] += f", at the cross; window {placed.length / MM:.4g} x {width / MM:.4g} mm"
         listed += placed.shop_work(width)

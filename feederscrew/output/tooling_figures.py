@@ -19,6 +19,7 @@ from feederscrew.output import style
 from feederscrew.sorting import device_passages
 from feederscrew.sorting.device_passages import Passage
 from feederscrew.sorting.devices.base import Device, Verdict
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import LEAST_SHARE  # what comes less often has no row
 from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.studies.tooling import ToolingStudy
@@ -75,7 +76,7 @@ def chain(
     -------
     matplotlib.figure.Figure
     """
-    placed = [device for device in devices if device.placed]
+    placed = [device for device in devices if device.action.has_place]
     rows, count = _rows(orientations, shares, wanted_row), max(len(placed), 1)
     room = min(max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count), 420)
     wide = max(900, FATE_COLUMN_PX + room * len(placed) + OUT)  # the lines over the rows need 900
@@ -237,7 +238,10 @@ def _cell(page: Figure, box: Box, passage: Passage, size: float, *, leaves: bool
         _draw_from_above(axes, passage.orientation, passage.hole, passage, colour)
     else:
         _draw_ahead(
-            axes, passage.after if passage.device.leans else passage.orientation, passage.opening, colour
+            axes,
+            passage.after if passage.device.action.leans else passage.orientation,
+            passage.opening,
+            colour,
         )
     write_text(page, box[0] + 8, box[1] + ROW - 12, words, colour=colour)
 
@@ -248,7 +252,7 @@ def _draw_turned(axes: Axes, passage: Passage, colour: str) -> str:
     for orientation in (passage.orientation, passage.after):
         x, y, up = np.asarray(orientation.posture.corners).T
         c, s = np.cos(orientation.heading), np.sin(orientation.heading)
-        level = s * x + c * y if passage.device.inwards else c * x - s * y
+        level = s * x + c * y if passage.device.action is Action.ROLL else c * x - s * y
         sides.append(shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull)
     before, after = sides
     wide = before.bounds[2] - before.bounds[0]

@@ -92,7 +92,7 @@ def _views(
     left_in_trial: Collection[str] = (),
 ) -> list[Any]:
     """Return what leaves, and what falls by least, of the frequent: passage, lines of text, colour."""
-    placed, views, rejected = [device for device in devices if device.placed], [], []
+    placed, views, rejected = [device for device in devices if device.action.has_place], [], []
     passages = _drawable(device_passages.until_returned(placed, orientations[wanted_row], orientations))
     if passages:
         least = min(passages, key=lambda passage: passage.verdict.margin)

@@ -22,6 +22,8 @@ from feederscrew.mechanics.track_contacts import OPENING_COLUMNS, TIPPING_AXIS_C
 from feederscrew.output import floor, style
 from feederscrew.output import offers as offer
 from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, drop_rounding, polygon
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import track_text
 from feederscrew.studies.track import TRACK_COLUMNS, TrackStudy
 from feederscrew.units import MM
 
@@ -522,3 +524,6 @@ def _draw_force(
 def _unit(vector: Vector) -> tuple[Vector, float]:
     size = float(np.hypot(*vector))
     return (vector / size if size > 0.0 else np.zeros(2)), size
+
+
+TRACK_VIEW = RecordView(track_text, offers, "track")

@@ -53,7 +53,7 @@ class CardAspect:
 
 
 @dataclass(frozen=True, eq=False)
-class Part(ReadableRecord):
+class Part(ReadableRecord, view="record_lines.PART_VIEW"):
     """A solid to be fed: its surface (none for a part card) and its mass properties."""
 
     name: str  # file stem; with the body's number behind it where one of several is taken

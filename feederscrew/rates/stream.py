@@ -24,6 +24,7 @@ from feederscrew.sorting import orientations as tooling
 from feederscrew.sorting.devices.base import UNSURE, Device
 from feederscrew.sorting.devices.kinds import find_kind
 from feederscrew.sorting.devices.orientation_names import place
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import clearing_time
 from feederscrew.sorting.fates import at_entry, course
 from feederscrew.sorting.orientations import Orientation, travel_speed
@@ -360,7 +361,7 @@ def along(
     docs/tooling.md, "1. The method".
     """
     # what a device turns becomes another one, of which has to be known whether it stays
-    alone = None if any(device.turns or device.grooved for device in chain) else rows
+    alone = None if any(device.action.turns or device.action is Action.GROOVE for device in chain) else rows
     orientations, tips = (tuple(orientations), None) if bowl is None else marked(orientations, bowl, alone)
     orientations = at_entry(orientations, chain)
     flow = course(chain, orientations, sigma, rows)

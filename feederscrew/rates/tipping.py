@@ -22,6 +22,7 @@ from feederscrew.mechanics.track_balance import Seat, SeatStack, seat
 from feederscrew.sorting import footprints
 from feederscrew.sorting.devices.base import Device, opening_at
 from feederscrew.sorting.devices.openings import HoleEdges, hole_edges
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.orientations import Orientation, add_travel, gyration, travel_speed
 from feederscrew.units import MM, listed
@@ -577,8 +578,10 @@ def _steady(
     """
     if orientation.returned or orientation.touching is None:
         return True
-    touched = list(itertools.takewhile(lambda device: not (device.turns or device.hangs), devices))
-    touched = [device for device in touched if device.carries]  # as far as parts come as they lie
+    touched = list(
+        itertools.takewhile(lambda device: not (device.action.turns or device.action is Action.HANG), devices)
+    )
+    touched = [device for device in touched if device.action.carries]  # as far as parts come as they lie
     if _rolls(orientation):
         return not any(_takes(device, orientation) for device in touched)
     if energy > 0.0:

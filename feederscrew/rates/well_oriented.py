@@ -159,7 +159,7 @@ class Range:
 
 
 @dataclass(frozen=True, eq=False)
-class Rate(ReadableRecord):
+class Rate(ReadableRecord, view="record_lines.RATE_VIEW"):
     """Well-oriented parts leaving the bowl, and each factor of the chain."""
 
     parts: Range  # [1/s] delivered: offered times efficiency, at most what fits behind the devices

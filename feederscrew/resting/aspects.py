@@ -85,7 +85,7 @@ class Aspect(ReadableRecord):
 
 
 @dataclass(frozen=True, eq=False)
-class Aspects(ReadableRecord):
+class Aspects(ReadableRecord, view="record_lines.ASPECTS_VIEW"):
     """One row a class, the most likely first; A rows."""
 
     names: tuple[str, ...]

@@ -42,7 +42,9 @@ class MayUse(StrEnum):
     @property
     def kinds(self) -> tuple[str, ...]:
         """Return the kinds of devices that take it, as --without knows them."""
-        return tuple(name for name, kind in KINDS.items() if kind.cost_class == {"air": 2, "camera": 3}[self])
+        return tuple(
+            name for name, kind in KINDS.items() if kind.trade.cost_class == {"air": 2, "camera": 3}[self]
+        )
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from feederscrew.sorting import footprints
 from feederscrew.sorting.devices.base import Device, Verdict, opening_at
 from feederscrew.sorting.devices.features import TrackOpening
 from feederscrew.sorting.devices.openings import hole_edges, through_the_wall
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.fates import stand_astride
 from feederscrew.sorting.orientations import Orientation, hang
 from feederscrew.sorting.tooled_track import PlacedDevice, bend_ring
@@ -91,7 +92,7 @@ def worst_passage(device: Device, orientation: Orientation, orientations: Sequen
     elif outcome.hangs:
         after = hang(orientation, device.span)
     else:
-        rails = device.hangs and outcome.passes > 0.0
+        rails = device.action is Action.HANG and outcome.passes > 0.0
         after = stand_astride(orientation, device.span) if rails else device.onward(orientation)
     gates = [shapely.Polygon(ring) for blade in features.blades for ring in blade.opening()]
     return Passage(
@@ -100,7 +101,7 @@ def worst_passage(device: Device, orientation: Orientation, orientations: Sequen
         verdict=outcome,
         fate=device.fate(DeviceEncounter(orientation, orientations)),
         after=after,
-        picture=device.picture,
+        picture=features.seen_from,
         outline=np.add(orientation.outline, [0.0, orientation.distance]),
         foot=touching,
         hole=holes[worst],

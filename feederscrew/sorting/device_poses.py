@@ -61,7 +61,7 @@ def find_device_poses(
     ----------
     ``device_passages.until_returned``; docs/tooling.md, "1. The method".
     """
-    placed = [device for device in devices if device.placed]
+    placed = [device for device in devices if device.action.has_place]
     groups: list[dict[str, dict[str, SharedPose]]] = [
         {"passes": {}, "returns": {}, "stops": {}} for _ in placed
     ]

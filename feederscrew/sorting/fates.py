@@ -11,6 +11,7 @@ from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.devices import unfit
 from feederscrew.sorting import footprints
 from feederscrew.sorting.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.orientations import Hanging, Orientation, hang, may_hang
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
@@ -184,7 +185,12 @@ def course(
         for k, outcome in enumerate(outcomes):
             place = k
             # a state of its own, also of what a trial alone can tell whether it comes to hang
-            if outcome and device.hangs and not outcome.onto and may_hang(here[k], device.span):
+            if (
+                outcome
+                and device.action is Action.HANG
+                and not outcome.onto
+                and may_hang(here[k], device.span)
+            ):
                 hanging = [other for other in states if isinstance(other, Hanging)]
                 down = hang(here[k], device.span, hanging)
                 if down not in states:
@@ -198,7 +204,7 @@ def course(
         transitions.append(onward)
         verdicts.append(outcomes)
         here = [device.onward(orientation) for orientation in here] + states[len(here) :]
-        if device.hangs:
+        if device.action is Action.HANG:
             here = [stand_astride(orientation, device.span) for orientation in here]
         if rows is None:
             followed = range(len(here))
@@ -252,10 +258,10 @@ def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
     """
     first_devices, grooved = [], False
     for device in devices:
-        if not device.leans or (grooved and device.grooved is False):
+        if not device.action.leans or (grooved and device.action is Action.BANK):
             break
         first_devices.append(device)
-        grooved = grooved or bool(device.grooved)
+        grooved = grooved or device.action is Action.GROOVE
     return tuple(first_devices)
 
 

@@ -255,7 +255,7 @@ def lay_out(
     ConfigError
         A device names an orientation that the part does not have.
     """
-    chain = [device for device in devices if device.placed]
+    chain = [device for device in devices if device.action.has_place]
     room, entry = room_of(orientations), len(leading_devices(chain))
     track = track_at_entry(track, chain, orientations)
     drawn, own = _drawn_width(track, chain, orientations)
@@ -404,7 +404,7 @@ def track_at_entry(track: Track, devices: Sequence[Device], orientations: Sequen
     -------
     Track
     """
-    for device in leading_devices([device for device in devices if device.placed]):
+    for device in leading_devices([device for device in devices if device.action.has_place]):
         for slope in device.features(track, orientations).slopes:
             track = track if slope.bank is None else replace(track, bank=slope.bank)
     return track

@@ -32,7 +32,7 @@ MAX_DROPS = 20_000  # drops: a share of a half takes half of them
 
 
 @dataclass(frozen=True, eq=False)
-class AspectsStudy(ReadableRecord):
+class AspectsStudy(ReadableRecord, view="aspects.ASPECTS_VIEW"):
     """The resting aspects of one part, with a drop test of it where one was asked for or needed."""
 
     part: Part
@@ -297,7 +297,7 @@ def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
 
 
 @dataclass(frozen=True, eq=False)
-class InertiaStudy(ReadableRecord):
+class InertiaStudy(ReadableRecord, view="inertia.INERTIA_VIEW"):
     """A part, and what follows from its volume, mass and inertia."""
 
     part: Part

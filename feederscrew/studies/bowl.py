@@ -27,6 +27,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.plan import SolidOptions, TrackTooLow
 from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import orientations
 from feederscrew.studies import arguments, solidbowl
 from feederscrew.studies.arguments import Quantity, former_keywords
@@ -74,7 +75,7 @@ class Lowest:
 
 
 @dataclass(frozen=True, eq=False)
-class MachineSheet(ReadableRecord):
+class MachineSheet(ReadableRecord, view="machine.MACHINE_VIEW"):
     """A machine and what it does; with an order, that of the sized bowl."""
 
     bowl: Bowl
@@ -379,7 +380,7 @@ def size_machine(
     user_keys, own = drive_sizing.user_keys(settings, "track"), plain.track
     least = None
     greatest = float(np.ptp(np.asarray(part.vertices), axis=0).max())
-    hanging = greatest if any(device.hangs for device in plain.devices) else 0.0
+    hanging = greatest if any(device.action is Action.HANG for device in plain.devices) else 0.0
     while True:
         size = sizing.size_bowl(
             replace(lying, hanging=hanging),

@@ -61,7 +61,7 @@ class _Counted(ReadableRecord):
 
 
 @dataclass(frozen=True, eq=False)
-class FeedingStudy(_Counted):
+class FeedingStudy(_Counted, view="compare.FEEDING_VIEW"):
     """A feeding test of one part in one bowl; D devices that were counted."""
 
     part: Part
@@ -140,7 +140,7 @@ FEEDING_COLUMNS: tuple[Column[tuple[FeedingStudy, int]], ...] = (  # a row a dev
 
 
 @dataclass(frozen=True, eq=False)
-class CompareStudy(_Counted):
+class CompareStudy(_Counted, view="compare.COMPARE_VIEW"):
     """Profiles of one part, measured and by rule, and how far every two of them are apart."""
 
     part: Part
@@ -195,7 +195,7 @@ SET_COLUMNS: tuple[Column[SetStudy], ...] = (
 
 
 @dataclass(frozen=True, eq=False)
-class SetsStudy(ReadableRecord):
+class SetsStudy(ReadableRecord, view="compare.SETS_VIEW"):
     """Many measured profiles, each against every answer for its part, and feeding tests."""
 
     sets: tuple[SetStudy, ...]
@@ -403,7 +403,7 @@ def _counted_flow(
 
 
 @dataclass(frozen=True, eq=False)
-class CalibrateStudy(_Counted):
+class CalibrateStudy(_Counted, view="compare.CALIBRATE_VIEW"):
     """An exponent for every column of counts of one part, or for its feeding test."""
 
     part: Part

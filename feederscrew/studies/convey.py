@@ -25,7 +25,7 @@ from feederscrew.units import DEG, MM
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyStudy(ReadableRecord):
+class ConveyStudy(ReadableRecord, view="convey.CONVEY_VIEW"):
     """One operating point of a bowl, and its neighbours."""
 
     bowl: Bowl
@@ -62,7 +62,7 @@ class ConveyStudy(ReadableRecord):
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyCurve(ReadableRecord):
+class ConveyCurve(ReadableRecord, view="convey.CURVE_VIEW"):
     """Motion of a part along one quantity of the bowl; N points."""
 
     kind: str  # 'curve' over a key, or 'radius'
@@ -98,7 +98,7 @@ CURVE_COLUMNS: tuple[Column[ConveyCurve], ...] = (  # behind those of its axes
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyPhase(ReadableRecord):
+class ConveyPhase(ReadableRecord, view="convey.PHASE_VIEW"):
     """Effect of the phase of an elliptical drive in a bowl."""
 
     bowl: Bowl
@@ -112,7 +112,7 @@ class ConveyPhase(ReadableRecord):
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyMap(ReadableRecord):
+class ConveyMap(ReadableRecord, view="convey.MAP_VIEW"):
     """Motion of a part over two keys of the bowl."""
 
     ranges: tuple[KeyRange, KeyRange]

@@ -31,7 +31,7 @@ SURE_SHARE = 0.95  # [1] from here on an answer is called sure
 
 
 @dataclass(frozen=True, eq=False)
-class DropStudy(ReadableRecord):
+class DropStudy(ReadableRecord, view="drop.DROP_VIEW"):
     """Shares in which one part came to rest on each of its aspects."""
 
     part: Part
@@ -250,7 +250,7 @@ class PlateOf(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class PlateStudy(ReadableRecord):
+class PlateStudy(ReadableRecord, view="plate.PLATE_VIEW"):
     """Rest and travel of one part on the plates of one or several bowls."""
 
     part: Part

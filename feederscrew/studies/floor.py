@@ -30,7 +30,7 @@ MAP_MARGIN = 1.25  # a map reaches at least so far beyond the bowl's own point
 
 
 @dataclass(frozen=True, eq=False)
-class FloorStudy(ReadableRecord):
+class FloorStudy(ReadableRecord, view="floor.FLOOR_VIEW"):
     """Motion of the part at the upper reversal and over a cycle; maps on request."""
 
     part: Part

@@ -21,7 +21,7 @@ from feederscrew.studies.rate import arriving
 
 
 @dataclass(frozen=True, eq=False)
-class HeadingsStudy(ReadableRecord):
+class HeadingsStudy(ReadableRecord, view="headings.HEADINGS_VIEW"):
     """The stable headings of a part on one or more aspects."""
 
     part: Part

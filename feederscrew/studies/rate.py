@@ -31,6 +31,7 @@ from feederscrew.running import OnCores
 from feederscrew.sorting.device_passages import Passage, until_returned
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.orientation_names import rows, split_name
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.design import PLAY_M, TOLERANCE_M
 from feederscrew.sorting.orientations import Orientation, orientations
 from feederscrew.studies import arguments, simulation_cache
@@ -45,7 +46,7 @@ FEED_SEED = 1  # of the parts that are fed onto the moving floor
 
 
 @dataclass(frozen=True, eq=False)
-class Shares(ReadableRecord):
+class Shares(ReadableRecord, view="record_lines.SHARES_VIEW"):
     """The aspects of a part with the one answer that is taken for their shares."""
 
     aspects: Aspects  # their ``recommended`` is that answer
@@ -222,7 +223,7 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
 
 
 @dataclass(frozen=True, eq=False)
-class RateStudy(ReadableRecord):
+class RateStudy(ReadableRecord, view="rate.RATE_VIEW"):
     """The rate of one orientation, and the chain of factors behind it."""
 
     part: Part
@@ -307,7 +308,9 @@ RATE_COLUMNS: tuple[Column[RateStudy], ...] = (  # of the document, and of the p
     Column("jams_per_hour", lambda study: study.rate.jams, "1/h"),
     Column("clearing_s", lambda study: study.rate.clearing, "s"),
     Column(
-        "quasi_static", lambda study: [device.kind for device in study.devices if device.turns], hidden=True
+        "quasi_static",
+        lambda study: [device.kind for device in study.devices if device.action.turns],
+        hidden=True,
     ),
     Column(
         "rolls_back",
@@ -393,14 +396,14 @@ def rate(
         source: dict[str, Any] = {"rule": rule, "launch": launch, "probabilities": probabilities}
         aspect_shares = shares(part, bowl, fed=fed, seed=seed, **source)
     check.of_an_aspect(aspect, angle)
-    if any(device.placed for device in chain):
+    if any(device.action.has_place for device in chain):
         refuse_many_facets(part)
     aspects = aspect_shares.aspects
     target = None if aspect is None else well_oriented.wanted(part, aspects, bowl.track, aspect, angle, chain)
     followed = stream.follow_orientations(part, aspects, bowl.track, chain, sigma, bowl)
     lying = stream.oriented(followed, aspect_shares.measured)
     speed = well_oriented.velocity(stream.queueing(bowl, lying.lying))
-    hung = any(device.hangs for device in chain)
+    hung = any(device.action is Action.HANG for device in chain)
     target = most_frequent(lying, rule, hung=hung) if target is None else target
     rates = well_oriented.rate(lying, speed, target, rule, gap=space, fill=fill)
     return RateStudy(part, bowl, aspects, chain, rule, rates, aspect_shares.measured, sigma)
@@ -492,10 +495,10 @@ def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStu
     FeederError
         If the part has very many facets.
     """
-    if any(device.placed for device in bowl.devices):
+    if any(device.action.has_place for device in bowl.devices):
         refuse_many_facets(part)
     coming, _ = marked(orientations(part, aspects, bowl.track), bowl)
-    devices = tuple(device for device in bowl.devices if device.placed)
+    devices = tuple(device for device in bowl.devices if device.action.has_place)
     return PassagesStudy(
         devices=devices,
         orientations=coming,

@@ -38,7 +38,7 @@ STROKE_RANGE = 2.5  # and to so many times the bowl's own stroke
 
 
 @dataclass(frozen=True, eq=False)
-class ReportStudy(ReadableRecord):
+class ReportStudy(ReadableRecord, view="report.REPORT_VIEW"):
     """A part, the aspect wanted of it, and a bowl, checked; every chapter's study when it is asked for."""
 
     resting: AspectsStudy
@@ -128,7 +128,7 @@ class ReportStudy(ReadableRecord):
     @cached_property
     def passages(self) -> rates.PassagesStudy | None:
         """Return the passage of each orientation through the bowl's devices; None without such devices."""
-        if not any(device.placed for device in self.bowl.devices):
+        if not any(device.action.has_place for device in self.bowl.devices):
             return None
         return rates.passages(self.part, self.bowl, self.resting.aspects, self.rule)
 

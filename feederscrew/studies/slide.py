@@ -64,7 +64,7 @@ class SlideMap(ReadableRecord):
 
 
 @dataclass(frozen=True, eq=False)
-class SlideStudy(ReadableRecord):
+class SlideStudy(ReadableRecord, view="slide.SLIDE_VIEW"):
     """The sliding maps of one bowl, one for each vibration angle."""
 
     bowl: Bowl

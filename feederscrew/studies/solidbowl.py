@@ -28,6 +28,7 @@ from feederscrew.solidbowl.plan import (
     material,
     plan,
 )
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import hang, neck
 from feederscrew.sorting.tooled_track import lay_out
 
@@ -221,7 +222,7 @@ def solid(
         often = often * (np.array(coming.aspects) == counted["target"][0])
     leaving = often * coming.through
     most_frequent = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
-    spans = [device.span for device in bowl.devices if device.hangs]
+    spans = [device.span for device in bowl.devices if device.action is Action.HANG]
     hanging = hang(most_frequent, spans[-1]) if spans and neck(most_frequent) else None
     return size, replace(closed, riders=tuple(riding.riders(closed.plan, most_frequent, hanging)))
 
@@ -230,7 +231,7 @@ def _planned(
     bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, options: SolidOptions
 ) -> BowlPlan:
     """The measures of the solid, its tooled stretch on the track that devices bank."""
-    is_tooled = any(device.placed for device in bowl.devices)
+    is_tooled = any(device.action.has_place for device in bowl.devices)
     tooled = lay_out(bowl.track, bowl.devices, coming.lying) if is_tooled else None
     track = bowl.track if tooled is None else tooled.track
     extents = np.ptp(np.asarray(part.vertices), axis=0)

@@ -21,8 +21,18 @@ from feederscrew.rates.tipping import marked, remark, steady
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.sorting.devices.kinds import KINDS, CostClass, cheaper, dearer, find_kind, leaning, names
+from feederscrew.sorting.devices.kinds import (
+    KINDS,
+    CostClass,
+    cheaper,
+    dearer,
+    find_kind,
+    leaning,
+    names,
+    shaped,
+)
 from feederscrew.sorting.devices.orientation_names import rows
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.fates import at_entry
 from feederscrew.sorting.isolating import design as designing
 from feederscrew.sorting.isolating.chain import (
@@ -143,7 +153,7 @@ LATE = "the search stopped at the time limit: another machine may find more - ra
 
 
 @dataclass(frozen=True, eq=False)
-class ToolingStudy(ReadableRecord):
+class ToolingStudy(ReadableRecord, view="tooling.TOOLING_VIEW"):
     """Every orientation of a part on a track, and what isolates it behind the bowl's devices; M of them."""
 
     part: Part
@@ -174,7 +184,7 @@ class ToolingStudy(ReadableRecord):
         """
         if self.wanted is None or self.design is None:
             return ""
-        own = HANGING if any(device.hangs for device in self.design.devices) else ""
+        own = HANGING if any(device.action is Action.HANG for device in self.design.devices) else ""
         return self.state or own or self.orientations[self.wanted].name
 
     def trial_of(self, place: int) -> Any:
@@ -466,13 +476,14 @@ def _cheapest(
         return design
     # holes are for one orientation alone, and by far the longest search: where nothing simpler isolates. So
     # are chains that are known to isolate parts at rest alone
-    best = designed(CostClass.STEEL, names(searched=True), at_rest=False)
+    best = designed(CostClass.STEEL, shaped(), at_rest=False)
     for cost_class in (CostClass.AIR, CostClass.SENSOR):
         if best.surely_isolates and best.efficiency >= request["efficiency"]:
             break
         is_last = cost_class is CostClass.SENSOR
-        if is_last or any(constraints.allows(kind) for kind in names(cost_class=cost_class.number)):
-            other = designed(cost_class, () if is_last else names(searched=True), is_last)
+        own = names(lambda kind: kind.trade.cost_class == cost_class.number)  # noqa: B023
+        if is_last or any(constraints.allows(kind) for kind in own):
+            other = designed(cost_class, () if is_last else shaped(), is_last)
             best = other if designing.isolates_more(other, best) else best
     return best
 
@@ -541,4 +552,10 @@ def tooling_without(
     FeederError
         As of ``tooling``.
     """
-    return tooling(part, bowl, aspect, without=(*listed(without), *kinds, *names(searched=True)), **request)
+    return tooling(
+        part,
+        bowl,
+        aspect,
+        without=(*listed(without), *kinds, *shaped()),
+        **request,
+    )

@@ -32,7 +32,7 @@ USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 
 
 @dataclass(frozen=True, eq=False)
-class TrackStudy(ReadableRecord):
+class TrackStudy(ReadableRecord, view="track.TRACK_VIEW"):
     """Reactions on the part at the upper reversal and over a cycle; maps on request."""
 
     part: Part

@@ -33,9 +33,10 @@ from feederscrew.trials import course, result
 from feederscrew.trials.fills import FedRow, FillLevel
 from feederscrew.trials.long_ride import long_ride
 from feederscrew.trials.part_poses import MAX_START_PLAY_M
-from feederscrew.trials.queue import MEAN_GAP_SHARE, QueuePlan, queue_of
+from feederscrew.trials.queue import queue_of
 from feederscrew.trials.result import Outlet, TrialRun
 from feederscrew.trials.shape import solid_of
+from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 from feederscrew.trials.wanted import states_of_name, wanted_rows
 
 ENGINE = "feeder's own kernel"
@@ -57,7 +58,7 @@ class TrialQueue:
 
 
 @dataclass(frozen=True, eq=False)
-class TrialStudy(ReadableRecord):
+class TrialStudy(ReadableRecord, view="trial.tables.TRIAL_VIEW"):
     """Parts of one kind on the tracks of one bowl at one or several amplitudes."""
 
     part: Part

@@ -59,7 +59,7 @@ TUNE_COLUMNS: tuple[Column[Tuned], ...] = (  # a row a setting
 
 
 @dataclass(frozen=True, eq=False)
-class TuneStudy(ReadableRecord):
+class TuneStudy(ReadableRecord, view="rate.TUNE_VIEW"):
     """Every setting of one key of the drive that gives a rate, the recommended one first."""
 
     part: Part

@@ -144,7 +144,7 @@ def course(
     slopes = staging.entry_slopes(devices, bowl.track, orientations)
     slot: tuple[float, ...] = ()
     chain = [staging.stage_bare_track(bowl.track, orientations, RUN_UP * size, slopes)]
-    for device in [device for device in devices if device.placed]:
+    for device in [device for device in devices if device.action.has_place]:
         features = device.features(bowl.track, orientations)
         chain.append(staging.stage_device(device, bowl.track, orientations, slopes=slopes, slot=slot))
         slopes, slot = (*slopes, *features.slopes), features.slot or slot

@@ -19,7 +19,9 @@ from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.orientations import Hanging
-from feederscrew.trials.queue import MEAN_GAP_SHARE, PartsQueue, QueuedParts, QueuePlan
+from feederscrew.trials.queue import PartsQueue
+from feederscrew.trials.queue_counts import QueuedParts
+from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 from feederscrew.trials.wanted import find_poses, wanted_rows
 
 TOUCHING_PARTS = 12  # in a row of parts that touch
@@ -322,7 +324,7 @@ class FedRow:
         # where parts that came as wanted fell back
         rows = wanted_rows(self.orientations, self.states)
         fallen = outcome.returned_at[rows].sum(axis=0) if outcome.returned_at.size else np.zeros(0, int)
-        names = [BARE_TRACK, *(device.kind for device in self.bowl.devices if device.placed)]
+        names = [BARE_TRACK, *(device.kind for device in self.bowl.devices if device.action.has_place)]
         lost = Counter[str]()
         for name, number in zip(names, fallen.tolist()):
             lost[name] += number

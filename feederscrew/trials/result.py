@@ -20,12 +20,13 @@ from feederscrew.rates import stream
 from feederscrew.rates.tipping import is_surely_gone, steady
 from feederscrew.resting import deviation
 from feederscrew.resting.profiles import AspectProfile
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import too_near
 from feederscrew.sorting.orientations import Orientation, neck
 from feederscrew.trials import course
 from feederscrew.trials.course import Landing
 from feederscrew.trials.fills import FilledQueue
-from feederscrew.trials.queue import QueuedParts
+from feederscrew.trials.queue_counts import QueuedParts
 
 CLEAR_MARGIN_M = 2.5e-4  # [m] margin from which a static verdict should hold
 VERDICT_SHARE = 0.95  # [1] of the trials in which it should
@@ -202,7 +203,7 @@ class TrialRun:
     @cached_property
     def wedge_depths(self) -> Floats:
         """Return (M,) [m], by how much too near to the wall the rails are between which each hung; else 0."""
-        spans = [device.span for device in self.bowl.devices if device.hangs]
+        spans = [device.span for device in self.bowl.devices if device.action is Action.HANG]
         hung = self.counts[:, [course.TURNED, course.HANGING]].sum(axis=1) > 0
         necks = [neck(lying) if own else None for lying, own in zip(self.orientations.lying, hung)]
         gaps = [max((too_near(own, span) for span in spans if own), default=0.0) for own in necks]

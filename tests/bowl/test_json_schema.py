@@ -33,11 +33,14 @@ def test_it_has_every_section_key_and_device_with_its_meaning():
     kinds = properties["devices"]["items"]["properties"]
     # the name of the trade, and the key of files of before
     assert {
-        n: kind.meaning for kind in documentation.KINDS.values() for n in (kind.kind, kind.old_kind) if n
+        n: kind.trade.meaning
+        for kind in documentation.KINDS.values()
+        for n in (kind.kind, kind.trade.old_name)
+        if n
     } == {name: entry["description"].split(". Example: ")[0] for name, entry in kinds.items()}
     assert all("type" in entry or "anyOf" in entry for entry in kinds.values()), "a dimension is unknown here"
     for name, kind in documentation.KINDS.items():
-        assert accepted(f"devices:\n  - {name}: {kind.example}\n"), name
+        assert accepted(f"devices:\n  - {name}: {kind.trade.example}\n"), name
     # Bowl files that are right are accepted.
     paths = list((Path(__file__).parents[2] / "configs").glob("*.yaml"))
     assert paths and all(accepted(path.read_text()) for path in paths)

@@ -66,7 +66,7 @@ def read(tmp_path, text):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_device_written_and_read_back_is_the_same_and_a_changed_one_is_not(tmp_path, kind):
     text = "track:\n  width: 40 mm\ndevices:\n  - {}: {}\n"
-    bowl = read(tmp_path, text.format(kind, KINDS[kind].example))
+    bowl = read(tmp_path, text.format(kind, KINDS[kind].trade.example))
     (device,) = bowl.devices
     tried = fingerprint(bowl)
     assert fingerprint(read(tmp_path, text.format(kind, value_text(device)))) == tried
@@ -251,7 +251,7 @@ def lying():
     return proposals.follow_orientations(part, find(part), bowls.default()).lying
 
 
-@pytest.mark.parametrize("kind", sorted(name for name, kind in KINDS.items() if kind.bound))
+@pytest.mark.parametrize("kind", sorted(name for name, kind in KINDS.items() if kind.search.bound))
 def test_a_value_that_is_moved_or_rounded_leaves_all_others_as_they_are(kind, lying):
     rng = np.random.default_rng(7)
     for _ in range(10):

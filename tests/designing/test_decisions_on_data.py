@@ -48,7 +48,7 @@ def chance(*of):
 
 def draw_end(rng, devices, fates):
     """An end at one of some devices, or on the bare track."""
-    fate, placed = Fate(int(rng.choice(fates))), [device for device in devices if device.placed]
+    fate, placed = Fate(int(rng.choice(fates))), [device for device in devices if device.action.has_place]
     station = int(rng.integers(len(placed) + 1))
     return End(fate, station, placed[station - 1].kind) if station else End(fate)
 

@@ -41,8 +41,8 @@ from feederscrew.running import RunSettings
 from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.trials import fills
 from feederscrew.trials.fills import FillLevel, share_interval
-from feederscrew.trials.queue import PARTS_IN_SHARES as BLOCK
-from feederscrew.trials.queue import QueuedParts
+from feederscrew.trials.queue_counts import QueuedParts
+from feederscrew.trials.supply import PARTS_IN_SHARES as BLOCK
 from feederscrew.trials.wanted import aspects_at_any_heading
 
 PART = shapes.part(shapes.box(10, 10, 10))

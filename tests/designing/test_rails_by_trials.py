@@ -14,6 +14,7 @@ from feederscrew.designing.findings import MoveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import Search
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.sorting.isolating.rails import find_head
 from feederscrew.sorting.orientations import hang, may_hang
@@ -61,7 +62,7 @@ def test_rails_are_proposed_for_what_rolls(lying, rails_search):
     first, bare = rails_search.start()
     kinds = [[cut.device.kind for cut in tried.proposal.cuts] for tried in (first, bare)]
     assert kinds[0][-2:] == ["rails", "wiper"] and kinds[1][-1] == "rails"
-    slot = next(cut.device for cut in bare.proposal.cuts if cut.device.hangs)
+    slot = next(cut.device for cut in bare.proposal.cuts if cut.device.action is Action.HANG)
     assert 7e-3 < slot.span[1] - slot.span[0] < 8e-3
     assert may_hang(lying[rails_search.row], slot.span)
     # heads of what hangs pass below the blade, and it sweeps the foot of what lies over the slot
@@ -83,7 +84,7 @@ def trial_of(lying, search, proposal, held_at_blade):
     ways = type("Ways", (), {"lying": lying})()
     same = hanging.same_head(lying, find_head(lying[search.row]))
     right = [k for k in range(len(lying)) if same[k]]
-    placed = [device.kind for device in proposal.devices if device.placed]
+    placed = [device.kind for device in proposal.devices if device.action.has_place]
     blade = stopped_at("wiper", placed.index("wiper") + 1)
     ends = tuple({blade: 2} if k == held_at_blade else {} for k in range(len(lying)))
     held = [] if held_at_blade is None else [held_at_blade]

@@ -238,7 +238,7 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     proposal, seen = dropped
     (before,) = proposal.cuts
     values = proposals.limits(type(before.device), ways.lying)
-    sign = 1.0 if before.device.bound == "lower" else -1.0
+    sign = 1.0 if before.device.search.bound == "lower" else -1.0
     assert sign * values[across] < sign * before.device.limit < sign * values[along]
     assert "A@90" in before.returns and "A@0" not in before.returns
     drawn = carried("A@90", across).counted_in_draws(2, 20)

@@ -19,6 +19,7 @@ from feederscrew.solidbowl.closed_body import body, pieces
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
 from feederscrew.sorting.devices.kinds import KINDS, make_device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import orientations
 from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.trials import staging
@@ -49,7 +50,7 @@ def draw_device(kind, rng, every):
     near = mm(1.0, 7.0)
     free = (near, 0.0), (near + mm(6.0, 9.0), 0.0), (near + mm(4.0, 6.0), mm(4.0, 7.0)), (near, mm(3.0, 6.0))
     whole = KINDS[kind]
-    if whole.senses:
+    if whole.action is Action.SENSE:
         one = every[int(rng.integers(len(every)))]
         return made(like=(one.aspect, one.heading, mm(0.3, 1.0)))
     if kind == "profile gate":
@@ -75,21 +76,25 @@ def draw_device(kind, rng, every):
         return made(limit=fall, sweep=np.radians(rng.uniform(25.0, 80.0)), **own)
     if kind == "spacing section":
         return made(angle=np.radians(rng.uniform(-3.0, 5.0)))
-    if whole.leans:
-        return made(angle=np.radians(rng.uniform(10.0, 35.0) if whole.grooved else rng.uniform(2.0, 9.0)))
+    if whole.action.leans:
+        return made(
+            angle=np.radians(
+                rng.uniform(10.0, 35.0) if whole.action is Action.GROOVE else rng.uniform(2.0, 9.0)
+            )
+        )
     return made(limit=mm(3.0, 5.0) if kind == "step" else mm(6.0, 11.0))
 
 
 def draw_chain(seed, every):
     """A chain at random; eight seeds one after the other have every kind."""
     rng = np.random.default_rng(seed)
-    lean = [kind for kind, own in KINDS.items() if own.leans and own.placed]
-    last = [kind for kind, own in KINDS.items() if own.hangs]
-    kinds = [kind for kind, own in KINDS.items() if own.placed and kind not in (*lean, *last)]
+    lean = [kind for kind, own in KINDS.items() if own.action.leans]
+    last = [kind for kind, own in KINDS.items() if own.action is Action.HANG]
+    kinds = [kind for kind, own in KINDS.items() if own.action.has_place and kind not in (*lean, *last)]
     turned = np.roll(kinds, -2 * seed)[:2].tolist()
     first = [] if seed % 2 else [lean[seed // 2 % len(lean)]]
     first += ["banked track"] * (first == ["V groove"])
-    drops = any(KINDS[kind].turns for kind in turned)
+    drops = any(KINDS[kind].action.turns for kind in turned)
     rails = [] if drops or seed % 3 else last
     middle = [] if drops or seed % 4 != 1 else ["banked track"]
     names = [*first, turned[0], *middle, turned[1], *rails]

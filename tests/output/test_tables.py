@@ -1,8 +1,8 @@
 """Text from tables: for people, for spreadsheets, for programs."""
 
+import dataclasses
 import json
 import math
-from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +13,10 @@ from feederscrew import bowl as bowls
 from feederscrew.columns import ColumnHead, Frame, quantities
 from feederscrew.geometry.polygons import centroid
 from feederscrew.output import record_views, tables
+from feederscrew.output.offers import RecordView
 from feederscrew.output.page.as_html import escape, texts_of
 from feederscrew.output.tables import heading_note
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations
 from feederscrew.studies.tooling import ToolingSearch, tooling
@@ -146,11 +148,33 @@ def test_the_note_is_true_of_a_part():
         assert np.linalg.det(one.axes) == pytest.approx(1.0)  # y inwards, z up: counter-clockwise from above
 
 
-@pytest.mark.parametrize("name", [name for name, view in record_views.VIEWS.items() if view.offers])
-def test_the_files_of_a_record_are_offered_by_a_function_that_is_there(name):
-    """Those of a ToolingStudy stood in a module that had gone: it had no table."""
-    module, _, function = record_views.VIEWS[name].offers.rpartition(".")
-    assert callable(getattr(import_module(f"feederscrew.output.{module}"), function))
+def viewed(kind: type) -> list[type]:
+    """The classes made from a record that name a view."""
+    below = [found for child in kind.__subclasses__() for found in viewed(child)]
+    return ([kind] if "_view_name" in vars(kind) else []) + below
+
+
+def test_each_record_of_the_library_names_a_view_that_is_there():
+    """The view of a ToolingStudy stood in a module that had gone: it had no table."""
+    for name in fs.__all__:
+        getattr(fs, name)  # the modules of the library are imported when a name is asked for
+    kinds = viewed(ReadableRecord)
+    views = {kind.__name__: record_views.view_of(object.__new__(kind)) for kind in kinds if kind._view_name}
+    assert {"AspectsStudy", "RateStudy", "ToolingStudy", "DesignStudy", "Part", "Bowl"} <= set(views)
+    for name, view in views.items():
+        assert isinstance(view, RecordView), name
+        assert view.line or view.offers, name
+        assert bool(view.command) == bool(view.offers or view.files), name
+
+
+def test_a_record_under_another_name_shows_the_same():
+    class Renamed(type(fs.convey(fs.read_bowl()))):
+        """A class that no module of the output knows."""
+
+    study = fs.convey(fs.read_bowl())
+    renamed = Renamed(**{field.name: getattr(study, field.name) for field in dataclasses.fields(study)})
+    assert repr(renamed) == repr(study).replace(type(study).__name__, "Renamed", 1)
+    assert list(renamed.to_frame()) == list(study.to_frame())
 
 
 def test_a_study_of_tooling_has_a_table():

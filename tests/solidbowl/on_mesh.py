@@ -39,7 +39,9 @@ def ridden(made, bowl, every):
     """The bowl of a solid, its track as measured, and its devices, as orientations of a part meet them."""
     plan, body = made.plan, facets.unplaced(made)
     track = _track(plan, body, bowl.track)
-    if leading_devices([one for one in bowl.devices if one.placed]):  # its bank stands in their slopes
+    if leading_devices(
+        [one for one in bowl.devices if one.action.has_place]
+    ):  # its bank stands in their slopes
         track = replace(track, bank=bowl.track.bank)
     if plan.stretch is None:
         return replace(bowl, track=track, devices=()), []

@@ -55,7 +55,7 @@ def test_a_jet_over_what_lies_flat_blows_off_what_stands():
         assert jet.factor(tall) > 2.0 and gentler.factor(tall) < 2.2
     assert not KINDS["air jet"].proposals([tall], [flat], EVERY, "here")  # what lies flat is not met alone
     # A design takes one where air may be used and nothing else.
-    others = [name for name, kind in KINDS.items() if kind.proposed and kind.kind != "air jet"]
+    others = [name for name, kind in KINDS.items() if kind.search.is_proposed and kind.kind != "air jet"]
     own = {"margin": 2.5e-4, "without": others, "play": 0.0, "tolerance": 0.0, "up": FLAT.aspect}
     own["heading"] = FLAT.heading
     with_air, without = (
@@ -121,7 +121,7 @@ def test_a_screw_that_hangs_is_seen_head_first_and_thread_first():
     """Both ways along the track end in the same slot: the sensor before it lets both pass."""
     screw = parts.load(PARTS.parent / "docs/tutorial/countersunk_m4x12.stl")
     steep = bowls.read(None, ["track.bank=8 deg", "track.width=15 mm"])
-    without = [name for name, kind in KINDS.items() if kind.proposed and name != "vision reject"]
+    without = [name for name, kind in KINDS.items() if kind.search.is_proposed and name != "vision reject"]
     own = {"heading": np.radians(350.93), "outcome": "hanging", "without": without}
     study = tooling_study.tooling(screw, steep, "A", **own)
     devices = [cut.device for cut in study.design.cuts]

@@ -50,7 +50,7 @@ def study(bolt, bowl, wanted):
 def test_a_class_has_the_devices_of_its_number():
     assert [one.number for one in CostClass] == [1, 2, 3]
     for one in CostClass:
-        kinds = {kind.kind: kind.cost_class for kind in KINDS.values()}
+        kinds = {kind.kind: kind.trade.cost_class for kind in KINDS.values()}
         assert all(kinds[name] > one.number for name in dearer(one.number))
         assert all(kinds[name] < one.number for name in cheaper(one.number))
     assert {"rails", "wiper", "cut-out"} <= set(cheaper(2)) and "air jet" in cheaper(3)
@@ -82,7 +82,7 @@ def test_every_orientation_of_the_table_has_the_class_that_isolates_it(bolt, bow
     table = tooling(bolt, bowl, **{name: value for name, value in wanted.items() if name != "aspect"})
     rows = tables.document(table)["orientations"]
     for place, row in enumerate(rows):
-        devices = [KINDS[kind].cost_class for kind in row["devices"]]
+        devices = [KINDS[kind].trade.cost_class for kind in row["devices"]]
         own = None if row["class"] is None else CostClass(row["class"]).number
         assert own == (max(devices, default=1) if table.isolates(place) else None)
     assert {"steel", "sensor"} >= {row["class"] for row in rows} - {None} != set()
@@ -102,7 +102,7 @@ def test_steady_air_that_is_left_out_is_not_proposed(bolt, bowl, wanted):
 
 def test_a_turning_device_that_is_left_out_is_not_proposed(bowl):
     part = shapes.part(shapes.box(30, 20, 6), "plate")
-    turning = {kind.kind for kind in KINDS.values() if kind.turns}
+    turning = {kind.kind for kind in KINDS.values() if kind.action.turns}
     search = {"search": ToolingSearch(rule="csa", verdicts=1, turn=True, vary=False)}
     own = {"without": ["vision reject", "air jet"], **search}
     found = [tooling(part, bowl, "C", **own), tooling(part, bowl, "C", **own | {"without": sorted(turning)})]

@@ -361,7 +361,7 @@ def test_a_device_that_changes_no_number_is_left_out_and_what_drops_parts_stays(
     alone = propose(task, (first,), gone | ~task.stays)
     assert (both.isolated, both.efficiency, both.purity) == (alone.isolated, alone.efficiency, alone.purity)
     two = chain.propose_needed(task, (first, other), gone | more | ~task.stays)
-    assert [one.device.kind for one in two.cuts if not one.device.leans] == [
+    assert [one.device.kind for one in two.cuts if not one.device.action.leans] == [
         "narrowed track",
         "vision reject",
     ]

@@ -15,6 +15,7 @@ from feederscrew.bowl.devices import THREADED_SHANK
 from feederscrew.errors import FeederError
 from feederscrew.sorting.device_passages import until_returned
 from feederscrew.sorting.devices.base import opening_at
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import hangs_free
 from feederscrew.sorting.fates import course
 from feederscrew.sorting.orientations import Hanging, neck
@@ -165,7 +166,7 @@ def test_the_screw_is_fed_between_rails_and_its_trial_agrees(tmp_path):
     # Rails that fit a file with the minor diameter of a thread stop the real screw: said, and said once.
     assert study.warnings.count(THREADED_SHANK) == 1
     assert THREADED_SHANK not in replace(study, designs=(None,) * len(study.designs)).warnings
-    (slot,) = [cut.device for cut in design.cuts if cut.device.hangs]
+    (slot,) = [cut.device for cut in design.cuts if cut.device.action is Action.HANG]
     assert 0.2e-3 < slot.span[1] - slot.span[0] - 8e-3 < 0.6e-3
     assert slot.lead[0] < slot.span[0] and slot.lead[1] > slot.span[1]
     tried = trial.trial(part, [read(tmp_path, f"rails: {slot.text}")], rule="csa", parts=10, jobs=1)

@@ -352,7 +352,7 @@ def test_turning_brings_more_where_returning_wastes():
     allowed = PLAIN, replace(PLAIN, turn=True)
     plain, turned = (design(every, shares, wanted, constraints=one) for one in allowed)
     assert turned.isolated and turned.efficiency > 1.5 * plain.efficiency
-    assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
+    assert any(KINDS[cut.device.kind].action.turns for cut in turned.cuts)
     flow = course(turned.devices, every)
     assert turned.efficiency == pytest.approx((shares * flow.leaving[:, wanted]).sum())
     short = design(every, shares, wanted, efficiency=0.99, constraints=PLAIN)

@@ -23,18 +23,15 @@ from feederscrew import value_forms as forms
 from feederscrew.sorting.devices import values
 from feederscrew.sorting.devices.base import Device, room_of
 from feederscrew.sorting.devices.features import Features, TrackOpening, box_ring
+from feederscrew.sorting.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
 
 
 class Ravine(Device):
     kind = "ravine"
-    form = forms.LENGTH_FORM | {"title": "its width"}
-    example = "8 mm"
-    meaning = "strip along the wall"
-    picture = "above"
-    bound = "lower"
-    proposed = True
-    rank = 1
-    feature = "what lies beside it"
+    own = forms.LENGTH_FORM | {"title": "its width"}
+    trade = Trade("8 mm", "strip along the wall", own, measures="what lies beside it")
+    action = Action.CUT
+    search = ValueSearch(ProposedBy.VALUE, Bound.LOWER, rank=1)
 
     @classmethod
     def needed(cls, one):

@@ -54,9 +54,9 @@ def test_signed_margins_of_a_block(written, line, lengthwise, crosswise):
 
 
 def test_every_kind_has_a_verdict_and_an_example_that_reads(tmp_path, written):
-    chain = read(tmp_path, *(f"{kind}: {one.example}" for kind, one in KINDS.items())).devices
+    chain = read(tmp_path, *(f"{kind}: {one.trade.example}" for kind, one in KINDS.items())).devices
     assert [one.kind for one in chain] == list(KINDS)
-    assert all(one.text == KINDS[one.kind].example for one in chain)
+    assert all(one.text == KINDS[one.kind].trade.example for one in chain)
     settings = {one.key.name: one for one in bowls.settings(tmp_path / "bowl.yaml")}
     first = settings["devices.1"]
     assert (first.text, first.origin) == ("wiper: 6 mm", f"{tmp_path / 'bowl.yaml'}:2")

@@ -122,7 +122,7 @@ def lying(*settings):
 
 def device_of(kind, states):
     """A device of a kind with the values of its example, that names an orientation of the part."""
-    example = KINDS[kind].example.replace("A@90", states[0].name)
+    example = KINDS[kind].trade.example.replace("A@90", states[0].name)
     Path("device.yaml").write_text(f"devices:\n  - {kind}: {example}\n")
     return bowls.read("device.yaml").devices[0]
 

@@ -100,8 +100,8 @@ def test_devices_that_turn_parts_are_used_where_they_may_be_and_bring_more():
     plain, turned = (
         tooling(BAR, STRAIGHT, "B", without="cut-out", search=search).design for search in searches
     )
-    assert not any(KINDS[cut.device.kind].turns for cut in plain.cuts)
-    assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
+    assert not any(KINDS[cut.device.kind].action.turns for cut in plain.cuts)
+    assert any(KINDS[cut.device.kind].action.turns for cut in turned.cuts)
     assert turned.efficiency > 2.0 * plain.efficiency
 
 

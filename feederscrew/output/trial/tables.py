@@ -13,12 +13,14 @@ from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts
 from feederscrew.output.convey import restitution_entry
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import trial_text
 from feederscrew.sorting.orientations import ORIENTATION_TRIED_COLUMNS
 from feederscrew.studies.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
 from feederscrew.trials import course
 from feederscrew.trials.course import LANDING_COLUMNS, Fate
 from feederscrew.trials.fills import FILL_COLUMNS, FILL_COUNT_COLUMNS, FilledQueue
-from feederscrew.trials.queue import QUEUED_COLUMNS
+from feederscrew.trials.queue_counts import QUEUED_COLUMNS
 from feederscrew.trials.result import OUTLET_COLUMNS, RUN_COLUMNS, RUN_DRIVE_COLUMNS, Outlet, TrialRun
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
@@ -405,3 +407,6 @@ def _most(values: Floats) -> float:
 def _mean(values: Floats) -> float:
     finite = values[np.isfinite(values)]
     return float(finite.mean()) if len(finite) else np.nan
+
+
+TRIAL_VIEW = RecordView(trial_text, offers, "trial")

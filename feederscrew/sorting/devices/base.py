@@ -20,6 +20,7 @@ from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError
 from feederscrew.sorting.devices import orientation_names, values
 from feederscrew.sorting.devices.features import Blade, Features, TrackOpening
+from feederscrew.sorting.devices.trade import Action, Trade, ValueSearch
 from feederscrew.sorting.devices.values import Corner
 from feederscrew.units import MM
 
@@ -49,6 +50,15 @@ class DeviceFate(enum.StrEnum):
 
 
 RETURNED, STOPPED, CARRIED = DeviceFate
+# what becomes of what does not pass, where the device alone decides; else it falls through or is stopped
+REJECTED_BY = {
+    Action.OVERHEAD: STOPPED,
+    Action.GATE: STOPPED,
+    Action.NARROW: RETURNED,
+    Action.RELIEVE: RETURNED,
+    Action.BLOW: RETURNED,
+    Action.SENSE: RETURNED,
+}
 
 
 @dataclass(frozen=True)
@@ -83,8 +93,8 @@ class ComparedValue(NamedTuple):
 class Device:
     """One device of a chain: its values, and what its kind makes of them.
 
-    A new kind is a class in a module of this folder: it gives ``kind``, ``form``, ``example`` and
-    ``meaning``, and says below what differs from a device that does nothing. Nothing else names a kind.
+    A new kind is a class in a module of this folder: it gives ``kind``, ``trade`` and ``action``, and says
+    below what differs from a device that does nothing. Nothing else names a kind.
     """
 
     where: str  # 'bowl.yaml:20:5'
@@ -98,34 +108,9 @@ class Device:
     assumption: str = ""  # what was taken for granted as it was read, a sentence; '' of nothing
 
     kind: ClassVar[str] = "track"  # what the trade calls it, in files and in sentences: 'vision reject'
-    old_kind: ClassVar[str] = ""  # what files of before call it, as these are read too; '': the same
-    form: ClassVar[dict[str, Any]] = forms.LENGTH_FORM  # of its value in a bowl file
-    example: ClassVar[str] = ""  # as written after 'kind:'
-    meaning: ClassVar[str] = ""
-    hanging: ClassVar[bool] = True  # whether it means anything to parts that hang between rails
-    placed: ClassVar[bool] = True  # whether it has a place along the track
-    turns: ClassVar[bool] = False  # whether it turns parts over instead of returning them
-    inwards: ClassVar[bool] = False  # whether parts that it turns turn across the track
-    hangs: ClassVar[bool] = False  # whether parts go on hanging by their heads
-    overhead: ClassVar[bool] = False  # whether it is a blade over the track, open to its free edge
-    relieves: ClassVar[bool] = False  # whether parts that back up leave the track at it
-    # what becomes of what does not pass; '': RETURNED through its hole or STOPPED
-    rejected: ClassVar[str] = ""
-    bound: ClassVar[str] = ""  # 'upper', 'lower': what passes needs no more, bears no less
-    limited_by: ClassVar[str] = ""  # what of an Orientation is the value that it just passes
-    proposed: ClassVar[bool] = False  # whether a design tries it
-    rank: ClassVar[int] = 0  # of those of one bound, which a design tries first
-    carries: ClassVar[bool] = False  # whether it leaves less of a foot that goes on over it
-    feature: ClassVar[str] = ""  # what it measures of a part, in the part's own terms
-    picture: ClassVar[str] = ""  # where a part at it is seen from: 'side', 'above', 'ahead', 'turned'
-    leans: ClassVar[bool] = False  # whether the track leans otherwise from it on
-    grooved: ClassVar[bool | None] = None  # whether the track is a V from it on; None: as before it
-    labelled: ClassVar[bool] = False  # whether a label has its value, though that is no length
-    senses: ClassVar[bool] = False  # whether it sees parts and blows off others: air, no edge that is met
-    serves: ClassVar[str] = ""  # what one that returns nothing is for
-    searched: ClassVar[bool] = False  # whether a design looks for its shape, by many verdicts
-    angles: ClassVar[tuple[str, ...]] = ()  # its fields that are angles [rad]
-    cost_class: ClassVar[int] = 1  # what it takes: 1 steel alone, 2 steady air, 3 a sensor with a valve
+    trade: ClassVar[Trade] = Trade()  # what a catalogue says of it
+    action: ClassVar[Action] = Action.BARE  # what it does with parts
+    search: ClassVar[ValueSearch] = ValueSearch()  # how a design finds its value
 
     # -- as it is read and written
 
@@ -146,7 +131,7 @@ class Device:
         Raises
         ------
         ConfigError
-            If the value is not of the kind's ``form``.
+            If the value is not of the form that ``trade`` has.
         """
         return values.length(entry)
 
@@ -198,9 +183,11 @@ class Device:
     @property
     def compared_values(self) -> tuple[ComparedValue, ...]:
         """Return everything that it does, as values in a row: the same for devices that do the same."""
-        own = (one.name for one in fields(self) if one.name not in WRITTEN_FIELDS)
+        own = (one for one in fields(self) if one.name not in WRITTEN_FIELDS)
         return tuple(
-            value for name in own for value in compared(getattr(self, name), is_angle=name in self.angles)
+            value
+            for one in own
+            for value in compared(getattr(self, one.name), is_angle="is_angle" in one.metadata)
         )
 
     @property
@@ -216,7 +203,7 @@ class Device:
     @property
     def label(self) -> str:
         """Return 'gap 9 mm': kind and value, the latter where it is one number."""
-        return f"{self.kind} {self.text}" if math.isfinite(self.limit) or self.labelled else self.kind
+        return f"{self.kind} {self.text}" if math.isfinite(self.limit) else self.kind
 
     @property
     def full_name(self) -> str:
@@ -242,6 +229,11 @@ class Device:
     def shop_words(self) -> tuple[str, ...]:
         """Return a sentence for each thing that a shop buys and sets: sensor, valve; () of plain steel."""
         return ()
+
+    @property
+    def serves(self) -> str:
+        """Return what it is for where it returns nothing; '' of others."""
+        return self.trade.serves
 
     def hole_faults(
         self, width: float, near: float, far: float, *, endless: bool = True
@@ -289,9 +281,9 @@ class Device:
         NotImplementedError
             If a device of this kind is not one number.
         """
-        if not cls.limited_by:
+        if not cls.search.limited_by:
             raise NotImplementedError(f"{cls.kind} is not one number")
-        return getattr(orientation, cls.limited_by)
+        return getattr(orientation, cls.search.limited_by)
 
     @classmethod
     def proposal(cls, where: str, limit: float) -> Self:
@@ -386,8 +378,8 @@ class Device:
         DeviceFate
             RETURNED, or STOPPED before it.
         """
-        if self.rejected:
-            return self.rejected
+        if self.action in REJECTED_BY:
+            return REJECTED_BY[self.action]
         opening = opening_at(self, encounter.orientation)
         if opening is None:
             return RETURNED
@@ -757,11 +749,13 @@ class Yield(Device):
     """A share that passes, by aspect."""
 
     kind = "measured yield"
-    old_kind = "yield"
-    form = forms.by_name(forms.quantity("number", "0", "1"))
-    example = "{A: 0.9}"
-    meaning = "share that passes, by aspect, as measured; aspects not named pass"
-    placed = False
+    trade = Trade(
+        "{A: 0.9}",
+        "share that passes, by aspect, as measured; aspects not named pass",
+        forms.by_name(forms.quantity("number", "0", "1")),
+        old_name="yield",
+    )
+    action = Action.MEASURED
 
     read = staticmethod(values.shares)
 

@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -14,7 +14,6 @@ from feederscrew.errors import ConfigError
 from feederscrew.sorting.devices import orientation_names, values
 from feederscrew.sorting.devices.base import (
     RETURNED,
-    STOPPED,
     Device,
     Verdict,
     angle_text,
@@ -28,6 +27,7 @@ from feederscrew.sorting.devices.base import (
     tall_of,
 )
 from feederscrew.sorting.devices.features import Blade, Features
+from feederscrew.sorting.devices.trade import IS_ANGLE, Action, Bound, ProposedBy, Trade, ValueSearch
 from feederscrew.sorting.devices.values import Corner
 
 if TYPE_CHECKING:
@@ -50,12 +50,8 @@ SWEPT = forms.mapping(
 
 @dataclass(frozen=True)
 class _Overhead(Device):
-    rejected: ClassVar[str] = STOPPED
-    limited_by: ClassVar[str] = "height"
-    bound: ClassVar[str] = "upper"
-    overhead: ClassVar[bool] = True
-    picture: ClassVar[str] = "side"
-    feature: ClassVar[str] = "height"
+    action: ClassVar[Action] = Action.OVERHEAD
+    search: ClassVar[ValueSearch] = ValueSearch(bound=Bound.UPPER, limited_by="height")
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         free = shapely.box(0.0, 0.0, track.extent, self.limit)
@@ -74,21 +70,22 @@ class _Overhead(Device):
 class Wiper(_Overhead):
     """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
 
-    sweep: float = SQUARE_FACE_RAD  # [rad] of the face to the direction of travel
+    sweep: float = field(
+        default=SQUARE_FACE_RAD, metadata=IS_ANGLE
+    )  # [rad] of the face to the direction of travel
     friction: float | None = None  # [1] of the face; None: that of the track
     contour: tuple[tuple[float, float], ...] = ()  # [m] distance from the wall and clearance there
 
     kind = "wiper"
-    angles = ("sweep",)
-    form = forms.either(forms.LENGTH_FORM, SWEPT)
-    example = "6 mm"
-    meaning = (
+    trade = Trade(
+        "6 mm",
         "blade at a clearance over the track that holds up orientations that stand higher; straight across "
         "it stops them, {clearance: 6 mm, sweep: 30 deg, friction: 0.2} sweeps them off the free edge: below "
-        "90 deg - atan(friction); contour: [[0 mm, 6 mm], [9 mm, 4 mm]] gives it a lower edge of its own"
+        "90 deg - atan(friction); contour: [[0 mm, 6 mm], [9 mm, 4 mm]] gives it a lower edge of its own",
+        forms.either(forms.LENGTH_FORM, SWEPT),
+        measures="height",
     )
-    proposed = True
-    rank = 5
+    search = ValueSearch(ProposedBy.VALUE, Bound.UPPER, "height", rank=5)
 
     read = staticmethod(values.blade)
 
@@ -178,9 +175,12 @@ class HeightBar(_Overhead):
     """A bar across the track."""
 
     kind = "height bar"
-    old_kind = "height_bar"
-    example = "6 mm"
-    meaning = "bar across the track at a clearance: orientations that stand higher stop before it"
+    trade = Trade(
+        "6 mm",
+        "bar across the track at a clearance: orientations that stand higher stop before it",
+        old_name="height_bar",
+        measures="height",
+    )
 
 
 @dataclass(frozen=True)
@@ -188,25 +188,27 @@ class HoldDown(_Overhead):
     """A bar above the queue."""
 
     kind = "hold-down"
-    old_kind = "hold_down"
-    example = "6 mm"
-    meaning = "bar above the queue that keeps parts down; orientations that do not fit below stop before it"
+    trade = Trade(
+        "6 mm",
+        "bar above the queue that keeps parts down; orientations that do not fit below stop before it",
+        old_name="hold_down",
+        measures="height",
+    )
 
 
 class Profile(Device):
     """A gate across the track with an opening."""
 
     kind = "profile gate"
-    old_kind = "profile"
-    form = forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH_FORM))
-    example = "{of: A@90, play: 0.2 mm}"
-    meaning = (
+    trade = Trade(
+        "{of: A@90, play: 0.2 mm}",
         "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
-        "outline with play; what does not fit stops before it: for parts that come one by one"
+        "outline with play; what does not fit stops before it: for parts that come one by one",
+        forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH_FORM)),
+        old_name="profile",
+        measures="outline seen along the track",
     )
-    rejected = STOPPED
-    feature = "outline seen along the track"
-    picture = "ahead"
+    action = Action.GATE
 
     read = staticmethod(values.opening)
 

@@ -291,6 +291,15 @@ class Features:
         return any(opening.hangs for opening in self.openings)
 
     @property
+    def seen_from(self) -> str:
+        """Return from where a picture shows a part at it: 'turned', 'ahead', 'side', 'above' or ''."""
+        if self.drop is not None:
+            return "turned"
+        if self.blades:
+            return "ahead" if any(blade.is_gate for blade in self.blades) else "side"
+        return "above" if self.openings or self.jets else ""
+
+    @property
     def slot(self) -> tuple[float, ...]:
         """The rails [m] off the wall between which what hangs goes on behind it; () of others."""
         return next((opening.span or () for opening in self.openings if opening.hangs), ())

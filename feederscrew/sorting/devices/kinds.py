@@ -4,12 +4,13 @@ import enum
 import importlib
 import pkgutil
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from feederscrew.sorting import devices
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.leans import Lean
+from feederscrew.sorting.devices.trade import Action
 
 # class by kind, in the order of the modules; rails, which end a chain, and what has no place last
 KINDS: dict[str, type[Device]] = {}
@@ -50,9 +51,9 @@ def register_kinds() -> dict[str, type[Device]]:
             own = isinstance(value, type) and value.__module__ == module.__name__
             if own and issubclass(value, Device) and value is not Device and "kind" in vars(value):
                 classes.append(value)
-    for value in sorted(classes, key=lambda value: (not value.placed, value.hangs)):
+    for value in sorted(classes, key=lambda value: (not value.action.has_place, value.action is Action.HANG)):
         KINDS.setdefault(value.kind, value)
-        for name in filter(None, (value.kind, value.old_kind)):
+        for name in filter(None, (value.kind, value.trade.old_name)):
             _BY_SPELLING.setdefault(_spelling(name), value)
     return KINDS
 
@@ -97,23 +98,29 @@ def make_device(kind: str, where: str, **values: Any) -> Device:
     return _BY_SPELLING[_spelling(kind)](where, **values)
 
 
-def names(**traits: object) -> tuple[str, ...]:
-    """Return the names of the kinds that have some traits.
+def names(are: Callable[[type[Device]], bool]) -> tuple[str, ...]:
+    """Return the names of the kinds of which something is true.
 
     Parameters
     ----------
-    **traits : object
-        Attributes of the class and their values: ``hangs=True``.
+    are : callable
+        From a class of Device to a bool: ``lambda kind: kind.action.turns``.
 
     Returns
     -------
     tuple of str
     """
-    return tuple(
-        name
-        for name, kind in KINDS.items()
-        if all(getattr(kind, trait) == value for trait, value in traits.items())
-    )
+    return tuple(name for name, kind in KINDS.items() if are(kind))
+
+
+def shaped() -> tuple[str, ...]:
+    """Return the names of the kinds for whose shape a design looks, by many verdicts.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return names(lambda kind: kind.search.is_shape)
 
 
 def cost_class(devices: Sequence[Device]) -> int:
@@ -128,7 +135,7 @@ def cost_class(devices: Sequence[Device]) -> int:
     int
         1 steel alone, 2 steady air, 3 a sensor with a valve.
     """
-    return max((device.cost_class for device in devices), default=1)
+    return max((device.trade.cost_class for device in devices), default=1)
 
 
 def dearer(cost: int) -> tuple[str, ...]:
@@ -142,7 +149,7 @@ def dearer(cost: int) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    return tuple(name for name, kind in KINDS.items() if kind.cost_class > cost)
+    return names(lambda kind: kind.trade.cost_class > cost)
 
 
 def cheaper(cost: int) -> tuple[str, ...]:
@@ -150,8 +157,11 @@ def cheaper(cost: int) -> tuple[str, ...]:
 
     What leans or spaces parts rejects none, and is not among them.
     """
-    rejecting = {*names(proposed=True), *names(hangs=True), *names(searched=True)}
-    return tuple(name for name, kind in KINDS.items() if kind.cost_class < cost and name in rejecting)
+
+    def rejects(kind: type[Device]) -> bool:
+        return kind.search.is_proposed or kind.search.is_shape or kind.action is Action.HANG
+
+    return names(lambda kind: kind.trade.cost_class < cost and rejects(kind))
 
 
 def leaning() -> tuple[type[Lean], ...]:

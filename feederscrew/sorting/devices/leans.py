@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from feederscrew import value_forms as forms
@@ -17,6 +17,7 @@ from feederscrew.sorting.devices.base import (
     room_of,
 )
 from feederscrew.sorting.devices.features import Features, Slope
+from feederscrew.sorting.devices.trade import IS_ANGLE, Action, Trade
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -40,11 +41,8 @@ GROOVE_ROOMS = 3.0  # rooms of a part in which what comes across turns along it
 class Lean(Device):
     """A stretch of the track that leans otherwise by an angle."""
 
-    angle: float = 0.0  # [rad]
+    angle: float = field(default=0.0, metadata=IS_ANGLE)  # [rad]
 
-    leans = True
-    angles = ("angle",)
-    labelled = True
     key: ClassVar[str] = ""  # of the angle in a mapping; '': it is written alone
     limits: ClassVar[tuple[float, float]] = (0.0, MAX_BANK_RAD)  # [rad] of the angle
 
@@ -52,7 +50,7 @@ class Lean(Device):
     def read(cls, entry: Entry) -> dict[str, Any]:
         name, arguments = entry.key, {entry.key: entry}
         if cls.key:
-            name, arguments = cls.key, values.mapping(entry, (cls.key,), f"write {cls.example}")
+            name, arguments = cls.key, values.mapping(entry, (cls.key,), f"write {cls.trade.example}")
         return {"angle": values.within(arguments, name, "angle", *cls.limits)}
 
     def value_text(self) -> str:
@@ -126,6 +124,10 @@ class Lean(Device):
         """
         return None
 
+    @property
+    def label(self) -> str:
+        return f"{self.kind} {self.text}"
+
     def document_values(self) -> dict[str, Any]:
         return {"angle_deg": math.degrees(self.angle)}
 
@@ -135,16 +137,15 @@ class Groove(Lean):
     """A V from here on, until a bank: the track leans towards its wall, and the wall back by as much."""
 
     kind = "V groove"
-    old_kind = "groove"
-    serves = "lets lie along it what is round"
-    form = forms.mapping(angle=forms.ANGLE_FORM)
-    example = "{angle: 30 deg}"
-    meaning = (
+    trade = Trade(
+        "{angle: 30 deg}",
         "the track is a V from here on, until a bank: it and its wall rise by so much to either side; round "
-        "parts lie along it and roll no more, on a friction that acts as mu / cos(angle)"
+        "parts lie along it and roll no more, on a friction that acts as mu / cos(angle)",
+        forms.mapping(angle=forms.ANGLE_FORM),
+        old_name="groove",
+        serves="lets lie along it what is round",
     )
-    hanging = False
-    grooved = True
+    action = Action.GROOVE
     key, limits = "angle", (math.radians(10.0), math.radians(60.0))
 
     @property
@@ -179,15 +180,15 @@ class Bank(Lean):
     """Another bank from here on."""
 
     kind = "banked track"
-    old_kind = "bank"
-    serves = "holds what rolls at the wall"
-    form = forms.ANGLE_FORM
-    example = "6 deg"
-    meaning = (
+    trade = Trade(
+        "6 deg",
         "the track is banked towards the wall by so much from here on; listed first, from the track's entry: "
-        "parts on their round side are then held at the wall where friction.wall tan(bank) > tan(climb)"
+        "parts on their round side are then held at the wall where friction.wall tan(bank) > tan(climb)",
+        forms.ANGLE_FORM,
+        old_name="bank",
+        serves="holds what rolls at the wall",
     )
-    grooved = False
+    action = Action.BANK
 
     @property
     def value_words(self) -> str:
@@ -218,14 +219,14 @@ class Separation(Lean):
     """A steeper way down from here on, on which parts travel faster and so come apart."""
 
     kind = "spacing section"
-    old_kind = "separation"
-    form = forms.mapping(climb=forms.ANGLE_FORM)
-    example = "{climb: -4 deg}"
-    meaning = (
+    trade = Trade(
+        "{climb: -4 deg}",
         "the track climbs by so much from here on, below 0 it goes down: parts travel faster and come apart, "
-        "as a sorter needs"
+        "as a vision reject needs",
+        forms.mapping(climb=forms.ANGLE_FORM),
+        old_name="separation",
     )
-
+    action = Action.CLIMB
     key, limits = "climb", (-MAX_BANK_RAD, MAX_BANK_RAD)
 
     @classmethod
@@ -237,7 +238,7 @@ class Separation(Lean):
         return f"{'goes down' if self.angle < 0.0 else 'climbs'} at {degrees_words(abs(self.angle))}"
 
     @property
-    def serves(self) -> str:  # type: ignore[override]  # of others a text of the class
+    def serves(self) -> str:
         """Return what it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 

@@ -14,7 +14,6 @@ from feederscrew.errors import ConfigError
 from feederscrew.sorting.devices import values
 from feederscrew.sorting.devices.base import (
     MM,
-    RETURNED,
     UNSURE,
     Device,
     Verdict,
@@ -26,6 +25,7 @@ from feederscrew.sorting.devices.base import (
     span_words,
 )
 from feederscrew.sorting.devices.features import Drop, Features, TrackOpening, box_ring
+from feederscrew.sorting.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -42,12 +42,6 @@ RAIL_SPAN_FORMS = {"from_": forms.LENGTH_FORM, "to": forms.LENGTH_FORM}
 LEAD_IN_FORMS = {"length": forms.LENGTH_FORM, "taper": forms.LENGTH_FORM}
 
 
-class _Turner(Device):
-    hanging: ClassVar[bool] = False
-    turns: ClassVar[bool] = True
-    picture: ClassVar[str] = "turned"
-
-
 def _lower_track(height: float, aside: float, orientations: "Sequence[Orientation]") -> Features:
     """A track that goes on lower; a step stands in the middle of the room that it is given."""
     reach, room = LOWER_TRACK_LENGTHS * max(size_of(one) for one in orientations), room_of(orientations)
@@ -55,15 +49,16 @@ def _lower_track(height: float, aside: float, orientations: "Sequence[Orientatio
     return Features(before=0.0 if aside > 0.0 else 0.5 * room, drop=drop, settles=SETTLES)
 
 
-class Step(_Turner):
+class Step(Device):
     """A drop of the track."""
 
     kind = "step"
-    example = "5 mm"
-    meaning = (
+    trade = Trade(
+        "5 mm",
         "drop of the track by that height: orientations of a lower barrier pitch over their leading edge; "
-        "quasi-static, until a trial confirms it"
+        "quasi-static, until a trial confirms it",
     )
+    action = Action.PITCH
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         return _lower_track(self.limit, 0.0, orientations)
@@ -94,18 +89,18 @@ class _Ledge(Device):
         return self.limit - needed if math.isfinite(needed) else -encounter.orientation.axial_foot.reach
 
 
-class Tip(_Ledge, _Turner):
+class Tip(_Ledge):
     """A ledge above a second track."""
 
     kind = "tipping ledge"
-    old_kind = "tip"
-    example = "6 mm"
-    meaning = (
+    trade = Trade(
+        "6 mm",
         "ledge of that width above a second track, half the part's greatest length lower: orientations whose "
         "weight lies beyond it turn over it if that drop takes them past their barrier; quasi-static, until "
-        "a trial confirms it"
+        "a trial confirms it",
+        old_name="tip",
     )
-    inwards = True
+    action = Action.ROLL
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         return _lower_track(below_ledge(orientations), self.limit, orientations)
@@ -161,12 +156,7 @@ def below_ledge(orientations: "Sequence[Orientation]") -> float:
 
 
 class _Balcony(_Ledge):
-    rejected: ClassVar[str] = RETURNED
-    picture: ClassVar[str] = "above"
-    bound: ClassVar[str] = "upper"
-    limited_by: ClassVar[str] = "balcony"
-    carries: ClassVar[bool] = True
-    feature: ClassVar[str] = DISTANCE
+    search: ClassVar[ValueSearch] = ValueSearch(bound=Bound.UPPER, limited_by="balcony")
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         if self.limit >= track.extent:
@@ -181,14 +171,15 @@ class NarrowedTrack(_Balcony):
     """A track of a lesser width."""
 
     kind = "narrowed track"
-    old_kind = "narrowed_track"
-    example = "9 mm"
-    meaning = (
+    trade = Trade(
+        "9 mm",
         "track of a lesser width, a balcony; returns orientations whose foot of the centre of mass is not "
-        "supported"
+        "supported",
+        old_name="narrowed_track",
+        measures=DISTANCE,
     )
-    proposed = True
-    rank = 3
+    action = Action.NARROW
+    search = ValueSearch(ProposedBy.VALUE, Bound.UPPER, "balcony", rank=3)
 
     def acts(self, track: "Track") -> bool:
         return self.limit < track.width
@@ -198,15 +189,15 @@ class PressureBreak(_Balcony):
     """A ledge before the tooling, from which parts that back up leave the track."""
 
     kind = "pressure break"
-    old_kind = "pressure_break"
-    serves = "takes off parts that back up"
-    example = "10 mm"
-    meaning = (
+    trade = Trade(
+        "10 mm",
         "ledge of that width before the tooling: returns what it does not carry; where parts back up, those "
-        "that stand on it and reach over it are pushed off, so that a queue behind it is no longer pushed"
+        "that stand on it and reach over it are pushed off, so that a queue behind it is no longer pushed",
+        old_name="pressure_break",
+        measures=DISTANCE,
+        serves="takes off parts that back up",
     )
-    hanging = False
-    relieves = True
+    action = Action.RELIEVE
 
     @classmethod
     def relieving(cls, wanted: "Sequence[Orientation]", margin: float, where: str) -> Device | None:
@@ -234,15 +225,13 @@ class Canyon(Device):
     """A strip removed along the wall."""
 
     kind = "canyon"
-    limited_by = "canyon"
-    example = "8 mm"
-    meaning = "strip of that width removed along the wall; returns orientations whose foot lies over it"
-    bound = "lower"
-    proposed = True
-    rank = 1
-    carries = True
-    feature = DISTANCE
-    picture = "above"
+    trade = Trade(
+        "8 mm",
+        "strip of that width removed along the wall; returns orientations whose foot lies over it",
+        measures=DISTANCE,
+    )
+    action = Action.CUT
+    search = ValueSearch(ProposedBy.VALUE, Bound.LOWER, "canyon", rank=1)
 
     def misfits(self, width: float) -> list[ConfigError]:
         return self.hole_faults(width, 0.0, self.limit)
@@ -262,11 +251,12 @@ class Slot(Device):
     """A long hole along the track."""
 
     kind = "slot"
-    form = forms.mapping(**RAIL_SPAN_FORMS)
-    example = "{from: 2 mm, to: 5 mm}"
-    meaning = "long hole along the track between two distances from the wall"
-    picture = "above"
-    carries = True
+    trade = Trade(
+        "{from: 2 mm, to: 5 mm}",
+        "long hole along the track between two distances from the wall",
+        forms.mapping(**RAIL_SPAN_FORMS),
+    )
+    action = Action.CUT
 
     @classmethod
     def read(cls, entry: Entry) -> dict[str, Any]:
@@ -294,17 +284,16 @@ class Rails(Device):
     lead: tuple[float, ...] = ()
 
     kind = "rails"
-    form = forms.mapping(
-        ("lead_in",), **RAIL_SPAN_FORMS, lead_in=forms.mapping(**RAIL_SPAN_FORMS, **LEAD_IN_FORMS)
-    )
-    example = "{from: 4.5 mm, to: 8.5 mm}"
-    meaning = (
+    trade = Trade(
+        "{from: 4.5 mm, to: 8.5 mm}",
         "slot between two rails, by their distances from the wall: headed parts whose centre of mass lies "
         "over it hang in it by the head from there on; what falls through is returned; with `lead_in: {from: "
-        "3 mm, to: 9 mm, length: 30 mm, taper: 20 mm}` it begins so wide, for parts that lie askew"
+        "3 mm, to: 9 mm, length: 30 mm, taper: 20 mm}` it begins so wide, for parts that lie askew",
+        forms.mapping(
+            ("lead_in",), **RAIL_SPAN_FORMS, lead_in=forms.mapping(**RAIL_SPAN_FORMS, **LEAD_IN_FORMS)
+        ),
     )
-    hangs = True
-    picture = "above"
+    action = Action.HANG
 
     @classmethod
     def read(cls, entry: Entry) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from feederscrew.geometry.compiled import frozen_rows, record_type
 from feederscrew.sorting.devices import values
 from feederscrew.sorting.devices.base import UNSURE, Device, Verdict, carried, corners_text, room_of
 from feederscrew.sorting.devices.features import Features, TrackOpening
+from feederscrew.sorting.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
 from feederscrew.sorting.devices.values import Corner
 
 if TYPE_CHECKING:
@@ -186,8 +187,7 @@ def _moved_out(corners: Sequence[Corner], width: float, far: float) -> list[Corn
 class _Across(Device):
     """A hole with an edge across the track."""
 
-    carries: ClassVar[bool] = True
-    picture: ClassVar[str] = "above"
+    action: ClassVar[Action] = Action.CUT
 
     def hop_blur(self, orientation: "Orientation") -> float:
         """Return its flight [m]: over an edge across the track it lands so much further."""
@@ -198,13 +198,12 @@ class Gap(_Across):
     """A gap across the track."""
 
     kind = "gap"
-    limited_by = "gap"
-    example = "9 mm"
-    meaning = "gap of that length across the track, its edges parallel, the one that is left radial"
-    bound = "lower"
-    proposed = True
-    rank = 2
-    feature = "reach of the foot ahead of and behind the centre of mass"
+    trade = Trade(
+        "9 mm",
+        "gap of that length across the track, its edges parallel, the one that is left radial",
+        measures="reach of the foot ahead of and behind the centre of mass",
+    )
+    search = ValueSearch(ProposedBy.VALUE, Bound.LOWER, "gap", rank=2)
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         radius, width = track.radius, track.extent
@@ -228,14 +227,14 @@ class CutOut(_Across):
     """A hole of several corners."""
 
     kind = "cut-out"
-    old_kind = "cut_out"
-    form = forms.either(forms.POLYGON, DRAWN)
-    example = "[[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
-    meaning = (
+    trade = Trade(
+        "[[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]",
         "hole in the track: lengths along the wall and distances from it, unrolled; or "
-        "{dxf: file, layer: CUT}"
+        "{dxf: file, layer: CUT}",
+        forms.either(forms.POLYGON, DRAWN),
+        old_name="cut_out",
     )
-    searched = True
+    search = ValueSearch(ProposedBy.SHAPE)
 
     read = staticmethod(values.polygon)
 

@@ -21,7 +21,6 @@ from feederscrew.sorting.devices import orientation_names, values
 from feederscrew.sorting.devices.base import (
     GRIP,
     MM,
-    RETURNED,
     UNSURE,
     ComparedValue,
     Device,
@@ -33,6 +32,7 @@ from feederscrew.sorting.devices.base import (
     room_of,
 )
 from feederscrew.sorting.devices.features import Features, Jet, Sensor
+from feederscrew.sorting.devices.trade import Action, ProposedBy, Trade, ValueSearch
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -291,30 +291,28 @@ class Sorter(Device):
     nozzles: float = NOZZLE_COUNT  # one above the other
 
     kind = "vision reject"
-    old_kind = "sorter"
-    cost_class = 3
-    form = forms.mapping(
-        ("sees", "resolution", "jet"),
-        of=forms.either(forms.NAMED, {"type": "array", "minItems": 1, "items": forms.NAMED}),
-        play=forms.LENGTH_FORM,
-        sees={"enum": list(SENSOR_VIEWS)},
-        resolution=forms.LENGTH_FORM,
-        jet=NOZZLES,
-    )
-    example = "{of: A@90, play: 0.5 mm, sees: outline}"
-    meaning = (
+    trade = Trade(
+        "{of: A@90, play: 0.5 mm, sees: outline}",
         "sensor and pulse of air: passes what is seen to differ from an orientation by less than play, blows "
         "the rest off the free edge; of may be a list, [A@90, A@270]: what is like any of them passes; "
         "sees outline (from above), side, height or relief (heights under a laser along the middle); "
         "resolution: 0.1 mm and "
         "jet: {nozzle: 2 mm, pressure: 3 bar, height: 4 mm, time: 40 ms, "
-        "nozzles: 4} may follow; parts must come with gaps"
+        "nozzles: 4} may follow; parts must come with gaps",
+        forms.mapping(
+            ("sees", "resolution", "jet"),
+            of=forms.either(forms.NAMED, {"type": "array", "minItems": 1, "items": forms.NAMED}),
+            play=forms.LENGTH_FORM,
+            sees={"enum": list(SENSOR_VIEWS)},
+            resolution=forms.LENGTH_FORM,
+            jet=NOZZLES,
+        ),
+        old_name="sorter",
+        measures="outline seen by a sensor",
+        cost_class=3,
     )
-    proposed = True
-    senses = True
-    rejected = RETURNED
-    feature = "outline seen by a sensor"
-    picture = "above"
+    action = Action.SENSE
+    search = ValueSearch(ProposedBy.VALUE)
 
     read = staticmethod(functools.partial(values.sensor, views=SENSOR_VIEWS))
 
@@ -495,21 +493,20 @@ class SteadyJet(Device):
     height: float = 0.0  # [m] of the nozzle over the track
 
     kind = "air jet"
-    old_kind = "jet"
-    form = forms.mapping(
-        nozzle=forms.LENGTH_FORM, pressure=forms.quantity("pressure"), height=forms.LENGTH_FORM
-    )
-    example = "{nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}"
-    meaning = (
+    trade = Trade(
+        "{nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}",
         "nozzle in the wall that blows all the time, at a height over the track: returns what it moves over "
-        "the free edge while it passes; sure where the force is twice as large or half as large as that takes"
+        "the free edge while it passes; sure where the force is twice as large or half as large as that "
+        "takes",
+        forms.mapping(
+            nozzle=forms.LENGTH_FORM, pressure=forms.quantity("pressure"), height=forms.LENGTH_FORM
+        ),
+        old_name="jet",
+        measures="area that it offers a jet",
+        cost_class=2,
     )
-    rejected = RETURNED
-    feature = "area that it offers a jet"
-    picture = "above"
-    labelled = True
-    cost_class = 2
-    proposed = True
+    action = Action.BLOW
+    search = ValueSearch(ProposedBy.VALUE)
 
     read = staticmethod(functools.partial(values.nozzle, needed=("nozzle", "pressure", "height")))
 
@@ -551,6 +548,10 @@ class SteadyJet(Device):
                 steps = math.ceil(_pressure(bore, enough) / REGULATOR_STEP_PA - 1e-6)
                 jets.append(replace(jet, pressure=steps * REGULATOR_STEP_PA).rewritten())
         return jets
+
+    @property
+    def label(self) -> str:
+        return f"{self.kind} {self.text}"
 
     def value_text(self) -> str:
         entries = (("nozzle", length_text(self.nozzle)), ("pressure", f"{self.pressure / BAR_PA:.9g} bar"))

@@ -24,6 +24,7 @@ from feederscrew.sorting.devices.base import STOPPED, UNSURE, Device
 from feederscrew.sorting.devices.kinds import KINDS
 from feederscrew.sorting.devices.leans import Lean
 from feederscrew.sorting.devices.pneumatics import Sorter
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.fates import course
 from feederscrew.sorting.orientations import Orientation
@@ -151,7 +152,7 @@ class DesignConstraints:
     @property
     def clearing(self) -> bool:
         """Tell whether a blade that clears itself may be used."""
-        return any(self.allows(kind.kind) for kind in numeric_kinds() if kind.overhead)
+        return any(self.allows(kind.kind) for kind in numeric_kinds() if kind.action is Action.OVERHEAD)
 
 
 # -- the devices that may do it
@@ -192,9 +193,9 @@ def candidates(
     devices: list[Device] = []
     constraints = constraints or DesignConstraints()
     for kind in numeric_kinds():
-        values, lower = limits(kind, orientations), kind.bound == "lower"
+        values, lower = limits(kind, orientations), kind.search.bound == "lower"
         first = pivot(kind, orientations, wanted, same)
-        allowed = constraints.allows(kind.kind) and (clearing or not kind.overhead)
+        allowed = constraints.allows(kind.kind) and (clearing or kind.action is not Action.OVERHEAD)
         if not allowed or not np.isfinite(values[first]):
             continue
         play = margin + kind(DESIGN_KEY).hop_blur(orientations[first])
@@ -208,7 +209,9 @@ def candidates(
     rows = sorted({wanted, *same})
     competitors = [encounter for k, encounter in enumerate(encounters) if k not in rows]
     blowing: list[Any] = [
-        kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)
+        kind
+        for kind in KINDS.values()
+        if kind.search.is_proposed and kind.action is not Action.SENSE and not kind.search.bound
     ]
     for kind in (kind for kind in blowing if air and constraints.allows(kind.kind)):
         devices += kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY)
@@ -242,7 +245,7 @@ def pivot(
     """
     values = limits(kind, orientations)
     rows = sorted({wanted, *same}, key=lambda k: k != wanted)
-    return (max if kind.bound == "upper" else min)(rows, key=lambda k: values[k])
+    return (max if kind.search.bound == "upper" else min)(rows, key=lambda k: values[k])
 
 
 def sensing_kinds() -> list[Any]:
@@ -252,7 +255,7 @@ def sensing_kinds() -> list[Any]:
     -------
     list of class of Device
     """
-    return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
+    return [kind for kind in KINDS.values() if kind.search.is_proposed and kind.action is Action.SENSE]
 
 
 def numeric_kinds() -> list[type[Device]]:
@@ -262,8 +265,8 @@ def numeric_kinds() -> list[type[Device]]:
     -------
     list of class of Device
     """
-    kinds = [kind for kind in KINDS.values() if kind.proposed and kind.bound]
-    return sorted(kinds, key=lambda kind: kind.rank)
+    kinds = [kind for kind in KINDS.values() if kind.search.is_proposed and kind.search.bound]
+    return sorted(kinds, key=lambda kind: kind.search.rank)
 
 
 def limits(kind: type[Device], orientations: Sequence[Orientation]) -> Floats:
@@ -424,9 +427,9 @@ def place_devices(
     """
     cuts = []
     for device, some in zip(devices, must):
-        row = pivot(type(device), orientations, wanted, same) if device.bound else wanted
-        place: Callable[..., Cut] = _place_sensor if device.senses else _place_number
-        free = device.senses or device.bound
+        row = pivot(type(device), orientations, wanted, same) if device.search.bound else wanted
+        place: Callable[..., Cut] = _place_sensor if device.action is Action.SENSE else _place_number
+        free = device.action is Action.SENSE or device.search.bound
         cut = place(orientations, row, device, some, least, step) if free else None
         cuts.append(cut or judge_cut(orientations, row, device, some, device, device))
     return tuple(cuts)
@@ -435,7 +438,7 @@ def place_devices(
 def _place_number(
     orientations: Sequence[Orientation], wanted: int, device: Device, must: Bools, least: float, step: float
 ) -> Cut:
-    values, upper = limits(type(device), orientations), device.bound == "upper"
+    values, upper = limits(type(device), orientations), device.search.bound == "upper"
     # by how much more than placed each of the others passes it as it travels
     more = np.array([device.more(DeviceEncounter(orientation)) for orientation in orientations])
     values = values + np.where(np.arange(len(orientations)) == wanted, 0.0, more)
@@ -447,7 +450,7 @@ def _place_number(
         return device.valued(round_finely(value))
 
     surest = _surest(orientations, must, make, middle if np.isfinite(nearest) else device.limit, device.limit)
-    if device.carries and least < np.inf and np.isfinite(nearest):
+    if device.action.carries and least < np.inf and np.isfinite(nearest):
         eased = max(surest.limit, nearest - least) if upper else min(surest.limit, nearest + least)
         surest = _surest(orientations, must, make, float(eased), surest.limit, least - 2.0 * SHOP_ROUNDING_M)
     ends = [device.valued(float(end)) for end in (nearest, values[wanted])]
@@ -549,14 +552,14 @@ def inseparable_reason(wanted: Orientation, other: Orientation, margin: float) -
         )
     # the least [m] that has to be added to what some device measures of a part
     differences = [
-        (-opening_margin(wanted.view_ahead, other), kind.kind, kind.feature)
+        (-opening_margin(wanted.view_ahead, other), kind.kind, kind.trade.measures)
         for kind in KINDS.values()
         if hasattr(kind, "free")
     ]
     for kind in numeric_kinds():
         first, second = limits(kind, (wanted, other))
-        step = second - first if kind.bound == "upper" else first - second
-        differences.append((float(step) if np.isfinite(step) else -np.inf, kind.kind, kind.feature))
+        step = second - first if kind.search.bound == "upper" else first - second
+        differences.append((float(step) if np.isfinite(step) else -np.inf, kind.kind, kind.trade.measures))
     step, _, feature = max(differences)
     step = max(step, 0.0)
     need = f"{1e3 * (2.0 * margin - step):.2g} mm more in {feature} would part them"
@@ -889,10 +892,10 @@ def _add_spacing(task: DesignTask, cuts: Sequence[Cut]) -> tuple[Cut, ...]:
     """Cuts with a stretch that separates parts before the first of them that needs gaps."""
     steeper, own = task.constraints.separation, task.orientations[task.wanted]
     first = next((k for k, cut in enumerate(cuts) if cut.device.gap(own, own.speed) > 0.0), None)
-    if steeper is None or first is None or any(device.leans for device in task.before):
+    if steeper is None or first is None or any(device.action.leans for device in task.before):
         return tuple(cuts)
     # before rails it climbs as it did: where it falls, a head that comes first has no time to turn down
-    last = next((k for k, cut in enumerate(cuts) if cut.device.hangs), len(cuts))
+    last = next((k for k, cut in enumerate(cuts) if cut.device.action is Action.HANG), len(cuts))
     slower = replace(steeper, angle=own.track.climb).rewritten()
     returning = (plain_cut(slower),) if last < len(cuts) else ()
     return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *returning, *cuts[last:])
@@ -968,7 +971,7 @@ def propose_needed(
     # which orientations each cut returns by the margin
     returned_by = {id(cut): margins_at(cut.device, task.orientations) <= -task.margin for cut in cuts}
     gone = is_returned & ~np.any(list(returned_by.values()), axis=0) if cuts else is_returned
-    for cut in [cut for cut in reversed(cuts) if not cut.device.hangs]:
+    for cut in [cut for cut in reversed(cuts) if cut.device.action is not Action.HANG]:
         rest = [other for other in cuts if other is not cut]
         other = propose(task, rest, np.any([gone, *(returned_by[id(one)] for one in rest)], axis=0), same)
         alike = (np.abs(numbers(other) - numbers(proposal)) < PRINTED_SHARE_STEP).all()

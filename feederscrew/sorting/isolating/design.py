@@ -13,10 +13,11 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.blades import PROPOSED_SWEEP_RAD, Wiper
-from feederscrew.sorting.devices.kinds import KINDS, leaning, names
+from feederscrew.sorting.devices.kinds import KINDS, leaning, names, shaped
 from feederscrew.sorting.devices.leans import Lean
 from feederscrew.sorting.devices.ledges import Rails
 from feederscrew.sorting.devices.orientation_names import place_of, rows
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.fates import at_entry, course
 from feederscrew.sorting.isolating import chain, hole_search, rails
 from feederscrew.sorting.isolating.chain import (
@@ -143,12 +144,13 @@ def design(
 
 def _design_returning(task: DesignTask, search: HoleSearch) -> Design:
     """The best chain of devices that only return parts: they leave lying, or hanging."""
-    if any(device.hangs for device in task.before):
+    if any(device.action is Action.HANG for device in task.before):
         return chain.propose(task, (), np.zeros(len(task.orientations), dtype=bool))
     outcome = task.constraints.outcome
     hung = (
         design_rails(task)
-        if outcome != OutcomeKind.LYING and task.constraints.allows(*names(hangs=True))
+        if outcome != OutcomeKind.LYING
+        and task.constraints.allows(*names(lambda kind: kind.action is Action.HANG))
         else None
     )
     if outcome == OutcomeKind.HANGING:
@@ -192,7 +194,7 @@ def _design_lying(task: DesignTask, search: HoleSearch) -> Design:
         purer = stage.get("varied") and other.purity > proposal.purity + PURITY_GAIN
         proposal = other if other.isolated or purer else proposal
     # holes are for one orientation alone, and by far the longest search: only where nothing simpler isolates
-    if task.constraints.allows(*names(searched=True)) and task.same.sum() == 1 and not proposal.isolated:
+    if task.constraints.allows(*shaped()) and task.same.sum() == 1 and not proposal.isolated:
         more = chain.propose_needed(task, *_add_holes(task, cuts, is_returned, search))
         purer = np.nan_to_num(proposal.purity) > np.nan_to_num(more.purity) + PURITY_GAIN
         if more.isolated or (not more.stands and (proposal.stands or not purer)):
@@ -249,7 +251,11 @@ def varied_devices(
     docs/tooling.md, "What a design takes".
     """
     margins: dict[Device, Floats] = {}
-    for kind in (kind for kind in chain.numeric_kinds() if kind.overhead and constraints.allows(kind.kind)):
+    for kind in (
+        kind
+        for kind in chain.numeric_kinds()
+        if kind.action is Action.OVERHEAD and constraints.allows(kind.kind)
+    ):
         highest = orientations[chain.pivot(kind, orientations, wanted, same)].height
         proposal: Any = kind.proposal(
             DESIGN_KEY, chain.snap_to_shop_step(highest + margin, constraints.step, up=True)
@@ -459,7 +465,9 @@ def turning_chains(task: DesignTask) -> list[tuple[Cut, ...]]:
     longest = max((max(orientation.length, orientation.height) for orientation in frequent), default=0.0)
     # steps and ledges, one between each two values at which what they do changes, and one above them all
     encounters = [DeviceEncounter(orientation, orientations) for orientation in frequent]
-    kinds: list[Any] = [kind for kind in KINDS.values() if kind.turns and task.constraints.allows(kind.kind)]
+    kinds: list[Any] = [
+        kind for kind in KINDS.values() if kind.action.turns and task.constraints.allows(kind.kind)
+    ]
     changes = {kind: kind.changes(encounters) for kind in kinds}
     matrices = {}  # of each device, with what momentum may decide counted as lost
     for kind in kinds:
@@ -471,7 +479,7 @@ def turning_chains(task: DesignTask) -> list[tuple[Cut, ...]]:
         }
         for value in sorted(values):
             device = kind(DESIGN_KEY).valued(float(value))
-            if not device.inwards and device.limit > MAX_STEP_SHARE * longest:
+            if device.action is Action.PITCH and device.limit > MAX_STEP_SHARE * longest:
                 continue
             if verdict(device, own, orientations).margin >= task.margin:
                 sure = [verdict(device, one, orientations).margin >= task.margin for one in orientations]
@@ -593,7 +601,7 @@ def design_with_track(
     if not constraints.vary or options["before"] or orientations[wanted].returned:
         return best
     # other tracks that lean: quickly, without what is by far the longest search; in full where that gains
-    quick = replace(constraints, turn=False, without=(*constraints.without, *names(searched=True)))
+    quick = replace(constraints, turn=False, without=(*constraints.without, *shaped()))
     brief = options | {"constraints": quick}
     for stretch in other_stretches(orientations[wanted], best, constraints):
         other = design_on(stretch, lambda lying, come: design(lying, come, wanted, **brief))
@@ -629,7 +637,7 @@ def holding_stretches(
     ----------
     docs/tooling.md, "What a design takes".
     """
-    leans = orientation.track.bank > 0.0 or any(device.leans for device in before)
+    leans = orientation.track.bank > 0.0 or any(device.action.leans for device in before)
     if orientation.kind != "rolling" or leans:
         return ()
     stretches = (kind.holding(orientation, wall_friction, DESIGN_KEY) for kind in leaning())
@@ -665,7 +673,10 @@ def other_stretches(
         (stretch for kind in leaning() for stretch in kind.leanings(orientation, DESIGN_KEY)), constraints
     )
     stretches = [stretch for stretch in stretches if (stretch[0].kind, stretch[0].text) not in present]
-    return sorted((stretch for stretch in stretches if stretch[0].grooved or not proposal.isolated), key=len)
+    return sorted(
+        (stretch for stretch in stretches if stretch[0].action is Action.GROOVE or not proposal.isolated),
+        key=len,
+    )
 
 
 def _keep_allowed(stretches: Iterable[Stretch], constraints: DesignConstraints) -> list[Stretch]:
@@ -696,7 +707,10 @@ def coming_shares(orientations: Sequence[Orientation], shares: Floats, stretch: 
     (M,) float [1]
     """
     there = at_entry(orientations, stretch)
-    flow, flat = course(stretch, there), stretch[0].grooved and stretch[0].angle < MAX_GROOVE_FACE_RAD - 1e-9
+    flow, flat = (
+        course(stretch, there),
+        stretch[0].action is Action.GROOVE and stretch[0].angle < MAX_GROOVE_FACE_RAD - 1e-9,
+    )
     comes = np.array([0.0 if flat and orientation.may_roll_back else 1.0 for orientation in there])
     return (comes[:, None] * np.asarray(shares)[:, None] * flow.leaving).sum(axis=0)[: len(orientations)]
 
