@@ -33,6 +33,7 @@ from feederscrew.trials.course import Fate
 # T-nut and a push button, for which one of these decides
 OFFSETS_M = (5e-4, -3e-4, 1e-3)  # of the slot, farther off the wall
 PLAYS_M = (3e-4, 6e-4)  # by which the slot is wider
+BLADES_M = (1e-3, -5e-4)  # by which the blade stands higher
 LEADS = (1.7, 0.6)  # times the length of the lead-in
 SWEEPS_DEG = (25.0, 45.0, 20.0, 55.0)  # of the blade behind the rails, beside the first
 FIRST_SWEEP_DEG = 30.0
@@ -209,13 +210,61 @@ class RailsSearch:
                 yield from build(MoveKind.BLADE_BEHIND, 0.0, setting, FIRST_SWEEP_DEG)
         for degrees in SWEEPS_DEG if stays_at_blade else ():
             yield from build(MoveKind.SWEEP, math.radians(degrees), setting, degrees)
+        higher = [(MoveKind.BLADE_HEIGHT, x, replace(setting, blade=setting.blade + x)) for x in BLADES_M]
         places = [
+            *(higher if stays_at_blade else ()),
             *((MoveKind.SLOT_PLACE, x, replace(setting, offset=setting.offset + x)) for x in OFFSETS_M),
             *((MoveKind.WIDER_SLOT, x, replace(setting, play=setting.play + x)) for x in PLAYS_M),
             *((MoveKind.LEAD_IN, x, replace(setting, lead=setting.lead * x)) for x in LEADS),
         ]
         for kind, value, other in places:
             yield from build(kind, value, other, sweep)
+
+    def mends_of_jams(
+        self, proposal: Proposal, trial: ShortTrial, jammed: Sequence[tuple[str, int, str, int]]
+    ) -> Iterator[Proposal]:
+        """Yield what changes a chain whose queue jams, by what stood there and at which device.
+
+        Another orientation is returned before the rails. One that hangs gets a wider slot and a longer
+        lead-in where it stands at the rails, and a higher blade where it stands at the blade.
+
+        Parameters
+        ----------
+        proposal : Proposal
+        trial : ShortTrial
+            Of that chain.
+        jammed : sequence of (str, int, str, int)
+            As ``FilledQueue.jammed``: orientation, place of the device, its kind, how many.
+
+        Yields
+        ------
+        Proposal
+        """
+        setting = proposal.rails or USUAL_RAILS
+        shown, sweep = shown_by(trial, proposal, len(self.lying)), _sweep_of(proposal)
+        rows = {orientation.name: row for row, orientation in enumerate(self.lying)}
+        placed = [device for device in proposal.devices if device.action.has_place]
+        station = next((n for n, device in enumerate(placed, start=1) if device.action is Action.HANG), -1)
+        at_rails = at_blade = False
+        for name, place, _, _ in jammed:
+            row = rows.get(name, -1)
+            if row < 0 or shown.hangs[row]:
+                at_rails, at_blade = at_rails or place <= station, at_blade or place > station
+            elif place <= station:
+                shown.stands[row] = True
+            else:
+                shown.unswept[row] = True
+        wider = [(MoveKind.WIDER_SLOT, x, replace(setting, play=setting.play + x)) for x in PLAYS_M]
+        longer = [(MoveKind.LEAD_IN, x, replace(setting, lead=setting.lead * x)) for x in LEADS[:1]]
+        higher = [(MoveKind.BLADE_HEIGHT, x, replace(setting, blade=setting.blade + x)) for x in BLADES_M]
+        tries = [
+            (MoveKind.CUTS_BEFORE, 0.0, setting),
+            *(higher if at_blade else ()),
+            *((*wider, *longer) if at_rails else ()),
+        ]
+        self.seen.add(proposal.chain)
+        for kind, value, other in tries:
+            yield from self._build(Move(kind, value), other, sweep, shown)
 
     def _build(
         self, move: Move, setting: RailSetting, sweep: float | None, shown: Shown
@@ -238,10 +287,11 @@ class RailsSearch:
             sweep=angle,
             unswept=shown.unswept,
             partly=True,
+            raised=setting.blade,
         )
         if design is None:  # the blade has nothing to sweep
             return
-        proposal = self._proposal(design, move)
+        proposal = replace(self._proposal(design, move), rails=setting)
         if proposal.chain not in self.seen:
             self.seen.add(proposal.chain)
             yield proposal

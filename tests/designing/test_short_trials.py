@@ -422,6 +422,46 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
     assert proposals.add_pressure_break(again) is None  # it has one
 
 
+def test_what_a_full_track_lets_past_a_sensor_meets_a_second_one(rows):
+    """The same once more, behind the first; a chain of steel and one that has two get none."""
+    ways, along, _ = rows
+    like = {"like": (ways.lying[along].aspect, ways.lying[along].heading, 1e-3), "text": "test"}
+    sees, gap = make_device("vision reject", "test", **like), make_device("gap", "test", limit=7e-3)
+    cuts = tuple(Cut(device, 1e-3, 1e-3, device, device, ("B@0",)) for device in (sees, gap))
+    once = proposals.Proposal(along, cuts, (), "test")
+    twice = proposals.add_second_sensor(SimpleNamespace(proposal=once))
+    assert [device.kind for device in twice.devices] == ["vision reject", "vision reject", "gap"]
+    assert twice.move.kind is MoveKind.SECOND_SENSOR and "second vision reject" in texts.move_text(twice.move)
+    assert proposals.add_second_sensor(SimpleNamespace(proposal=twice)) is None
+    steel = replace(once, cuts=cuts[1:])
+    assert proposals.add_second_sensor(SimpleNamespace(proposal=steel)) is None
+
+
+def test_parts_that_touch_come_apart_on_a_spacing_section_then_on_a_steeper_one(rows):
+    """Before the first device; once steeper; nothing of the user's own stretches, or of no device."""
+    ways, along, _ = rows
+    narrow = make_device("narrowed track", "test", limit=9e-3)
+    none = np.zeros(len(ways.lying), bool)
+    cut = proposals.judge_cut(ways.lying, along, narrow, none, narrow, narrow)
+    proposal = proposals.Proposal(along, (cut,), (), "test")
+    angles = []
+    for _ in range(2):
+        proposal = proposals.spread_apart(SimpleNamespace(proposal=proposal))
+        assert [device.kind for device in proposal.devices] == ["spacing section", "narrowed track"]
+        assert proposal.move.kind is MoveKind.SPACING
+        angles.append(float(np.degrees(proposal.devices[0].angle)))
+    assert angles[0] == pytest.approx(-6.0) and angles[1] == pytest.approx(-10.0)
+    text = proposal.devices[0].text
+    assert text == "{climb: -10 deg}" and text in texts.move_text(proposal.move)
+    assert proposals.spread_apart(SimpleNamespace(proposal=proposal)) is None
+    bare = SimpleNamespace(proposal=replace(proposal, cuts=()))
+    assert proposals.spread_apart(bare) is None
+    kept = SimpleNamespace(proposal=replace(proposal, cuts=(cut,)))
+    assert proposals.spread_apart(kept, ("spacing section",)) is None
+    led = SimpleNamespace(proposal=replace(proposal, cuts=(cut,), before=proposal.devices[:1]))
+    assert proposals.spread_apart(led) is None
+
+
 @pytest.mark.parametrize(("lost", "draws", "held"), [((0, 2), 3, 1), ((3,), 5, 4)])
 def test_draws_end_once_more_have_failed_than_may(monkeypatch, block, lost, draws, held):
     results = iter([[carried("B")] if k in lost else [] for k in range(5)])
