@@ -642,9 +642,10 @@ def mends_of_jams(
     proposal = candidate.proposal
     if not proposal.hangs:
         poses = ((LeavingPose(PoseKind.ORIENTATION, name=name), count) for name, _, _, count in jammed)
-        changed = proposals.purify(candidate, tuple(poses))
-        if changed is not None:
-            yield changed
+        wanted = {candidate.orientations.lying[row].name for row in candidate.trial.wanted}
+        lying = candidate.orientations.lying
+        eased = (proposals.ease_cut(proposal, place, lying) for name, place, _, _ in jammed if name in wanted)
+        yield from (changed for changed in (*eased, proposals.purify(candidate, tuple(poses))) if changed)
         return
     start = replace(calm_drive.drive_at(candidate.plain_bowl(search), 0.0), devices=search.plain.devices)
     before, cost_class = search.plain.devices, proposal.cost_class

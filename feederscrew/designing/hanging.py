@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.arrays import Bools, Floats
+from feederscrew.designing import proposals
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.proposals import MARGINS, Proposal
 from feederscrew.designing.record import DesignRequest
@@ -225,8 +226,8 @@ class RailsSearch:
     ) -> Iterator[Proposal]:
         """Yield what changes a chain whose queue jams, by what stood there and at which device.
 
-        Another orientation is returned before the rails. One that hangs gets a wider slot and a longer
-        lead-in where it stands at the rails, and a higher blade where it stands at the blade.
+        Another orientation is returned before the rails. Where one that hangs stands at a cut before them,
+        that cuts less; at the rails it gets a wider slot and a longer lead-in, at the blade a higher blade.
 
         Parameters
         ----------
@@ -245,11 +246,17 @@ class RailsSearch:
         rows = {orientation.name: row for row, orientation in enumerate(self.lying)}
         placed = [device for device in proposal.devices if device.action.has_place]
         station = next((n for n, device in enumerate(placed, start=1) if device.action is Action.HANG), -1)
+        for n, row in enumerate(trial.rows.tolist()):  # what cuts before the rails return needs them
+            ends = trial.ends[n]
+            shown.stands[row] |= bool(ends) and all(0 < end.station < station for end in ends)
         at_rails = at_blade = False
         for name, place, _, _ in jammed:
             row = rows.get(name, -1)
             if row < 0 or shown.hangs[row]:
-                at_rails, at_blade = at_rails or place <= station, at_blade or place > station
+                at_rails, at_blade = at_rails or place == station, at_blade or place > station
+                eased = proposals.ease_cut(proposal, place, self.lying) if place < station else None
+                if eased is not None:
+                    yield eased
             elif place <= station:
                 shown.stands[row] = True
             else:
@@ -263,8 +270,15 @@ class RailsSearch:
             *((*wider, *longer) if at_rails else ()),
         ]
         self.seen.add(proposal.chain)
+        own_cuts = {cut.device.kind: cut for cut in proposal.cuts if cut.device.action.carries}
         for kind, value, other in tries:
-            yield from self._build(Move(kind, value), other, sweep, shown)
+            for built in self._build(Move(kind, value), other, sweep, shown):
+                cuts = built.cuts
+                if kind is not MoveKind.CUTS_BEFORE:  # as they were changed before
+                    cuts = tuple(own_cuts.get(cut.device.kind, cut) for cut in cuts)
+                changed = replace(built, cuts=cuts)
+                if changed.chain != proposal.chain:
+                    yield changed
 
     def _build(
         self, move: Move, setting: RailSetting, sweep: float | None, shown: Shown

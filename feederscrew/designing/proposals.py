@@ -440,6 +440,39 @@ def _mend_cut(proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orie
     return None
 
 
+def ease_cut(proposal: Proposal, place: int, orientations: Sequence[Orientation]) -> Proposal | None:
+    """Return the proposal with a device at which what is wanted stands moved half the way to its least cut.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    place : int
+        Of the device along what stands on the track, from 1.
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where it is none of the proposal's, its value is no length, or it would return no less.
+    """
+    placed = [device for device in proposal.devices if device.action.has_place]
+    own = [
+        n
+        for n, cut in enumerate(proposal.cuts)
+        if 0 < place <= len(placed) and cut.device is placed[place - 1]
+    ]
+    if not own or not proposal.cuts[own[0]].device.search.bound:
+        return None
+    cut = proposal.cuts[own[0]]
+    limit = 0.5 * (cut.device.limit + cut.smallest.limit)
+    if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
+        return None
+    other = move_cut(cut, limit, orientations, proposal.row)
+    if other.device.limit == cut.device.limit:
+        return None
+    return proposal.with_cut(own[0], other, _move_of(MoveKind.VALUE, other.device))
+
+
 def _slips(cut: Cut, trial: ShortTrial, orientations: Sequence[Orientation]) -> bool:
     """Tell whether something left otherwise that a cut should have returned."""
     return any(trial.wrong[n] and orientations[k].name in cut.returns for n, k in enumerate(trial.rows))
@@ -692,10 +725,12 @@ def add_drop(
     if chosen is None:
         return None
     (kind, middle, listed), room = chosen, best[1]
+    sign = 1.0 if kind.search.bound == "lower" else -1.0
     limit = float(np.round(middle / VALUE_STEP_M) * VALUE_STEP_M)
     device = kind.proposal(DESIGN_KEY, limit).rewritten()
     must = np.array([k in listed for k in range(len(orientations))])
-    ends = [device.valued(limit + half) for half in (-0.5 * room, 0.5 * room)]
+    # the least cut that returns them first: of a narrowed track that is the widest one
+    ends = [device.valued(limit + sign * half) for half in (-0.5 * room, 0.5 * room)]
     cut = judge_cut(orientations, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), move=_move_of(MoveKind.DROP_BEFORE, device))
 

@@ -254,6 +254,29 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     assert proposals.purify(candidate, ((UNKNOWN, 3),)) is None
 
 
+def test_a_cut_at_which_what_is_wanted_stands_in_a_queue_cuts_less(rows, dropped):
+    """Half the way to its least cut; nothing of a place where no cut of the design stands, or of a sensor."""
+    ways = rows[0]
+    proposal, seen = dropped
+    (before,) = proposal.cuts
+    (after,) = proposals.ease_cut(proposal, 1, ways.lying).cuts
+    middle = 0.5 * (before.device.limit + before.smallest.limit)
+    assert after.device.limit == pytest.approx(middle, abs=proposals.VALUE_STEP_M)
+    assert after.margin_pass > before.margin_pass
+    for place in (-1, 0, 2):
+        assert proposals.ease_cut(proposal, place, ways.lying) is None
+    # a queue that jams at it asks for the same; what else stands there is cut more
+    search = SimpleNamespace()
+    candidate = SimpleNamespace(proposal=proposal, trial=seen, orientations=ways)
+    mends = list(exploring.mends_of_jams(search, candidate, (("A@0", 1, before.device.kind, 2),)))
+    assert [one.cuts[0].device.limit for one in mends] == [after.device.limit]
+    (more,) = exploring.mends_of_jams(search, candidate, (("A@90", 1, before.device.kind, 1),))
+    assert abs(more.cuts[0].device.limit - before.largest.limit) < abs(
+        before.device.limit - before.largest.limit
+    )
+    assert not list(exploring.mends_of_jams(search, candidate, ()))
+
+
 def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_stop_of_it(block, rows):
     ways, along, across = rows
     assert equivalent_rows(ways.lying, along, ()) == ()
