@@ -378,6 +378,31 @@ def _slow_down(bowl: Bowl, velocity: float) -> Bowl:
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 
 
+def slow_to(bowl: Bowl, velocity: float) -> Bowl:
+    """Return a bowl at the least amplitude that keeps a velocity, also where friction is at its worst.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    velocity : float [m/s]
+        That is asked for.
+
+    Returns
+    -------
+    Bowl
+        The same bowl where it is no faster than that.
+
+    References
+    ----------
+    Own; docs/design.md: halvings of the amplitude, as a part is the faster the larger it is.
+    """
+    low, high = 0.0, bowl.drive.amplitude
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _is_fast(with_amplitude(bowl, middle), velocity) else (middle, high)
+    return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
+
+
 def _fast(bowl: Bowl) -> float:
     """The velocity [m/s] that may be asked of a bowl: its own, or less where the worst friction slows it."""
     return min(speed(bowl), slowest(bowl) / LEAST_VELOCITY_KEPT)

@@ -9,6 +9,7 @@ from feederscrew.designing.record import DesignStudy
 from feederscrew.units import PER_MINUTE, counted, listed
 
 LABELS = ("try first", "then", "or")  # of the commands, the likeliest first
+CALMER = "calmer"  # of the one after a design that holds
 
 
 def entries(study: DesignStudy) -> list[dict[str, Any]]:
@@ -87,5 +88,6 @@ def reason(one: NextTry) -> str:
             text = f"{one.request.budget} short trials"
         case TryKind.CALMER_DRIVE:
             keys = listed([f"{key} {text}" for key, text in one.settings])
-            text = f"a calmer drive ({keys})"
+            asked = f"{one.request.target / PER_MINUTE:.3g}/min were asked for"
+            text = f"{asked}; by its speed a calmer drive ({keys}) brings about {rate}, which is not tried"
     return text
