@@ -379,7 +379,7 @@ def _slow_down(bowl: Bowl, velocity: float) -> Bowl:
 
 
 def slow_to(bowl: Bowl, velocity: float) -> Bowl:
-    """Return a bowl at the least amplitude that keeps a velocity, also where friction is at its worst.
+    """Return a bowl at the least amplitude that has a velocity at its own friction.
 
     Parameters
     ----------
@@ -399,7 +399,7 @@ def slow_to(bowl: Bowl, velocity: float) -> Bowl:
     low, high = 0.0, bowl.drive.amplitude
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _is_fast(with_amplitude(bowl, middle), velocity) else (middle, high)
+        low, high = (low, middle) if speed(with_amplitude(bowl, middle)) >= velocity else (middle, high)
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 
 

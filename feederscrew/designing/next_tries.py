@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from feederscrew.bowl.verified import HELD, Status
-from feederscrew.designing.calm_drive import CALMER_SHARE, STROKES, DriveKind, slow_to, speed
+from feederscrew.designing.calm_drive import CALMER_SHARE, STROKES, DriveKind, slow_to, speed, velocity_kept
 from feederscrew.designing.findings import Cause
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
 from feederscrew.machine.drive_sizing import is_two_axis
@@ -18,9 +18,7 @@ MOST_TRIES = 3
 SHARE_OF_TRIAL_RATE = 0.5  # [1] of what a clean short trial promises: queues bring less
 OFTEN_SHARE = 0.05  # [1] of the parts, from which an aspect is worth a design of its own
 FAR_MORE = 1.5  # [1] times the rate that was asked for, from which a calmer drive is named
-SPARE = (
-    1.25  # [1] times the rate that was asked for, that it aims at: a queue may bring less than its speed says
-)
+SPARE = 1.25  # [1] times the rate that was asked for, that it aims at: the middle of 1 to 1.5
 MORE_TRIALS = 2  # times the budget, where nothing else is left
 
 
@@ -58,6 +56,7 @@ class NextTry:
     share: float | None = None  # [1] of the parts that come on that aspect; None where it is not known
     trials: int = 0  # short trials in which that aspect was wanted
     rate: float | None = None  # [1/s] that its trials brought
+    worst_rate: float | None = None  # [1/s] at the worst friction, by the speed there
     settings: tuple[tuple[str, str], ...] = ()  # keys of the bowl and their values
 
 
@@ -99,7 +98,11 @@ def _calmer_drive(study: DesignStudy) -> Iterator[NextTry]:
     if less < CALMER_SHARE * rate:
         amplitude = f"{calmer.drive.amplitude / MM:.4g} mm"
         yield NextTry(
-            TryKind.CALMER_DRIVE, study.request, rate=less, settings=(("drive.amplitude", amplitude),)
+            TryKind.CALMER_DRIVE,
+            study.request,
+            rate=less,
+            worst_rate=less * velocity_kept(calmer),
+            settings=(("drive.amplitude", amplitude),),
         )
 
 

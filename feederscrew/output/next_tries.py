@@ -89,5 +89,8 @@ def reason(one: NextTry) -> str:
         case TryKind.CALMER_DRIVE:
             keys = listed([f"{key} {text}" for key, text in one.settings])
             asked = f"{one.request.target / PER_MINUTE:.3g}/min were asked for"
-            text = f"{asked}; by its speed a calmer drive ({keys}) brings about {rate}, which is not tried"
+            text = f"{asked}; by its speed a calmer drive ({keys}) brings about {rate}"
+            if one.worst_rate is not None:
+                text += f", at the worst friction {one.worst_rate / PER_MINUTE:.2g}/min"
+            text += "; that is not tried"
     return text

@@ -141,7 +141,7 @@ def test_what_brings_far_more_than_was_asked_names_a_calmer_drive():
     """Asked for 40 a minute a washer came at 190, and nothing was said of it."""
     fills = [queue(fill=fill) for fill in ("low", "normal", "high")]
     rate = 60.0 * design_study(PART, *fills).delivered[0]
-    study = design_study(PART, *fills, target=rate / 4.0, call=TYPED)
+    study = design_study(PART, *fills, target=rate / 4.75, call=TYPED)
     assert study.status is Status.HOLDS
     (step,) = next_tries(study)
     ((key, value),) = step.settings
@@ -149,9 +149,8 @@ def test_what_brings_far_more_than_was_asked_names_a_calmer_drive():
     share = calm_drive.speed(calmer) / calm_drive.speed(study.bowl)
     assert (step.kind, key, value.split()[1]) == (TryKind.CALMER_DRIVE, "drive.amplitude", "mm")
     assert 60.0 * step.rate == pytest.approx(rate * share)
-    assert 1.0 <= step.rate / study.request.target <= 1.75  # this drive is slow at the worst friction
-    asked = 60.0 * study.request.target / rate * calm_drive.speed(study.bowl)
-    assert calm_drive.slowest(calmer) >= 0.6 * asked, "at the worst friction it still conveys"
+    assert 1.0 <= step.rate / study.request.target <= 1.5  # asked for 40: 40 to 60
+    assert step.worst_rate == pytest.approx(step.rate * calm_drive.velocity_kept(calmer))
     entry = designs.document(study)["next"][0]
     assert f"drive.amplitude={value}" in entry["words"] and "not tried" in entry["why"]
     typed = (*TYPED, "--set", "drive.amplitude=0.3 mm")  # who gave the stroke keeps it
