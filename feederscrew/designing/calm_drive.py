@@ -378,14 +378,16 @@ def _slow_down(bowl: Bowl, velocity: float) -> Bowl:
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 
 
-def slow_to(bowl: Bowl, velocity: float) -> Bowl:
-    """Return a bowl at the least amplitude that has a velocity at its own friction.
+def slow_to(bowl: Bowl, velocity: float, *, at_worst: bool = True) -> Bowl:
+    """Return a bowl at the least amplitude that has a velocity.
 
     Parameters
     ----------
     bowl : Bowl
     velocity : float [m/s]
         That is asked for.
+    at_worst : bool, optional
+        Whether ``LEAST_VELOCITY_KEPT`` of it is asked for at the worst friction, as of every design.
 
     Returns
     -------
@@ -399,7 +401,9 @@ def slow_to(bowl: Bowl, velocity: float) -> Bowl:
     low, high = 0.0, bowl.drive.amplitude
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if speed(with_amplitude(bowl, middle)) >= velocity else (middle, high)
+        slower = with_amplitude(bowl, middle)
+        enough = _is_fast(slower, velocity) if at_worst else speed(slower) >= velocity
+        low, high = (low, middle) if enough else (middle, high)
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 
 

@@ -93,17 +93,21 @@ def _calmer_drive(study: DesignStudy) -> Iterator[NextTry]:
     keeps_stroke = any(key in word for word in study.call for key in STROKES)
     if bowl is None or keeps_stroke or is_two_axis(bowl.drive) or rate < FAR_MORE * target:
         return
-    calmer = slow_to(bowl, speed(bowl) * SPARE * target / rate)
-    less = rate * speed(calmer) / speed(bowl)
-    if less < CALMER_SHARE * rate:
-        amplitude = f"{calmer.drive.amplitude / MM:.4g} mm"
-        yield NextTry(
-            TryKind.CALMER_DRIVE,
-            study.request,
-            rate=less,
-            worst_rate=less * velocity_kept(calmer),
-            settings=(("drive.amplitude", amplitude),),
-        )
+    velocity = speed(bowl) * SPARE * target / rate
+    best = rate
+    # one that keeps its speed where friction is at its worst; else as well one that is as slow as asked for
+    for at_worst in (True, False):
+        calmer = slow_to(bowl, velocity, at_worst=at_worst)
+        less = rate * speed(calmer) / speed(bowl)
+        if less < CALMER_SHARE * best and best >= FAR_MORE * target:
+            yield NextTry(
+                TryKind.CALMER_DRIVE,
+                study.request,
+                rate=less,
+                worst_rate=less * velocity_kept(calmer),
+                settings=(("drive.amplitude", f"{calmer.drive.amplitude / MM:.4g} mm"),),
+            )
+            best = less
 
 
 def _ways(study: DesignStudy) -> Iterator[NextTry]:

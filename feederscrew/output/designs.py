@@ -434,7 +434,7 @@ def summary(study: DesignStudy) -> Frame:
         rows.append((f"with {kind}", "; ".join(words)))
     rows.append(("trials, parts", f"{len(study.attempts)}, {d['trial_parts']}"))
     wrapped = [line for row in rows for line in wrap_row(*row)]
-    labels = (next_tries.CALMER,) if d["status"] in HELD else next_tries.LABELS
+    labels = next_tries.CALMER if d["status"] in HELD else next_tries.LABELS
     for label, entry in zip(labels, d["next"], strict=False):
         wrapped += [(label, entry["command"]), *wrap_row("", entry["why"])]  # a command stands in one line
     return tables.quantities(wrapped)
