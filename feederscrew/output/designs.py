@@ -744,7 +744,7 @@ def trial_of(study: DesignStudy) -> Verified | None:
         return None
     value, low, high = study.delivered
     return Verified(
-        study.status,
+        study.tooling_status,  # what was tried: a machine that cannot be made denies no trial
         study.wanted,
         study.request.target,
         value,

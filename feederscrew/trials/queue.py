@@ -557,10 +557,11 @@ class PartsQueue:
             case QueueOutcome.GOES_ON:
                 self.mark[n], self.since[n] = place, self.time
             case QueueOutcome.STANDS | QueueOutcome.JAMS:
-                for device in self._devices_at(front)[:1]:
+                devices = self._devices_at(front)[:1]
+                for device in devices:
                     self.counts.note_pressure(device, self.crowd.forces[n, BEHIND])
                 if outcome is QueueOutcome.JAMS:
-                    self.counts.jams += 1
+                    self.counts.note_jam(self.entry_rows[n], int(devices[0]) + 1)
                     self._take_off(n)
 
     def _devices_at(self, front: float) -> Ints:
@@ -630,6 +631,7 @@ class PartsQueue:
             left_by_entry=check.frozen(np.array(counts.left)),
             returned_by_entry=check.frozen(counts.returned_at.sum(axis=1)),
             returned_at=check.frozen(np.array(counts.returned_at)),
+            jammed_at=check.frozen(np.array(counts.jammed_at)),
             returned=counts.returned,
             jams=counts.jams,
             climbs=counts.climbs,

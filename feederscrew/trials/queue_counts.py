@@ -35,6 +35,8 @@ class QueuedParts:
     partial: bool  # stopped by the user: of the seconds until then
     # (M, D + 1) where those that were returned fell: on the bare track before the devices, at each device
     returned_at: Ints = field(default_factory=lambda: np.zeros((0, 0), int))
+    # (M, D + 1) where those stood that were taken out, columns as of ``returned_at``
+    jammed_at: Ints = field(default_factory=lambda: np.zeros((0, 0), int))
     relieved: int = 0  # of those returned, backed up at a pressure break and pushed off there
     # (F, N, 7) position [m] and attitude w x y z (principal axes to bowl), evenly over the time; NaN of a
     # part that waits to enter
@@ -87,7 +89,7 @@ class QueueCounts:
 
     def __init__(self, orientations: int, poses: int, aspects: int, devices: int) -> None:
         self.left = np.zeros((orientations, poses + 1, aspects + 1), int)  # as ``QueuedParts.left_by_entry``
-        self.returned_at = np.zeros((orientations, devices + 1), int)
+        self.returned_at, self.jammed_at = np.zeros((2, orientations, devices + 1), int)
         self.returned = self.jams = self.climbs = self.relieved = self.whole = 0
         self.max_on_track = 0
         self.pressure = np.zeros(devices)  # (D,) of the part's weight
@@ -135,6 +137,19 @@ class QueueCounts:
         """
         self.returned += 1
         self.returned_at[entry, device] += 1
+
+    def note_jam(self, entry: int, device: int) -> None:
+        """Count a part that stood at a device and was taken out.
+
+        Parameters
+        ----------
+        entry : int
+            Row of the orientation in which it came.
+        device : int
+            Number of the device, from 1.
+        """
+        self.jams += 1
+        self.jammed_at[entry, device] += 1
 
     def note_pressure(self, device: int, force: float) -> None:
         """Keep the greatest force [1] of the weight on a part that stands at a device, counted from 0."""

@@ -256,6 +256,9 @@ def test_what_stands_at_a_blade_for_a_second_is_taken_out():
     came = np.sqrt(2.0 * (seen[-1] - seen[0]) / (9.81 * np.sin(SLOPE)))
     assert row.time == pytest.approx(came + 1.0, abs=2.5 / row.bowl.drive.frequency)
     assert row.counts.jams == 1 and row.counts.whole == row.counts.returned == 0
+    # it came in its own orientation, and stood at the blade: the first device
+    jammed = row.result().jammed_at
+    assert jammed.sum() == jammed[row.entry_rows[0], 1] == 1
     row = row_of(STILL, 5, 1.0, 0.5)
     row.ride(0)
     free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
