@@ -505,6 +505,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
             row,
             request.up,
             state=wanted,
+            left_in_trial=candidate.trial.left,
         )
     return DesignStudy(
         part=search.part,

@@ -1,6 +1,6 @@
 """Files of ``feeder tooling``: tables, documents, the bowl file, drawings."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -524,7 +524,10 @@ def offers(
         drawn = offer.picture("tooling.png", what, lambda: tooling_figures.limits(study, words))
         return marking.pictures([*files, drawn], mark)
     design, wanted_row = _asked_for(study)
-    devices, chain = design.devices, (design.devices, study.orientations, study.shares, wanted_row)
+    devices, chain = (
+        design.devices,
+        (design.devices, study.orientations, study.shares, wanted_row, study.left_in_trial),
+    )
 
     if study.partial:
         drawn = offer.picture("tooling.png", what, lambda: tooling_figures.chain(*chain))
@@ -572,7 +575,11 @@ def chain_picture(
 
 
 def solid_picture(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
+    devices: Sequence[Device],
+    orientations: Sequence[Orientation],
+    shares: Floats,
+    wanted_row: int,
+    left_in_trial: Collection[str] = (),
 ) -> offer.Offer:
     """Offer the picture of a part over the cuts, in three dimensions.
 
@@ -584,13 +591,16 @@ def solid_picture(
     shares : (M,) array [1]
         In which they come.
     wanted_row : int
+    left_in_trial : collection of str
+        Names of orientations of which a part left in a trial.
 
     Returns
     -------
     Offer
     """
-    alt, chain = "The part over the cut: what passes, and the nearest that falls", (devices, orientations)
-    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain, shares, wanted_row))
+    alt = "The part over the cut: what passes, and the nearest that falls"
+    chain = devices, orientations, shares, wanted_row, left_in_trial
+    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain))
 
 
 def _draw_section(

@@ -1,7 +1,7 @@
 """Pictures of tooling: each orientation at the worst place of each device, and what isolates each."""
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
@@ -54,8 +54,11 @@ def chain(
     orientations: Sequence[Orientation],
     shares: Floats,
     wanted_row: int | None = None,
+    left_in_trial: Collection[str] = (),
 ) -> Figure:
     """Draw each orientation at the worst place of each device that it meets, the one wanted first.
+
+    What left in a trial is drawn as what leaves, with what the static rule says of it.
 
     Parameters
     ----------
@@ -66,6 +69,8 @@ def chain(
     shares : (M,) float [1]
         In which they come.
     wanted_row : int, optional
+    left_in_trial : collection of str
+        Names of orientations of which a part left in a trial.
 
     Returns
     -------
@@ -111,7 +116,10 @@ def chain(
         else:
             word = f"{passages[-1].fate} by {passages[-1].device.kind}"
         last = passages[-1].after if passages else orientation
-        colour = PASSED_COLOUR if through and not last.returned else REJECTED_COLOUR
+        leaves = through and not last.returned
+        if not leaves and orientation.name in left_in_trial:
+            leaves, word = True, left_words(word)
+        colour = PASSED_COLOUR if leaves else REJECTED_COLOUR
         write_text(page, left + 16, top + 30, orientation.name, size=12, weight="bold", colour=colour)
         write_text(page, left + 16, top + 52, f"{100.0 * shares[k]:.3g} % of the parts")
         texts: list[tuple[str, style.Look]] = [(text, {"colour": colour}) for text in textwrap.wrap(word, 24)]
@@ -119,15 +127,31 @@ def chain(
         for below, (text, look) in enumerate(texts, start=1):
             write_text(page, left + 16, top + 52 + below * TEXT_LINE_PX, text, **look)
         for step, passage in enumerate(passages):
-            _cell(page, (left + FATE_COLUMN_PX + step * column, top, column, ROW), passage, size)
+            cell = left + FATE_COLUMN_PX + step * column, top, column, ROW
+            _cell(page, cell, passage, size, leaves=leaves)
         if passages and through:
             box = left + wide - OUT + 8, top + 8, OUT - 24, ROW - 38
             _draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
         if orientation.returned:  # by the bare track
             cell = left + FATE_COLUMN_PX, top, column, ROW
-            _draw_from_above(_axes(page, cell, size, True), orientation, None, None, REJECTED_COLOUR)
-            write_text(page, cell[0] + 8, top + ROW - 12, "before it meets a device", colour=REJECTED_COLOUR)
+            _draw_from_above(_axes(page, cell, size, True), orientation, None, None, colour)
+            write_text(page, cell[0] + 8, top + ROW - 12, "before it meets a device", colour=colour)
     return page
+
+
+def left_words(rule: str) -> str:
+    """Return what is said of an orientation that left in a trial and not by the static rule.
+
+    Parameters
+    ----------
+    rule : str
+        What becomes of it by the rule: 'stopped by wiper'.
+
+    Returns
+    -------
+    str
+    """
+    return f"leaves in the trial (by the rule {rule})"
 
 
 def _would_return(
@@ -200,11 +224,13 @@ def limits(study: ToolingStudy, words: str) -> Figure:
     return page
 
 
-def _cell(page: Figure, box: Box, passage: Passage, size: float) -> None:
+def _cell(page: Figure, box: Box, passage: Passage, size: float, *, leaves: bool) -> None:
+    """An orientation at a device; ``leaves`` where a trial let it through, whatever the rule says."""
     good = passage.verdict.passes > 0.0
-    colour = PASSED_COLOUR if good else REJECTED_COLOUR
+    colour = PASSED_COLOUR if good or leaves else REJECTED_COLOUR
     axes = _axes(page, box, size, passage.picture == "above")
     word = "hangs" if passage.verdict.hangs else "passes" if good else f"is {passage.fate}"
+    word = f"by the rule {word}" if leaves and not good else word
     words = turned_words(passage) if passage.verdict.onto else f"{word}, {margin_words(passage.verdict)}"
     if passage.picture == "turned":
         words = _draw_turned(axes, passage, colour)

@@ -238,6 +238,32 @@ def test_what_the_track_does_not_carry_is_said_to_be_returned_as_the_table_says(
         assert ("falls off the track; else returned by vision reject" in shown) == returns
 
 
+def test_what_left_in_a_trial_is_not_drawn_as_stopped(lying):
+    """The wanted orientation was drawn in red, stopped by a wiper, in a bowl that fed it."""
+    every = lying[1]
+    wiper = make_device(
+        "wiper", "here", limit=1e-3
+    )  # lower than any lies: by the rule it stops or returns all
+    by_rule = [device_passages.worst_passage(wiper, one, every) for one in every]
+    assert all(passage.verdict.passes <= 0.0 for passage in by_rule)
+    left, stays = every[0], every[1]
+    for left_in_trial in ((), (left.name,)):
+        page = tooling_figures.chain([wiper], every, even(every), 0, left_in_trial)
+        colours = {text.get_text(): text.get_color() for text in page.texts}
+        is_left = bool(left_in_trial)
+        passed, rejected = tooling_figures.PASSED_COLOUR, tooling_figures.REJECTED_COLOUR
+        assert colours[left.name] == (passed if is_left else rejected) and colours[stays.name] == rejected
+        shown = " ".join(text.get_text() for text in page.texts)
+        assert shown.count("leaves in the trial (by the") == int(is_left)
+        solid = tooling_views.figure([wiper], every, even(every), 0, left_in_trial)
+        first, *_ = solid.texts
+        assert first.get_text().startswith(left.name) and "passes" not in first.get_text()
+        assert ("leaves in the trial" in first.get_text()) is is_left
+        assert first.get_color() == (passed if is_left else rejected)
+    others = tooling_views.figure([wiper], every, even(every), 0, [one.name for one in every])
+    assert len(others.axes) == 1, "none of them falls"
+
+
 def test_rails_are_cut_across_under_what_hangs():
     screw = parts.load(ROOT / "docs/tutorial/countersunk_m4x12.stl")
     bowl = bowls.read(None, ["track.width=15 mm"])
