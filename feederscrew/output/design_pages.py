@@ -233,24 +233,22 @@ def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
     list of (str, str)
         Orientations or aspects with words for each, those that the picture of a page opens with.
     """
-    wanted = (study.wanted or "").split(AMONG)[0]
+    wanted, tooling = (study.wanted or "").split(AMONG)[0], study.tooling
+    arrives = None if tooling is None or tooling.wanted is None else tooling.orientations[tooling.wanted].name
     if study.delivers:
         words = "leaves correctly oriented"
         instead = texts.leaving_texts(study.left_instead)
         others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
         seen = [(name, f"left in its place: {instead[name]}") for name in others[:1]]
-        tooling = study.tooling
-        if wanted == HANGING and tooling is not None and tooling.wanted is not None:  # no pose on a face
-            wanted, words = (
-                tooling.orientations[tooling.wanted].name,
-                "arrives so, leaves hanging by its head",
-            )
+        if wanted == HANGING and arrives:  # no pose on a face
+            wanted, words = arrives, "arrives so, leaves hanging by its head"
         return [(wanted, words), *seen]
     tried = study.wanted_trials
-    seen = [
-        (one.wanted, texts.wanted_trials_text("wanted", one.trials, one.ends, one.others))
-        for one in sorted(tried, key=lambda one: one.wanted != wanted)[:2]
-    ]
+    seen = []
+    for one in sorted(tried, key=lambda one: one.wanted != wanted)[:2]:
+        words = texts.wanted_trials_text("wanted", one.trials, one.ends, one.others)
+        hangs = one.wanted == HANGING and arrives
+        seen.append((arrives, f"arrives so; {words}") if hangs and arrives else (one.wanted, words))
     aspects = {name.partition("@")[0] for name, _ in seen}
     instead_of_it = (one for one in next_tries(study) if one.aspect and one.aspect not in aspects)
     return [*seen, *((one.aspect, f"to try: {reason(one)}") for one in itertools.islice(instead_of_it, 1))]
