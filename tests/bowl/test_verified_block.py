@@ -214,6 +214,7 @@ def draw(kind, rng):
         "dish-out": lambda: {"limit": length(), "radius": length(1e-3)},
         "cap selector": lambda: {"limit": first, "length": length(3e-2, 4e-2), "tongue": length(),
                                  "reach": first + length()},
+        "curved deflector": lambda: {"limit": length(), "begin": number(0.1, 0.4), "end": number(0.5, 1.2)},
         "profile gate": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),
         "V groove": lambda: {"angle": number(0.2, 1.0)},
         "banked track": lambda: {"angle": number(0.0, 0.7)},

@@ -62,7 +62,8 @@ def trial(stage, start, track):
     bores = [(track.radius * t - start, j["mouth_z"], 2.0 * j["radius"]) for t, j in zip(theta, jets)]
     faces = []
     for origin, axes, _, area in blades:
-        inwards = np.array([-origin[0], track.radius - origin[1]]) / track.radius
+        inwards = np.array([-origin[0], track.radius - origin[1]])
+        inwards = inwards / np.hypot(*inwards)
         faces.append(affinity.scale(area, float((axes[0, :2] * inwards).sum()), 1.0, origin=(0.0, 0.0)))
     return View(floor, lambda height: laid([_slab(one, height) for one in blades]), in_order(bores), faces)
 

@@ -71,6 +71,20 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
         assert (seen.orientations[-1] == seen.entry_rows).all() and (seen.end_stations == 2).all()
 
 
+def test_a_cap_that_stays_before_a_straight_blade_leaves_along_a_curved_one(bowl):
+    """On its round side, mouth ahead, at 50 Hz and throw number 1.8: a wiper of 30 deg stops it."""
+    fast = ("drive.amplitude=0.52 mm", "drive.frequency=50 Hz", "drive.vibration_angle=20 deg",
+            "drive.phase=0 deg", "track.width=16 mm")  # fmt: skip
+    cap, gone = load("parts/cap_14x10.stl"), []
+    for line in ("wiper: {clearance: 11.5 mm, sweep: 30 deg}",
+                 "curved deflector: {clearance: 11.5 mm, from: 12 deg, to: 50 deg}"):  # fmt: skip
+        one = bowl(line, own=fast)
+        every = lying(cap, one)
+        rows = [k for k, own in enumerate(every) if own.kind == "rolling" and abs(own.heading - np.pi) < 0.2]
+        gone.append(np.mean(sent(cap, one, rows, 8, one.devices).fates == course.RETURNED))
+    assert gone[0] < 0.5 and gone[1] >= 0.75
+
+
 def test_a_cap_on_its_bottom_rides_over_a_selector_and_one_on_its_mouth_falls(bowl):
     cap, one = (
         load("parts/cap_14x10.stl"),

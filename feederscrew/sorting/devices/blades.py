@@ -49,7 +49,9 @@ SWEPT = forms.mapping(
 
 
 @dataclass(frozen=True)
-class _Overhead(Device):
+class Overhead(Device):
+    """A blade over the track at one clearance, open to the free edge."""
+
     action: ClassVar[Action] = Action.OVERHEAD
     search: ClassVar[ValueSearch] = ValueSearch(bound=Bound.UPPER, limited_by="height")
 
@@ -67,7 +69,7 @@ class _Overhead(Device):
 
 
 @dataclass(frozen=True)
-class Wiper(_Overhead):
+class Wiper(Overhead):
     """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
 
     sweep: float = field(
@@ -171,7 +173,7 @@ class Wiper(_Overhead):
 
 
 @dataclass(frozen=True)
-class HeightBar(_Overhead):
+class HeightBar(Overhead):
     """A bar across the track."""
 
     kind = "height bar"
@@ -184,7 +186,7 @@ class HeightBar(_Overhead):
 
 
 @dataclass(frozen=True)
-class HoldDown(_Overhead):
+class HoldDown(Overhead):
     """A bar above the queue."""
 
     kind = "hold-down"

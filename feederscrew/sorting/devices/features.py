@@ -230,10 +230,10 @@ class Blade:
     def opening(self) -> list[Points]:
         """Return the outlines (K, 2) [m] of what is free below and within it: off the wall, upwards."""
         near, _, far, top = self.solid.bounds
-        free = shapely.box(near, 0.0, far, top).difference(self.solid)
+        free = shapely.box(max(near, 0.0), 0.0, far, top).difference(self.solid)
         parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon"]
         across = np.array([math.sin(self.heading), 1.0])
-        return [shapely.get_coordinates(part.exterior)[:-1] * across for part in parts]
+        return [shapely.get_coordinates(part.exterior)[:-1] * across + [self.foot[1], 0.0] for part in parts]
 
 
 @dataclass(frozen=True, eq=False)
