@@ -155,7 +155,7 @@ class Wiper(_Overhead):
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
         ahead = 0.0 if self.face is None else track.extent / math.tan(self.sweep)
-        return Features(0.5 * room + ahead, takes=room + ahead, blades=(blade,))
+        return Features(0.5 * room + ahead, blades=(blade,))
 
     def document_values(self) -> dict[str, Any]:
         own = {"sweep_deg": math.degrees(self.sweep)}
