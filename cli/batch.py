@@ -72,8 +72,10 @@ def batch(
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
     orientation that leaves the bowl most often, or of the aspect that a list asks for. How often parts
-    lie on each aspect is what arrives from the bowl's moving floor, as for `feeder rate`. This takes
-    one to five seconds a part. A part that fails is reported, and the others go on. Exit status 1 says
+    lie on each aspect is what arrives from the bowl's moving floor, as for `feeder rate`. This takes one
+    to five seconds a part.
+
+    A part that fails is reported, and the others go on. Exit status 1 says
     that some failed. Ctrl-C stops it with exit status 130 and a summary of what is done; --resume goes on.
 
     PARTS are part files, folders of them (or of folders of them), patterns ("parts/**/*.stl") and lists.

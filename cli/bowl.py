@@ -51,8 +51,8 @@ SOLID_OPTIONS = (
 @options.option(
     "--measured",
     "VALUES",
-    "What was measured at the machine, any of 'acceleration=64 m/s2, stroke=0.3 mm, frequency=50 Hz, "
-    "fill=50 %': what it does now beside what it should, and the likely cause.",
+    "What was measured at the machine, 'acceleration=64 m/s2, stroke=0.3 mm, frequency=50 Hz, fill=50 %' "
+    "or some of it, beside what it should be.",
 )
 @options.bowl
 @options.title_block

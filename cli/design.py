@@ -65,7 +65,7 @@ REQUEST = (  # what shall leave, and what may be used
     ),
     options.flag(
         "--alternatives",
-        "Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
+        "Prove the best design of each class: steel, steady air, sensor with valve.",
     ),
     options.flag(
         "--quick",
@@ -126,10 +126,12 @@ def design(
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
     what its trial denies is changed. What gets through goes through a queue at low, normal and high fill,
     and through draws of part, friction, drive and cuts. Chains of steel come first, then steady air, then
-    cameras with a valve: the first that holds is taken. The answer is one of holds, holds if parts arrive
-    single (two of them hook), falls short and none, with the numbers it rests on. What falls short says
-    where, with the nearest design that would hold, and ends in commands to try. The exit status is 3
-    where the bowl holds if parts arrive single, and else 0 of a run that came to its end.
+    cameras with a valve: the first that holds is taken. What falls short says where, with the nearest
+    design that would hold, and ends in commands to try.
+
+    The answer is one of holds, holds if parts arrive single (two of them hook), tooling holds, its machine
+    cannot be made, falls short and none, with the numbers it rests on. The exit status is 3 where it holds
+    under such a condition, and else 0 of a run that came to its end.
 
     The drive is the calmest on one set of leaf springs that is fast enough, at the frequency of the mains
     (machine.mains) or twice that. What --config says of track, drive, machine and friction is kept. Its
@@ -166,7 +168,7 @@ def design(
     orientation.check_heading(request_options)
     with hold_interrupts():
         from feederscrew import bowl as bowls
-        from feederscrew.bowl.verified import Status
+        from feederscrew.bowl.verified import CONDITIONS
         from feederscrew.designing import calls, loop
         from feederscrew.designing.record import DesignRequest
         from feederscrew.output import designs
@@ -214,7 +216,7 @@ def design(
         study = design_part(solid, own, aspect_shares, is_shown=True)
     if study.partial:  # what is not proved is no success
         context.exit(exit_status())
-    if study.status == Status.HOLDS_SINGLE:  # who goes by the exit status must not miss the condition
+    if study.status in CONDITIONS:  # who goes by the exit status must not miss the condition
         context.exit(CONDITIONAL)
 
 
@@ -229,7 +231,7 @@ def _batch(
     """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
     from feederscrew import bowl as bowls
     from feederscrew.batch import inputs as lists
-    from feederscrew.bowl.verified import Status
+    from feederscrew.bowl.verified import CONDITIONS
     from feederscrew.errors import FeederError
     from feederscrew.output import designs, offers
 
@@ -261,7 +263,7 @@ def _batch(
         return exit_status()
     if any(row["status"] == lists.FAILED for row in rows):
         return 1
-    return CONDITIONAL if any(row["status"] == Status.HOLDS_SINGLE for row in rows) else 0
+    return CONDITIONAL if any(row["status"] in CONDITIONS for row in rows) else 0
 
 
 @contextlib.contextmanager

@@ -18,6 +18,7 @@ OPTION_HEADINGS = {name: heading for heading, names in OPTION_GROUPS.items() for
 OWN_OPTIONS = "Options"
 GLOSSARY = "Words (aspect, heading, purity ...): docs/glossary.md"
 COMMON = "Options of most commands"
+HELP_RECORD = ("-h, --help, --help-all", "Show this help, or every option.")
 # shared options that few calls need
 RARE_OPTIONS = {
     "centre_of_mass",
@@ -30,6 +31,9 @@ RARE_OPTIONS = {
     "fed",
     "surface",
     "surface_exponent",
+    "lining",
+    "date",
+    "revision",
     "seed",
     "jobs",
     "pictures",
@@ -54,7 +58,8 @@ class Grouped(click.Command):
 
         text = "Show every option and the whole text."
         flag = {"is_flag": True, "is_eager": True, "expose_value": False}
-        self.params.append(click.Option(["--help-all"], help=text, callback=show, **flag))
+        self.help_all = click.Option(["--help-all"], help=text, callback=show, **flag)
+        self.params.append(self.help_all)
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the example and the first paragraph, or with --help-all every one.
@@ -79,8 +84,13 @@ class Grouped(click.Command):
         ctx, formatter
             As click gives them.
         """
-        listed = [option for option in self.get_params(ctx) if isinstance(option, click.Option)]
         whole = _is_whole(ctx)
+        left_out = () if whole else (self.get_help_option(ctx), self.help_all)
+        listed = [
+            option
+            for option in self.get_params(ctx)
+            if isinstance(option, click.Option) and option not in left_out
+        ]
         headings = (OWN_OPTIONS, *OPTION_GROUPS) if whole else (OWN_OPTIONS, COMMON)
         sections: dict[str, list[tuple[str, str]]] = {heading: [] for heading in headings}
         for option in listed:
@@ -88,15 +98,22 @@ class Grouped(click.Command):
             record = option.get_help_record(ctx) if whole or option.name not in self.rare else None
             if record:
                 sections[heading if whole or heading == OWN_OPTIONS else COMMON].append(record)
+        if not whole:
+            sections[OWN_OPTIONS].append(HELP_RECORD)
         for heading, records in sections.items():
             if records:
                 with formatter.section(heading):
                     formatter.write_dl(records)
-        rare = [max(option.opts, key=len) for option in listed if option.name in self.rare]
+        rare = self._rare_options(ctx)
         if rare and not whole:
             formatter.write_paragraph()
             text = f"Rare, see --help-all: {', '.join(rare)}"
             formatter.write(textwrap.fill(text, formatter.width, break_on_hyphens=False) + "\n")
+
+    def _rare_options(self, ctx: click.Context) -> list[str]:
+        """The options that only --help-all explains."""
+        listed = (option for option in self.get_params(ctx) if isinstance(option, click.Option))
+        return [max(option.opts, key=len) for option in listed if option.name in self.rare]
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write where words are explained.
@@ -107,7 +124,7 @@ class Grouped(click.Command):
             As click gives them.
         """
         super().format_epilog(ctx, formatter)
-        _write_glossary(formatter)
+        _write_glossary(formatter, apart=_is_whole(ctx) or not self._rare_options(ctx))
 
 
 class Words(click.Group):
@@ -125,8 +142,9 @@ class Words(click.Group):
         _write_glossary(formatter)
 
 
-def _write_glossary(formatter: click.HelpFormatter) -> None:
-    formatter.write_paragraph()
+def _write_glossary(formatter: click.HelpFormatter, *, apart: bool = True) -> None:
+    if apart:
+        formatter.write_paragraph()
     formatter.write(f"{GLOSSARY}\n")
 
 

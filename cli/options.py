@@ -594,12 +594,12 @@ def _title(value: str) -> str:
 DENSITY = option(
     "--density",
     "DENSITY",
-    'A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
+    'Material or "7.85 g/cm3".  [default: steel]',
     type=_density,
     shell_complete=_complete(_materials),
 )
 READING = (
-    option("--units", None, "Length unit of the file (STL has none).  [default: mm]", type=LENGTH_UNITS),
+    option("--units", None, "Length unit (STL has none).  [default: mm]", type=LENGTH_UNITS),
     DENSITY,
     option(
         "--centre-of-mass",
@@ -648,7 +648,7 @@ def parts(command: Callable) -> Callable:
 overrides = option(
     "--set overrides",
     "KEY=VALUE",
-    'Override one value: --set drive.frequency="50 Hz".',
+    'One value of it: --set drive.frequency="50 Hz".',
     multiple=True,
     shell_complete=_complete(_bowl_keys),
 )
@@ -698,7 +698,7 @@ vary = functools.partial(
 FORMAT = choice("--format", PRINT_FORMATS, "What is printed on stdout.", default="table")
 QUIET = flag("-q --quiet", "Suppress warnings and messages.")
 OUTPUT = (
-    path("-o --output directory", "DIR", "Write tables, pictures and run.json to DIR/<name>/."),
+    path("-o --output directory", "DIR", "Write tables, pictures to DIR/<name>/."),
     path("--depfile", "FILE", "Write a rule for make: what the files of -o are made from."),
     FORMAT,
     QUIET,

@@ -18,8 +18,7 @@ CHAIN_OPTIONS = (
     options.aspect("Aspect on which the part must leave the bowl.", required=True),
     options.heading(
         "DEG",
-        "Heading it is laid down in, which the wall turns to the next stable one.  "
-        "[default: the most frequent that stays on the track]",
+        "Heading it is laid down in; the wall turns it to a stable one.  [default: the most frequent]",
     ),
     options.rule,
     options.quantity("--gap", "length", "0 mm", "Gap between one part and the next."),

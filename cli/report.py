@@ -26,11 +26,11 @@ PLACE = (
     options.path(
         "-o --output directory",
         "DIR",
-        "Write the page and run.json to DIR/<name>/.",
+        "Write the page to DIR/<name>/.",
         default="results",
         show_default=True,
     ),
-    options.choice("--format", ["html", "md"], "One HTML file, or Markdown with pictures beside it.", "html"),
+    options.choice("--format", ["html", "md"], "One HTML file, or Markdown and pictures.", "html"),
     options.QUIET,
     options.flag("-v --verbose", "Say what is read and how long each chapter takes."),
 )
@@ -47,11 +47,11 @@ def report(part: Values, request_options: Values, share_options: Values, bowl: V
 
     Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
     turned, how often it lands on each, and how it tips, slides and travels. It has the reactions on the
-    track, the rate, the limitations and the inputs to reproduce it. With --config, how often it lands on
-    each aspect is what arrives from the bowl's own moving floor, as for `feeder rate`.
+    track, the rate, the limitations and the inputs to reproduce it.
 
-    PART is a mesh or a part card. report.html needs no other file and no network. --format md writes
-    report.md with its pictures beside it. A chapter that cannot be computed says why.
+    With --config, how often it lands on each aspect is what arrives from the bowl's own moving floor, as for
+    `feeder rate`. PART is a mesh or a part card. report.html needs no other file and no network. --format
+    md writes report.md with its pictures beside it. A chapter that cannot be computed says why.
     """
     orientation.check_heading(request_options)
     from feederscrew.bowl import read, verified

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     "length",
     "0.15 mm",
     positive=True,
-    text="Least margin by which the wanted orientation passes and the others fail, "
-    "beside play and tolerance.",
+    text="Least margin by which the wanted one passes and others fail, beside play and tolerance.",
 )
 @options.quantity(
     "--purity",
@@ -35,15 +34,14 @@ if TYPE_CHECKING:
     "1",
     positive=True,
     most=1.0,
-    text="Share of what leaves that must be in the wanted orientation: below 1 a shorter chain may do.",
+    text="Share of what leaves that must be as wanted: below 1 a shorter chain may do.",
 )
 @options.quantity(
     "--efficiency",
     "number",
     "0",
     most=1.0,
-    text="Share of what is offered that must leave: the search goes on until it does, "
-    "or says what is missing.",
+    text="Share of what is offered that must leave; else it is said what is missing.",
 )
 @options.choice(
     "--outcome",
@@ -105,14 +103,15 @@ def tooling(
 ) -> None:
     """Example: feeder tooling lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
-    Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect,
-    the table has every orientation with its share and its limits (least track width, greatest canyon
-    and gap). It has the devices that isolate it, with margin, efficiency and purity. With an aspect, it
-    has the chain of fewest devices. Each has the smallest cut that returns and the largest that passes.
-    Devices of the bowl file stay before the design.
+    Which way up is cheapest to feed, and what to cut so that only that one leaves. A few parts of each
+    orientation are sent through what is proposed, and what that trial says comes first.
 
-    A few parts of each orientation are sent through what is proposed, of the table through the best
-    three. What that trial says comes first. Where it denies the chain of one orientation, up to four others
+    Without an aspect, the table has every orientation with its share and its limits (least track width,
+    greatest canyon and gap). It has the devices that isolate it, with margin, efficiency and purity. With
+    an aspect, it has the chain of fewest devices. Each has the smallest cut that returns and the largest
+    that passes. Devices of the bowl file stay before the design.
+
+    Of the table the best three are tried. Where it denies the chain of one orientation, up to four others
     are tried, without one or more of its devices. --static leaves the trial out. Ctrl-C ends it as not
     proved, with exit status 130: what was found so far is given, without drawings to build from.
 

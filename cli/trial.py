@@ -84,7 +84,9 @@ def trial(
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
     The track vibrates with the drive. Parts go one at a time, their orientations in turn. Each part
-    passes, is turned, returned, hangs, is stopped, rolls back or is stuck. Orientations count in the
+    passes, is turned, returned, hangs, is stopped, rolls back or is stuck.
+
+    Orientations count in the
     shares in which they arrive from the moving floor of the bowl file, or as --launch, --rule or a file
     (docs/counts.md) says. Beside each stands what the static rule of feeder tooling says, and its
     margin. Those that do something else come first.
@@ -152,6 +154,5 @@ def trial(
             films.write_film(film, study)
             out.say(f"Wrote {film}")
         out.write(folder, tables.offers(study))
-        frame = tables.frame(study, people=out.format == "table")
         hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")
-        out.show(frame, document, hidden=hidden, spare=tables.spare(study))
+        out.show(tables.frame(study), document, hidden=hidden, spare=tables.spare(study))

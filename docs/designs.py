@@ -5,8 +5,11 @@ Example: python docs/designs.py                                  (writes the tab
          python docs/designs.py parts/washer_m6.stl some/nut.stl (designs these anew at first, one job each)
          python docs/designs.py some/nut.stl --target 40/min --more "--up A,B"
          python docs/designs.py --results runs/nut.json          (takes runs that were made before)
+         python docs/designs.py --again parts some --keep runs   (each line anew, its part from these folders)
 
 A part is a line of docs/designs.csv for each rate and each list of further options. A minute or four each.
+With --keep each result is a file of a folder, and what is there is not run again: a run that was stopped
+goes on where it was.
 A result is what `feeder design --format json` printed, with the CPU seconds of the command as `cpu_s`, and
 its further options, where it had any, as the text `more`.
 """
@@ -26,6 +29,8 @@ import generated
 FOLDER = Path(__file__).resolve().parent
 PAGE, TABLE = FOLDER / "design.md", FOLDER / "designs.csv"
 BEGIN, END = "<!-- designs -->\n", "<!-- end of designs -->"
+MOST_SECONDS = 5400.0  # of one design
+CONDITIONAL = 3  # exit status of one that holds under a condition only
 KEYS = ("part", "asked", "more")  # by which a line is found
 FIGURES = (
     "status", "class", "wanted", "chain", "rate", "low", "purity", "jams", "held", "draws", "queue_s",
@@ -37,18 +42,44 @@ HEAD = (
 )  # fmt: skip
 
 
-def run_design(path: str, target: str, more: str) -> dict[str, str]:
-    """Design one part as a user does, and return its line."""
+def run_design(path: str, target: str, more: str, keep: str = "") -> dict[str, str]:
+    """Design one part as a user does, and return its line; a result that is kept is not made again."""
+    stem = Path(path).stem
+    name = f"{stem}-{target}{more}".translate(dict.fromkeys(map(ord, " /,"), "_")) + ".json"
+    kept = Path(keep) / name if keep else None
+    if kept is not None and kept.exists():
+        result = json.loads(kept.read_text(encoding="utf-8"))
+        return line_of(result, stem, target, more, result["cpu_s"])
     feeder = Path(sys.executable).parent / "feeder"
     with tempfile.TemporaryDirectory() as folder:
         options = ["design", path, "--target", target, "--jobs", "1", "--format", "json", "-o", folder]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         finished = subprocess.run(
-            [feeder, *options, *shlex.split(more)], capture_output=True, text=True, check=True, timeout=1800
+            [feeder, *options, *shlex.split(more)], capture_output=True, text=True, timeout=MOST_SECONDS
         )
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if finished.returncode not in (0, CONDITIONAL):
+        raise RuntimeError(f"{path}: {finished.stderr.strip()[-300:]}")
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return line_of(json.loads(finished.stdout), Path(path).stem, target, more, seconds)
+    result = json.loads(finished.stdout)
+    if kept is not None:
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps(result | {"cpu_s": seconds, "more": more}), encoding="utf-8")
+    return line_of(result, stem, target, more, seconds)
+
+
+def run_again(folders: list[str], keep: str) -> None:
+    """Design each line of the table anew, its part from the first of some folders that has it."""
+    for row in read_table():
+        places = [Path(folder) / f"{row['part']}.stl" for folder in folders]
+        path = next((place for place in places if place.exists()), None)
+        if path is None:
+            print(f"{row['part']}: no such file in {', '.join(folders)}", file=sys.stderr)
+            continue
+        try:
+            put_line(run_design(str(path), row["asked"], row["more"], keep))
+        except (RuntimeError, subprocess.TimeoutExpired) as fault:  # the others go on; its line stays
+            print(f"{row['part']}: {fault}", file=sys.stderr)
 
 
 def line_of(result: dict, part: str, target: str, more: str, seconds: float) -> dict[str, str]:
@@ -118,10 +149,14 @@ def main() -> int:
     parser.add_argument("--target", default="30/min")
     parser.add_argument("--more", default="", help="further options of feeder design")
     parser.add_argument("--results", nargs="+", default=[], help="runs that were made before, JSON")
+    parser.add_argument("--again", nargs="+", default=[], help="each line anew, its part from these folders")
+    parser.add_argument("--keep", default="", help="folder in which each result is kept")
     parser.add_argument("--check", action="store_true")
     asked = parser.parse_args()
     for path in asked.parts:
-        put_line(run_design(path, asked.target, asked.more))
+        put_line(run_design(path, asked.target, asked.more, asked.keep))
+    if asked.again:
+        run_again(asked.again, asked.keep)
     for path in asked.results:
         result = json.loads(Path(path).read_text(encoding="utf-8"))
         more = result.get("more", "")

@@ -40,7 +40,7 @@ from feederscrew.units import MINUTE
 ORIENTATIONS = 6  # the most frequent ones of a part that are looked at
 OFTEN = 0.02  # [1] share from which an orientation is looked at
 USEFUL_YIELD = 0.1  # [1] of the parts, that a chain has to let leave before its class counts as a way
-TRIED_ORIENTATIONS = 2  # of a part, the one that the rule chose first
+TRIED_ORIENTATIONS = 2  # of a part, the one that the rule chose first; more where none of them has a way
 TRIED_CHANGES = 3  # that gain most by the rule, and are tried
 RARE_YIELD = 0.25  # [1] of the parts: below it most of what travels is returned, a grade less
 SLOW_RATE = 30.0 / MINUTE  # [1/s] below it a grade less
@@ -58,7 +58,7 @@ class Grade(StrEnum):
     E = "E"
 
     def worse(self, steps: int) -> "Grade":
-        """Return the grade some steps further down, at the most D: E is of parts without a way.
+        """Return the grade some steps further down, at the most D: E is of parts without a way, and stays.
 
         Parameters
         ----------
@@ -68,6 +68,8 @@ class Grade(StrEnum):
         -------
         Grade
         """
+        if self is Grade.E:
+            return self
         grades = list(Grade)
         return grades[min(grades.index(self) + steps, grades.index(Grade.D))]
 
@@ -109,6 +111,8 @@ class Way:
     rate: float  # [1/s] that leave so in this bowl
     offered: float  # [1/s] that arrive at the devices, in every orientation
     is_tried: bool = False  # by a trial; else by the static rule
+    parts: int = 0  # that were tried, one at a time
+    least_purity: float = 0.0  # [1] lower end of the 95 % interval of a trial's purity
 
     @property
     def cost_class(self) -> CostClass:
@@ -121,9 +125,25 @@ class Way:
         return -self.cost_class.number if self.efficiency >= USEFUL_YIELD else -len(CostClass) - 1, self.rate
 
     @property
+    def is_cheap(self) -> bool:
+        """Whether nothing cheaper can be found: steel lets enough leave."""
+        return self.cost_class is CostClass.STEEL and self.efficiency >= USEFUL_YIELD
+
+    @property
     def text(self) -> str:
         """Say what the way takes and brings: 'steel, 120 a minute'."""
         return f"{CLASS_WORDS[self.cost_class]}, {MINUTE * self.rate:.3g} a minute"
+
+
+@dataclass(frozen=True, eq=False)
+class WaySearch:
+    """What the search for a way found, and what it looked at."""
+
+    way: Way | None
+    looked_at: int  # orientations, of those that come often
+    often: int  # orientations that come often
+    by_trial: bool = False
+    is_cut: bool = False  # by the user or the limit, before all was tried that would have been
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,14 +162,24 @@ class ChangedPart:
 
     change: Change
     part: Part
-    way: Way | None  # None where none isolates
-    before: Way | None  # of the part as it is, judged alike: by the rule, or tried
+    found: WaySearch  # for the changed part
+    found_before: WaySearch  # for the part as it is, judged alike: by the rule, or tried
     grade: Grade
+
+    @property
+    def way(self) -> Way | None:
+        """The cheapest way to feed the changed part; None where none isolates."""
+        return self.found.way
+
+    @property
+    def before(self) -> Way | None:
+        """The cheapest way to feed the part as it is, judged alike."""
+        return self.found_before.way
 
     @property
     def is_tried(self) -> bool:
         """Whether parts of true shape were sent through."""
-        return self.way is not None and self.way.is_tried
+        return self.found.by_trial
 
     @property
     def gains(self) -> bool:
@@ -170,9 +200,9 @@ class ChangedPart:
     def outcome(self) -> str:
         """Say how the changed part is fed, and how the part as it is: 'steel, 120 a minute, for ...'."""
         if self.way is None:
-            return "no way was found"
+            return f"no way was found{'' if self.is_tried else ' by the static rule'}"
         former = "no way at all" if self.before is None else self.before.text
-        return f"{self.way.text}, for {former}"
+        return f"{self.way.text}, for {former}{'' if self.is_tried else ' (by the static rule)'}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,6 +216,7 @@ class AdviceStudy(ReadableRecord, view="advise.ADVICE_VIEW"):
     reasons: tuple[Reason, ...]
     way: Way | None  # the cheapest that was found; None of none
     changes: tuple[ChangedPart, ...]  # the most useful first
+    is_tried: bool = False  # the part itself, by a trial; else it is graded by the static rule
     partial: bool = False  # stopped by the user or the limit before all was tried
 
     @property
@@ -198,7 +229,7 @@ class AdviceStudy(ReadableRecord, view="advise.ADVICE_VIEW"):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return what a user must not overlook, a sentence each."""
-        late = ("the advice was stopped before every change was tried: raise the limit",) * self.partial
+        late = ("the advice was stopped before all was tried: raise the limit",) * self.partial
         return (*self.aspects.warnings, *late)
 
 
@@ -220,7 +251,7 @@ class _Feeding:
         every = name_mirror_images(orientations(part, aspects, self.bowl.track))
         order = sorted(every, key=lambda one: -np.nan_to_num(one.chances[self.rule]))
         chosen = [one for one in order if one.chances[self.rule] >= OFTEN][:ORIENTATIONS]
-        return tuple(chosen or order[:1])
+        return tuple(chosen or order[:ORIENTATIONS])
 
     @property
     def _search(self) -> ToolingSearch:
@@ -246,47 +277,64 @@ class _Feeding:
             cost_class=cost_class,
         )
 
-    def way_by_rule(self, part: Part) -> tuple[Way | None, Aspects]:
+    def way_by_rule(self, part: Part) -> tuple[WaySearch, Aspects]:
         """The cheapest way by the static rule, and the aspects that arrive."""
         aspects = self.arriving(part)
-        ways = []
-        for lying in self.often(part, aspects):
+        ways, every = [], self.often(part, aspects)
+        for lying in every:
             study = self.study(part, aspects, lying)
             if study.design is not None and study.design.isolated and study.design.efficiency > 0.0:
                 ways.append(self._way(part, aspects, study, study.design, lying))
-        return max(ways, key=lambda way: way.merit, default=None), aspects
+        best = max(ways, key=lambda way: way.merit, default=None)
+        return WaySearch(best, len(every), len(every)), aspects
 
-    def way_by_trial(self, part: Part, aspects: Aspects, by_rule: Way | None) -> Way | None:
-        """The cheapest way that a trial confirms: of what the rule chose, then of what comes most often."""
+    def way_by_trial(self, part: Part, aspects: Aspects, by_rule: Way | None) -> WaySearch:
+        """The cheapest way that a trial confirms: of what the rule chose, then of what comes most often.
+
+        After ``TRIED_ORIENTATIONS`` the search ends where one of them has a way; else it goes on through all
+        that come often.
+        """
         every = self.often(part, aspects)
         first = [one for one in every if by_rule is not None and one.name == by_rule.orientation]
+        order = list(dict.fromkeys((*first, *every)))
         ways: list[Way] = []
-        for lying in list(dict.fromkeys((*first, *every)))[:TRIED_ORIENTATIONS]:
-            study = self.study(part, aspects, lying)
+        for done, lying in enumerate(order):
+            is_enough = any(way.is_cheap for way in ways) or (bool(ways) and done >= TRIED_ORIENTATIONS)
+            is_late = not is_enough and time.monotonic() > self.until
+            if is_enough or is_late:
+                return self._ended(ways, done, len(order), is_cut=is_late)
+            way, is_stopped = self._try(part, aspects, lying)
+            ways += [] if way is None else [way]
+            if is_stopped or (way is None and time.monotonic() > self.until):
+                return self._ended(ways, done + 1, len(order), is_cut=True)
+        return self._ended(ways, len(order), len(order), is_cut=False)
 
-            def propose(
-                kinds: tuple[str, ...], cost_class: CostClass | None, own: Orientation = lying
-            ) -> ToolingStudy:
-                return self.study(part, aspects, own, kinds, cost_class)
+    def _ended(self, ways: Sequence[Way], looked_at: int, often: int, *, is_cut: bool) -> WaySearch:
+        best = max(ways, key=lambda way: way.merit, default=None)
+        return WaySearch(best, looked_at, often, by_trial=True, is_cut=is_cut)
 
-            tried = tooling_trials.try_designs(study, propose, seed=self.seed, until=self.until)
-            design = tried.design
-            if design is None or not tried.trials or tried.trials[0].faults:
-                continue
-            shown = tried.trials[0]
-            way = self._way(part, aspects, tried, design, lying)
-            ways.append(
-                replace(
-                    way,
-                    efficiency=shown.efficiency,
-                    purity=shown.purity,
-                    rate=shown.efficiency * way.offered,
-                    is_tried=True,
-                )
-            )
-            if ways[-1].cost_class is CostClass.STEEL and ways[-1].efficiency >= USEFUL_YIELD:
-                break
-        return max(ways, key=lambda way: way.merit, default=None)
+    def _try(self, part: Part, aspects: Aspects, lying: Orientation) -> tuple[Way | None, bool]:
+        """The way of one orientation that a trial confirms, and whether the user stopped it."""
+        study = self.study(part, aspects, lying)
+
+        def propose(kinds: tuple[str, ...], cost_class: CostClass | None) -> ToolingStudy:
+            return self.study(part, aspects, lying, kinds, cost_class)
+
+        tried = tooling_trials.try_designs(study, propose, seed=self.seed, until=self.until)
+        design = tried.design
+        if design is None or not tried.trials or tried.trials[0].faults:
+            return None, tried.partial
+        shown = tried.trials[0]
+        way = self._way(part, aspects, tried, design, lying)
+        return replace(
+            way,
+            efficiency=shown.efficiency,
+            purity=shown.purity,
+            rate=shown.efficiency * way.offered,
+            is_tried=True,
+            parts=shown.parts,
+            least_purity=shown.purity_ends[0],
+        ), tried.partial
 
     def _way(
         self, part: Part, aspects: Aspects, study: ToolingStudy, design: Design, lying: Orientation
@@ -368,10 +416,11 @@ def advise(
     tell(0, count)
     by_rule, aspects = feeding.way_by_rule(part)
     tell(1, count)
-    way, partial, judged, done = by_rule, False, list[tuple[Change, Part, Way | None, Aspects]](), 1
+    found, partial, judged, done = by_rule, False, list[tuple[Change, Part, WaySearch, Aspects]](), 1
     try:
         if with_trials:
-            way = feeding.way_by_trial(part, aspects, by_rule)
+            found = feeding.way_by_trial(part, aspects, by_rule.way)
+            partial = found.is_cut
             done += 1
             tell(done, count)
         for change in changes:
@@ -386,22 +435,37 @@ def advise(
             tell(done, count)
     except KeyboardInterrupt:
         partial = True
-    judged.sort(key=lambda each: _merit(each[2]), reverse=True)
-    found: list[ChangedPart] = []
+    if found.is_cut and found.way is None:  # not known by trials: the rule's is named as such
+        found = replace(by_rule, is_cut=True)
+    judged.sort(key=lambda each: _merit(each[2].way), reverse=True)
+    ranked: list[ChangedPart] = []
     for place, (change, changed, own, own_aspects) in enumerate(judged):
         before = by_rule
-        if with_trials and place < TRIED_CHANGES and not partial and time.monotonic() <= until:
+        if found.by_trial and place < TRIED_CHANGES and not partial:
             try:
-                own, before = feeding.way_by_trial(changed, own_aspects, own), way
+                tried = feeding.way_by_trial(changed, own_aspects, own.way)
+                partial = tried.is_cut
+                if not (tried.is_cut and tried.way is None):
+                    own, before = tried, found
                 done += 1
                 tell(done, count)
             except KeyboardInterrupt:
                 partial = True
-        reasons = _reasons(changed, feeding.bowl, own_aspects, own, feeding)
-        found.append(ChangedPart(change, changed, own, before, _grade(own, reasons)))
-    found.sort(key=lambda each: (not each.is_tried, not each.gains))
-    reasons = _reasons(part, feeding.bowl, aspects, way, feeding)
-    return AdviceStudy(part, bowl, aspects, _grade(way, reasons), reasons, way, tuple(found), partial)
+        reasons = _reasons(changed, own_aspects, own, feeding)
+        ranked.append(ChangedPart(change, changed, own, before, _grade(own.way, reasons)))
+    ranked.sort(key=lambda each: (not each.is_tried, not each.gains))
+    reasons = _reasons(part, aspects, found, feeding)
+    return AdviceStudy(
+        part=part,
+        bowl=bowl,
+        aspects=aspects,
+        grade=_grade(found.way, reasons),
+        reasons=reasons,
+        way=found.way,
+        changes=tuple(ranked),
+        is_tried=found.by_trial,
+        partial=partial,
+    )
 
 
 def _merit(way: Way | None) -> tuple[float, float]:
@@ -415,21 +479,11 @@ def _grade(way: Way | None, reasons: Sequence[Reason]) -> Grade:
     return BY_CLASS[way.cost_class].worse(sum(reason.steps for reason in reasons))
 
 
-def _reasons(
-    part: Part, bowl: Bowl, aspects: Aspects, way: Way | None, feeding: _Feeding
-) -> tuple[Reason, ...]:
+def _reasons(part: Part, aspects: Aspects, found: WaySearch, feeding: _Feeding) -> tuple[Reason, ...]:
     """Why a part has its grade: what its way takes and brings, and what parts do to each other."""
-    listed: list[Reason] = []
-    if way is None:
-        listed.append(
-            Reason(ReasonKind.CLASS, None, 0, "neither steel, air nor a camera isolates what comes often")
-        )
-    else:
-        by = "by a trial" if way.is_tried else "by the static rule"
-        words = (
-            f"the cheapest class that isolates is {CLASS_WORDS[way.cost_class]} ({by}), as {way.leaves_as}"
-        )
-        listed.append(Reason(ReasonKind.CLASS, None, 0, words))
+    listed: list[Reason] = [_class_reason(found)]
+    way = found.way
+    if way is not None:
         rare, slow = way.efficiency < RARE_YIELD, way.rate < SLOW_RATE
         words = f"{100.0 * way.efficiency:.3g} % of the parts come right, the others are returned"
         listed.append(Reason(ReasonKind.YIELD, way.efficiency, int(rare), words))
@@ -437,8 +491,27 @@ def _reasons(
         listed.append(Reason(ReasonKind.RATE, way.rate, int(slow), words))
     every = feeding.often(part, aspects)
     own = next((one for one in every if way is not None and one.name == way.orientation), every[0])
-    for risk in risks(own, bowl, (), orientations=every, seed=feeding.seed):
+    for risk in risks(own, feeding.bowl, (), orientations=every, seed=feeding.seed):
         if risk.kind in RISKS:
             kind, steps = RISKS[risk.kind]
             listed.append(Reason(kind, None, steps, risk.text))
     return tuple(listed)
+
+
+def _class_reason(found: WaySearch) -> Reason:
+    """Which class isolates, or that none does, and how that is known."""
+    way, by = found.way, "by the static rule"
+    if way is None:
+        of = (
+            "the orientation that comes"
+            if found.often == 1
+            else f"any of the {found.often} orientations that come"
+        )
+        by = "by trials" if found.by_trial else by
+        text = f"no chain of steel, air or a camera isolates {of} often ({by})"
+        return Reason(ReasonKind.CLASS, None, 0, text)
+    if way.is_tried:
+        least = f"{100.0 * way.least_purity:.3g} % or more of what leaves is right"
+        by = f"by a trial of {way.parts} parts, one at a time: {least}"
+    text = f"the cheapest class that isolates is {CLASS_WORDS[way.cost_class]} ({by}), as {way.leaves_as}"
+    return Reason(ReasonKind.CLASS, None, 0, text)

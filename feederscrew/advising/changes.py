@@ -39,6 +39,8 @@ MOST_VOLUME = 0.15  # [1] of the part, that a change adds or takes
 LEAST_VOLUME = 2e-3  # [1] of the part, that a change adds or takes: less is no change
 TURNED = 0.5  # [1] of a part's volume in round steps, from which it is a turned part along that axis
 LEAST_END = 0.2  # [1] of the largest outline, that an end has on which a lug may stand
+MOST_HOLE = 0.5  # [1] of a filled outline, above which its opening is the inside of a hollow part, not a hole
+SAME_HOLE = 0.1  # [1] of a hole, by which its outline may change from step to step: it may have a draft
 SAME_SHAPE = 1e-5  # [1] of volume and inertia, within which two changed parts are one
 
 
@@ -108,8 +110,7 @@ class OutlineStep:
     @property
     def is_round(self) -> bool:
         """Whether the outline, without its holes, is a circle."""
-        filled = self.filled
-        return filled.length > 0.0 and 4.0 * math.pi * filled.area / filled.length**2 > ROUND
+        return is_circle(self.filled)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,6 +165,27 @@ def polygons(area: shapely.Geometry) -> list[shapely.Polygon]:
     list of shapely.Polygon
     """
     return [part for part in shapely.get_parts(area) if part.geom_type == "Polygon" and part.area > 0.0]
+
+
+def is_circle(area: shapely.Geometry) -> bool:
+    """Tell whether an area is a circle: no other has so large an area for its perimeter.
+
+    Parameters
+    ----------
+    area : shapely.Geometry
+
+    Returns
+    -------
+    bool
+    """
+    return area.length > 0.0 and 4.0 * math.pi * area.area / area.length**2 > ROUND
+
+
+def _sides(area: shapely.Geometry) -> tuple[float, float]:
+    """The shorter and the longer side [mm] of the smallest rectangle, at any angle, about an area."""
+    corners = shapely.get_coordinates(shapely.oriented_envelope(area))
+    first, second = np.hypot(*np.diff(corners, axis=0)[:2].T).tolist()
+    return min(first, second), max(first, second)
 
 
 def list_changes(part: Part) -> tuple[Change, ...]:
@@ -331,28 +353,39 @@ def _widen_flange(view: AxisView) -> Iterator[_Made]:
 
 
 def _thicken_head(view: AxisView) -> Iterator[_Made]:
-    """A head at an end, a fifth thicker, towards the neck: it keeps its rounded end."""
+    """A head at an end, a fifth thicker, towards the neck: it keeps its rounded end.
+
+    What is added lies round the neck: a bore through the neck stays open.
+    """
     for section, at_high_end in _heads(view):
         if section[0] is not view.steps[0] and section[-1] is not view.steps[-1]:
             continue
         size = max(LEAST_MM, 0.2 * (section[-1].high - section[0].low))
-        inner = section[0] if at_high_end else section[-1]
-        span = (inner.high - OVERLAP_MM, inner.high + size)
         if at_high_end:
-            span = (inner.low - size, inner.low + OVERLAP_MM)
-        yield _Made(ChangeKind.THICKER_HEAD, size, at_high_end, view.body + _prism(inner.outline, *span))
+            inner, low, high = section[0], section[0].low - size, section[0].low + OVERLAP_MM
+        else:
+            inner, low, high = section[-1], section[-1].high - OVERLAP_MM, section[-1].high + size
+        body = view.body
+        for step in view.steps:  # a neck may taper
+            begin, end = max(low, step.low), min(high, step.high)
+            neck = shapely.Polygon() if step in section else step.filled.buffer(-OVERLAP_MM)
+            body = body + _prism(inner.outline.difference(neck), begin, end)
+        if view.low < low and high < view.high:
+            yield _Made(ChangeKind.THICKER_HEAD, size, at_high_end, body)
 
 
 def _cut_flat(view: AxisView) -> Iterator[_Made]:
-    """A flat on the longest round step, a tenth of its diameter deep."""
+    """A flat on the longest round step that has the material for it, a tenth of its diameter deep."""
     round_steps = [step for step in view.steps if step.is_round]
-    step = max(round_steps, key=lambda one: one.high - one.low, default=None)
-    if step is None:
+    for step in sorted(round_steps, key=lambda one: one.low - one.high):
+        size = max(LEAST_MM, 0.2 * step.radius)
+        _, y_low, x_high, y_high = step.filled.bounds
+        wall = step.filled.intersection(shapely.box(x_high - size - LEAST_MM, y_low, x_high, y_high))
+        if wall.difference(step.outline).area > ALIKE * wall.area:  # the wall of a tube is too thin
+            continue
+        beyond = shapely.box(x_high - size, y_low - 1.0, x_high + 1.0, y_high + 1.0)
+        yield _Made(ChangeKind.FLAT, size, False, view.body - _prism(beyond, step.low, step.high))
         return
-    size = max(LEAST_MM, 0.2 * step.radius)
-    _, y_low, x_high, y_high = step.filled.bounds
-    beyond = shapely.box(x_high - size, y_low - 1.0, x_high + 1.0, y_high + 1.0)
-    yield _Made(ChangeKind.FLAT, size, False, view.body - _prism(beyond, step.low, step.high))
 
 
 def _cut_chamfer(view: AxisView) -> Iterator[_Made]:
@@ -382,12 +415,53 @@ def _add_lug(view: AxisView) -> Iterator[_Made]:
         wide = 0.2 * min(x_high - x_low, y_high - y_low)
         size = max(LEAST_MM, 0.1 * view.long)
         rim = step.outline.intersection(shapely.box(x_high - wide, y_low, x_high, y_high))
-        middle = rim.centroid.y if rim.area > 0.0 else 0.0
+        middle = max(polygons(rim), key=lambda one: one.area).centroid.y
         foot = rim.intersection(shapely.box(x_high - wide, middle - wide, x_high, middle + wide))
         span = (step.high - OVERLAP_MM, step.high + size)
         if not at_high_end:
             span = (step.low - size, step.low + OVERLAP_MM)
         yield _Made(ChangeKind.LUG, size, at_high_end, view.body + _prism(foot, *span))
+
+
+def _holes(view: AxisView) -> Iterator[tuple[shapely.Polygon, list[OutlineStep]]]:
+    """The holes along an axis that can be moved, and the steps through which each goes.
+
+    A hole is empty, of one outline from step to step, and ends in the open or in a floor.
+    The inside of a hollow part, a hole round a pin and one step of a hole with several widths are none.
+    """
+    seen: list[shapely.Polygon] = []
+    for k, step in enumerate(view.steps):
+        for hole in _empty_rings(step):
+            if any(_is_same_hole(hole, other) for other in seen):
+                continue
+            last = k
+            while last + 1 < len(view.steps) and any(
+                _is_same_hole(hole, other) for other in _empty_rings(view.steps[last + 1])
+            ):
+                last += 1
+            seen.append(hole)
+            own = view.steps[k : last + 1]
+            ends = [view.steps[n] if 0 <= n < len(view.steps) else None for n in (k - 1, last + 1)]
+            is_open = [end is None or _share_within(hole, end.filled) < ALIKE for end in ends]
+            is_floor = [end is not None and _share_within(hole, end.outline) > 1.0 - ALIKE for end in ends]
+            if all(a or b for a, b in zip(is_open, is_floor)):
+                yield hole, list(own)
+
+
+def _empty_rings(step: OutlineStep) -> list[shapely.Polygon]:
+    """The openings of an outline in which nothing stands, no larger than ``MOST_HOLE`` of it."""
+    rings = [shapely.Polygon(ring) for part in polygons(step.outline) for ring in part.interiors]
+    most = MOST_HOLE * step.filled.area
+    return [ring for ring in rings if ring.area <= most and _share_within(ring, step.outline) < ALIKE]
+
+
+def _share_within(hole: shapely.Polygon, area: shapely.Geometry) -> float:
+    """The share of a hole [1] that lies in an area."""
+    return float(hole.intersection(area).area) / float(hole.area)
+
+
+def _is_same_hole(hole: shapely.Polygon, other: shapely.Polygon) -> bool:
+    return bool(hole.symmetric_difference(other).area <= SAME_HOLE * hole.area)
 
 
 def _move_hole(view: AxisView) -> Iterator[_Made]:
@@ -396,37 +470,37 @@ def _move_hole(view: AxisView) -> Iterator[_Made]:
     x_low, y_low, x_high, y_high = widest.filled.bounds
     along = np.array([1.0, 0.0] if x_high - x_low >= y_high - y_low else [0.0, 1.0])
     middle = widest.filled.centroid
-    for ring in (ring for part in polygons(widest.outline) for ring in part.interiors):
-        hole = shapely.Polygon(ring)
+    size = max(LEAST_MM, 0.1 * max(x_high - x_low, y_high - y_low))
+    wall = max(LEAST_MM, 0.1 * min(x_high - x_low, y_high - y_low))
+    for hole, own in _holes(view):
         centre = hole.centroid
-        if widest.is_round and centre.distance(middle) < ALIKE * widest.radius:
+        is_bore = is_circle(hole) and widest.is_round and centre.distance(middle) < ALIKE * widest.radius
+        if is_bore:
             continue  # the bore of a round part is where it works
-        through = (step for step in view.steps if not step.outline.contains(centre))
-        own = [step for step in through if step.filled.contains(hole)]
-        size = max(LEAST_MM, 0.1 * max(x_high - x_low, y_high - y_low))
         offset = float(np.sum(along * [centre.x - middle.x, centre.y - middle.y]))
         for way in (1.0, -1.0) if offset >= 0.0 else (-1.0, 1.0):
             moved = shapely.affinity.translate(hole, *(way * size * along).tolist())
-            wall = max(LEAST_MM, 0.1 * min(x_high - x_low, y_high - y_low))
             if all(step.outline.union(hole).contains(moved.buffer(wall)) for step in own):
+                low, high = own[0].low, own[-1].high
                 body = view.body
                 for step in own:
                     body = body + _prism(hole.buffer(OVERLAP_MM), step.low, step.high)
-                low, high = min(step.low for step in own), max(step.high for step in own)
                 yield _Made(ChangeKind.MOVED_HOLE, size, False, body - _prism(moved, low, high))
                 break
 
 
 def _close_slot(view: AxisView) -> Iterator[_Made]:
-    """The slots of an outline that are narrower than a third of it, filled."""
-    x_low, y_low, x_high, y_high = max(view.steps, key=lambda step: step.filled.area).filled.bounds
-    reach = min(x_high - x_low, y_high - y_low) / 6.0
+    """The slots of an outline that are narrower than a third of it, filled.
+
+    Widths are those of the smallest rectangles about them: a part may be drawn at any angle.
+    """
+    reach = _sides(max(view.steps, key=lambda step: step.filled.area).filled)[0] / 6.0
     body, widest = view.body, 0.0
     for step in view.steps:
         filled = step.filled
         closed = filled.buffer(reach, join_style="mitre").buffer(-reach, join_style="mitre")
         for pocket in polygons(closed.difference(filled)):
-            wide = 2.0 * pocket.area / max(shapely.length(pocket.exterior) / 2.0, OVERLAP_MM)
+            wide = _sides(pocket)[0]
             if wide < LEAST_MM:
                 continue
             body = body + _prism(pocket.buffer(OVERLAP_MM).intersection(closed), step.low, step.high)

@@ -48,6 +48,7 @@ class Status(enum.StrEnum):
 
     HOLDS = "holds"
     HOLDS_SINGLE = "holds if parts arrive single"  # two of them hook, and do not part by themselves
+    NO_MACHINE = "tooling holds, its machine cannot be made"  # springs, drive or solid; never of a trial
     FALLS_SHORT = "falls short"
     NONE = "none"  # nothing delivers anything
     NOT_PROVED = "not proved"  # stopped by the user
@@ -55,6 +56,7 @@ class Status(enum.StrEnum):
 
 
 HELD = (Status.HOLDS, Status.HOLDS_SINGLE)  # what a bowl may be built from
+CONDITIONS = (Status.HOLDS_SINGLE, Status.NO_MACHINE)  # its tooling holds, and something else has to be met
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.reading import Setting, of_device
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
-from feederscrew.bowl.verified import HELD
+from feederscrew.bowl.verified import HELD, Status
 from feederscrew.designing import families, loop
 from feederscrew.designing.calls import call_words
 from feederscrew.designing.calm_drive import DriveKind
@@ -23,9 +23,10 @@ from feederscrew.designing.nearest import nearest_from_study
 from feederscrew.designing.record import DesignRequest, DesignStudy, ProofKind
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine import checks, drive_sizing
-from feederscrew.machine.drive_sizing import is_two_axis
+from feederscrew.machine.drive_sizing import is_two_axis, needed_angle
 from feederscrew.part.record import Part
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
+from feederscrew.sorting.devices.kinds import cost_class
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.studies import arguments, solidbowl
 from feederscrew.studies import bowl as machines
@@ -329,8 +330,9 @@ def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, .
 def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
     """Return a design that knows what its own machine is out of limits in, and what it cannot make.
 
-    Where the leaf springs that are drawn do not make the angle that was tried, or its bowl makes no solid, it
-    falls short.
+    Where the leaf springs that are drawn do not make the drive that was tried, or its bowl makes no solid,
+    its tooling holds and its machine cannot be made: its status says so, and the nearest machine that makes
+    the drive is named.
 
     Parameters
     ----------
@@ -346,7 +348,7 @@ def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
     sheet = below.sheet
     solid = (f"no solid of its bowl can be made: {below.why}",) if below.why else ()
     if study.bowl is None or sheet is None:
-        return replace(study, machine_lacks=solid) if solid else study
+        return _with_its_alternative(replace(study, machine_lacks=solid)) if solid else study
     of_solid = () if below.drawn is None else checks.solid_remarks(below.drawn)
     warnings = (*checks.remarks(sheet), *of_solid, *below.remarks)
     other, lacking = sheet.mismatch, list[str]()
@@ -363,11 +365,67 @@ def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
         machine_warnings=tuple(dict.fromkeys(warnings)),
         machine_lacks=tuple(lacking),
     )
-    if study.status not in HELD or not lacking or other is None:
+    if study.status not in HELD or not lacking:
         return completed
-    change = f"springs that stand at {np.degrees(other.wanted.spring_angle):.3g} deg"
+    completed = _with_its_alternative(completed)
+    change = "" if solid else nearest_machine(sheet.bowl)
+    if not change:
+        return completed
     changed_springs = nearest_from_study(study, study.request.target, change, trials=len(study.attempts))
     return replace(completed, nearest=changed_springs)
+
+
+def _with_its_alternative(study: DesignStudy) -> DesignStudy:
+    """A design whose row among the alternatives has the status that it has with its machine."""
+    if study.status is not Status.NO_MACHINE:
+        return study
+    own = cost_class(study.devices)
+    rows = (
+        replace(row, status=study.status, reasons=study.machine_lacks)
+        if row.cost_class == own and row.status in HELD
+        else row
+        for row in study.alternatives
+    )
+    return replace(study, alternatives=tuple(rows))
+
+
+def nearest_machine(bowl: Bowl) -> str:
+    """Return the machine nearest to one that does not make its drive, and does: in words, '' without one.
+
+    The springs stand on their own circle or as far out as the bowl has room for them, as steep as the drive
+    asks for, on leaves that are chosen anew; each is computed as ``feeder bowl`` computes a machine.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its drive, and the machine that does not make it.
+
+    Returns
+    -------
+    str
+        'springs that stand at 36 deg on a circle of 290 mm, 8 leaves of 40 x 3 x 100 mm'.
+
+    References
+    ----------
+    Own; docs/bowl.md, "How it is computed".
+    """
+    track, machine = bowl.track, bowl.machine
+    wanted = bowl.drive.vibration_angle + track.climb
+    farthest = max(track.radius - 0.5 * machine.leaf_width, machine.spring_radius)
+    for circle in dict.fromkeys((machine.spring_radius, farthest)):
+        on_circle = replace(machine, spring_radius=circle)
+        angle = float(np.radians(np.round(np.degrees(needed_angle(on_circle, track.radius, wanted)), 1)))
+        turned = replace(bowl, machine=replace(on_circle, spring_angle=angle))
+        words = {"spring_angle", "spring_radius", "bowl_mass", "bowl_inertia", "base_mass", "base_inertia"}
+        built = replace(turned, machine=drive_sizing.on_leaves(turned, words))
+        if drive_sizing.can_make(built) is None and not drive_sizing.leaf_shortfall(built):
+            own = built.machine
+            leaf = " x ".join(f"{1e3 * x:.3g}" for x in (own.leaf_width, own.leaf_thickness, own.leaf_length))
+            return (
+                f"springs that stand at {np.degrees(angle):.3g} deg on a circle of {2e3 * circle:.4g} mm, "
+                f"{own.leaves:.0f} leaves of {leaf} mm"
+            )
+    return ""
 
 
 def _size_bowl(

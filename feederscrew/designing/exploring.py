@@ -33,7 +33,8 @@ from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
-from feederscrew.trials.wanted import equivalent_rows, wanted_rows
+from feederscrew.trials.fills import LeavingPose, PoseKind
+from feederscrew.trials.wanted import equivalent_rows, leaves_hanging, wanted_rows
 
 LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
 
@@ -592,6 +593,9 @@ def _try_rails(search: Search, track: BankedTrack, rails: hanging.RailsSearch) -
                 proposal = replace(
                     proposal, move=Move(MoveKind.LIVELIER_DRIVE, 2.0 * own_drive.drive.amplitude)
                 )
+        ways = search.through(replace(plain_bowl.bowl, devices=proposal.devices))
+        if not leaves_hanging(ways, proposal.states(ways)):  # nothing of it can hang in such a slot
+            continue
         candidate, count = try_proposal(search, plain_bowl, proposal, weights, own_drive), count + 1
         if candidate.attempt.clean and candidate.attempt.rate < search.request.target:
             proposal = replace(proposal, shown_gain=candidate.attempt.efficiency)
@@ -614,6 +618,40 @@ def _try_rails(search: Search, track: BankedTrack, rails: hanging.RailsSearch) -
             return
     if best is not None and (chosen := (yield from _find_livelier(search, best))) is not None:
         yield chosen
+
+
+def mends_of_jams(
+    search: Search, candidate: Candidate, jammed: Sequence[tuple[str, int, str, int]]
+) -> Iterator[Proposal]:
+    """Yield what changes a chain whose queue jams, by what stood there and at which device.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+        That was proved.
+    jammed : sequence of (str, int, str, int)
+        As ``FilledQueue.jammed``.
+
+    Yields
+    ------
+    Proposal
+    """
+    if not jammed:
+        return
+    proposal = candidate.proposal
+    if not proposal.hangs:
+        poses = ((LeavingPose(PoseKind.ORIENTATION, name=name), count) for name, _, _, count in jammed)
+        wanted = {candidate.orientations.lying[row].name for row in candidate.trial.wanted}
+        lying = candidate.orientations.lying
+        eased = (proposals.ease_cut(proposal, place, lying) for name, place, _, _ in jammed if name in wanted)
+        yield from (changed for changed in (*eased, proposals.purify(candidate, tuple(poses))) if changed)
+        return
+    start = replace(calm_drive.drive_at(candidate.plain_bowl(search), 0.0), devices=search.plain.devices)
+    before, cost_class = search.plain.devices, proposal.cost_class
+    lying = search.through(start).lying
+    rails = hanging.RailsSearch(lying, candidate.weights, proposal.row, before, search.request, cost_class)
+    yield from rails.mends_of_jams(proposal, candidate.trial, jammed)
 
 
 def devices_to(end: End, proposal: Proposal) -> int:
@@ -800,7 +838,7 @@ def try_proposal(
     if not proposal.hangs:  # rails are tried with every orientation at once
         search.state.tried[orientations.lying[proposal.row].name] += 1
     wanted = proposal.wanted_name(orientations)
-    name = orientations.lying[proposal.row].name if proposal.hangs else wanted
+    name = f"{wanted}, {orientations.lying[proposal.row].name} first" if proposal.hangs else wanted
     search.begin_trial(f"{name}, {texts.move_text(proposal.move)}")
     trial = _short(search, bowl, orientations, weights, proposal)
     faults = tuple(find_denials(trial))

@@ -38,7 +38,11 @@ class FamilyStudy(ReadableRecord, view="design_pages.FAMILY_VIEW"):
         if self.partial:
             return Status.NOT_PROVED
         words = {member.status for member in self.members}
-        return next(word for word in (Status.NONE, Status.FALLS_SHORT, *reversed(HELD)) if word in words)
+        return next(
+            word
+            for word in (Status.NONE, Status.FALLS_SHORT, Status.NO_MACHINE, *reversed(HELD))
+            if word in words
+        )
 
     @property
     def shared(self) -> bool:

@@ -122,10 +122,13 @@ class MoveKind(enum.Enum):
     LEAD_IN = enum.auto()  # its lead-in is so many times as long
     BLADE_BEHIND = enum.auto()  # a blade behind the rails sweeps off what does not hang
     CUTS_BEFORE = enum.auto()  # cuts before the rails, by what a trial has shown to hang
+    BLADE_HEIGHT = enum.auto()  # it stands higher, by a value [m], or lower
     RAILS = enum.auto()  # rails for a head, before any trial
     LONGER_PULSE = enum.auto()
     DROP_BEFORE = enum.auto()  # one device more: what others fall through
     PRESSURE_BREAK = enum.auto()  # one device more: where parts back up they leave the track
+    SECOND_SENSOR = enum.auto()  # the same sensor and valve once more behind the first
+    SPACING = enum.auto()  # a spacing section before the devices, or a steeper one: parts come apart
     CALMER_DRIVE = enum.auto()
     LIVELIER_DRIVE = enum.auto()
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.arrays import Bools, Floats
+from feederscrew.designing import proposals
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.proposals import MARGINS, Proposal
 from feederscrew.designing.record import DesignRequest
@@ -33,6 +34,7 @@ from feederscrew.trials.course import Fate
 # T-nut and a push button, for which one of these decides
 OFFSETS_M = (5e-4, -3e-4, 1e-3)  # of the slot, farther off the wall
 PLAYS_M = (3e-4, 6e-4)  # by which the slot is wider
+BLADES_M = (1e-3, -5e-4)  # by which the blade stands higher
 LEADS = (1.7, 0.6)  # times the length of the lead-in
 SWEEPS_DEG = (25.0, 45.0, 20.0, 55.0)  # of the blade behind the rails, beside the first
 FIRST_SWEEP_DEG = 30.0
@@ -209,13 +211,74 @@ class RailsSearch:
                 yield from build(MoveKind.BLADE_BEHIND, 0.0, setting, FIRST_SWEEP_DEG)
         for degrees in SWEEPS_DEG if stays_at_blade else ():
             yield from build(MoveKind.SWEEP, math.radians(degrees), setting, degrees)
+        higher = [(MoveKind.BLADE_HEIGHT, x, replace(setting, blade=setting.blade + x)) for x in BLADES_M]
         places = [
+            *(higher if stays_at_blade else ()),
             *((MoveKind.SLOT_PLACE, x, replace(setting, offset=setting.offset + x)) for x in OFFSETS_M),
             *((MoveKind.WIDER_SLOT, x, replace(setting, play=setting.play + x)) for x in PLAYS_M),
             *((MoveKind.LEAD_IN, x, replace(setting, lead=setting.lead * x)) for x in LEADS),
         ]
         for kind, value, other in places:
             yield from build(kind, value, other, sweep)
+
+    def mends_of_jams(
+        self, proposal: Proposal, trial: ShortTrial, jammed: Sequence[tuple[str, int, str, int]]
+    ) -> Iterator[Proposal]:
+        """Yield what changes a chain whose queue jams, by what stood there and at which device.
+
+        Another orientation is returned before the rails. Where one that hangs stands at a cut before them,
+        that cuts less; at the rails it gets a wider slot and a longer lead-in, at the blade a higher blade.
+
+        Parameters
+        ----------
+        proposal : Proposal
+        trial : ShortTrial
+            Of that chain.
+        jammed : sequence of (str, int, str, int)
+            As ``FilledQueue.jammed``: orientation, place of the device, its kind, how many.
+
+        Yields
+        ------
+        Proposal
+        """
+        setting = proposal.rails or USUAL_RAILS
+        shown, sweep = shown_by(trial, proposal, len(self.lying)), _sweep_of(proposal)
+        rows = {orientation.name: row for row, orientation in enumerate(self.lying)}
+        placed = [device for device in proposal.devices if device.action.has_place]
+        station = next((n for n, device in enumerate(placed, start=1) if device.action is Action.HANG), -1)
+        for n, row in enumerate(trial.rows.tolist()):  # what cuts before the rails return needs them
+            ends = trial.ends[n]
+            shown.stands[row] |= bool(ends) and all(0 < end.station < station for end in ends)
+        at_rails = at_blade = False
+        for name, place, _, _ in jammed:
+            row = rows.get(name, -1)
+            if row < 0 or shown.hangs[row]:
+                at_rails, at_blade = at_rails or place == station, at_blade or place > station
+                eased = proposals.ease_cut(proposal, place, self.lying) if place < station else None
+                if eased is not None:
+                    yield eased
+            elif place <= station:
+                shown.stands[row] = True
+            else:
+                shown.unswept[row] = True
+        wider = [(MoveKind.WIDER_SLOT, x, replace(setting, play=setting.play + x)) for x in PLAYS_M]
+        longer = [(MoveKind.LEAD_IN, x, replace(setting, lead=setting.lead * x)) for x in LEADS[:1]]
+        higher = [(MoveKind.BLADE_HEIGHT, x, replace(setting, blade=setting.blade + x)) for x in BLADES_M]
+        tries = [
+            (MoveKind.CUTS_BEFORE, 0.0, setting),
+            *(higher if at_blade else ()),
+            *((*wider, *longer) if at_rails else ()),
+        ]
+        self.seen.add(proposal.chain)
+        own_cuts = {cut.device.kind: cut for cut in proposal.cuts if cut.device.action.carries}
+        for kind, value, other in tries:
+            for built in self._build(Move(kind, value), other, sweep, shown):
+                cuts = built.cuts
+                if kind is not MoveKind.CUTS_BEFORE:  # as they were changed before
+                    cuts = tuple(own_cuts.get(cut.device.kind, cut) for cut in cuts)
+                changed = replace(built, cuts=cuts)
+                if changed.chain != proposal.chain:
+                    yield changed
 
     def _build(
         self, move: Move, setting: RailSetting, sweep: float | None, shown: Shown
@@ -238,10 +301,11 @@ class RailsSearch:
             sweep=angle,
             unswept=shown.unswept,
             partly=True,
+            raised=setting.blade,
         )
         if design is None:  # the blade has nothing to sweep
             return
-        proposal = self._proposal(design, move)
+        proposal = replace(self._proposal(design, move), rails=setting)
         if proposal.chain not in self.seen:
             self.seen.add(proposal.chain)
             yield proposal

@@ -30,7 +30,7 @@ from feederscrew.processes import Process, ProcessEnded, server_context
 from feederscrew.running import RunSettings
 from feederscrew.studies import simulation_cache
 from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel
-from feederscrew.trials.queue import QueuedParts
+from feederscrew.trials.queue_counts import QueuedParts
 
 RUN_S = 300.0  # [s] of bowl time of one run, at the most: what an end in mid run can lose
 REFUSED_CONFIDENCE = 0.99  # [1] one-sided, that a fill jams more often than was agreed: it ends there

@@ -1,5 +1,6 @@
 """The loop: an orientation and its chain, a short trial, what the trial denies changed, and the proof."""
 
+import itertools
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import fields, replace
@@ -277,6 +278,13 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
     state, policy = search.state, search.policy
     proposal, lying = candidate.proposal, candidate.orientations.lying
     if study.jams:
+        # what stood there, and where, says what to change
+        jammed = tuple(row for queue in study.queues for row in queue.jammed)
+        mends = exploring.mends_of_jams(search, candidate, jammed)
+        for mended in itertools.islice(mends, policy.jam_mends):
+            tried = exploring.try_again(search, candidate, mended, candidate.bowl)
+            if tried.attempt.clean:
+                return tried
         calm = hop(candidate.bowl).height < policy.lively_hop  # a livelier drive may clear what jams
         lively = exploring.try_livelier(search, candidate) if calm else None
         if lively is not None and lively.attempt.clean:
@@ -303,7 +311,12 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
         lively = exploring.try_livelier(search, candidate) if _leaves_over_slot(study, candidate) else None
         if lively is not None and lively.attempt.clean:
             return lively
-        changed = proposals.purify(candidate, study.left_instead)
+        # what a full track lets past a sensor meets a second one; past steel, parts come apart
+        changed = (
+            proposals.add_second_sensor(candidate)
+            or proposals.purify(candidate, study.left_instead)
+            or proposals.spread_apart(candidate, search.request.without)
+        )
     return None if changed is None else exploring.try_again(search, candidate, changed, candidate.bowl)
 
 
@@ -492,6 +505,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
             row,
             request.up,
             state=wanted,
+            left_in_trial=candidate.trial.left,
         )
     return DesignStudy(
         part=search.part,

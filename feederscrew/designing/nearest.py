@@ -379,6 +379,7 @@ def _other_ways_up(search: Search) -> Iterator[Variant]:
     if first_request.aspect is None and not first_request.up and first_request.outcome == OutcomeKind.ANY:
         return
     request = replace(first_request, aspect=None, heading=None, up=(), outcome=OutcomeKind.ANY)
+    search.tell("nothing that was asked for holds: other ways up are tried, lying and hanging, to be named")
     free = search.beside(replace(request, budget=len(search.state.attempts) + policy.other_way_trials))
     yielded = set()
     for candidate in exploring.candidates(free):

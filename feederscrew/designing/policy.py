@@ -34,6 +34,11 @@ RAILS_TRIED = Basis(
     "eyelet, cup_flange, tnut_m5 and pushbutton, which are none of docs/designs.csv: each comes to hang "
     "by another move of the slot, its lead-in or the blade",
 )
+JAMS = Basis(
+    (),
+    "tnut_m5 and eyelet, which are none of docs/designs.csv: clean in short trials and in draws, they jam in "
+    "a full track",
+)
 SIDES = Basis(
     (),
     "a cap of 16 x 9 mm with a pin of 2 x 5 mm off its middle, none of docs/designs.csv: 26 trials of seven "
@@ -98,7 +103,8 @@ class SearchPolicy:
     # the proof, and what is changed by it
     queued_designs: int = _chosen(2)  # of a cost class that go through queues
     drawn_designs: int = _chosen(4)  # of a cost class that go through draws
-    proof_changes: int = _chosen(2, MENDED_BY_PROOF)  # of one design, each by what its proof denied
+    proof_changes: int = _chosen(3, MENDED_BY_PROOF)  # of one design, each by what its proof denied
+    jam_mends: int = _chosen(3, JAMS)  # chains that are tried for a queue that jams, by what stood there
     lively_hop: float = _chosen(1.2e-4, MENDED_BY_PROOF)  # [m] from which jams ask for a device
     faster: float = _chosen(1.3, FASTER_DRIVE)  # [1] times the speed, where draws lose what creeps
     slow_reserve: float = _chosen(1.2)  # [1] times what the worst fill of a slow design lacks of the target

@@ -7,25 +7,35 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
 from feederscrew.designing.findings import Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import ShortTrial
+from feederscrew.geometry import vectors
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.kinds import KINDS, CostClass, cost_class, dearer, names, shaped
+from feederscrew.sorting.devices.kinds import KINDS, CostClass, cost_class, dearer, leaning, names, shaped
 from feederscrew.sorting.devices.orientation_names import nearest
 from feederscrew.sorting.devices.orientation_names import rows as rows_of
 from feederscrew.sorting.devices.pneumatics import PULSE
 from feederscrew.sorting.devices.trade import Action
-from feederscrew.sorting.isolating.chain import DESIGN_KEY, Cut, OutcomeKind, judge_cut, limits, numeric_kinds
-from feederscrew.sorting.isolating.rails import RAIL
-from feederscrew.sorting.orientations import Hanging, Orientation, neck
+from feederscrew.sorting.isolating.chain import (
+    DESIGN_KEY,
+    Cut,
+    OutcomeKind,
+    judge_cut,
+    limits,
+    numeric_kinds,
+    plain_cut,
+)
+from feederscrew.sorting.isolating.rails import RAIL, RailSetting, find_head
+from feederscrew.sorting.orientations import SAME_HEAD_COSINE, Hanging, Orientation, neck
 from feederscrew.sorting.verdicts import DeviceEncounter
 from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.trials.fills import LeavingCounts, PoseKind
@@ -53,6 +63,7 @@ VALUE_STEP_M = 5e-5  # [m] to which a shop makes a value
 SLOT_WIDENING, WIDEST_SLOT = 0.35, 0.8  # of head less slot; of the head, that a slot may be
 PULSE_STEP_S, SHORTEST_PULSE_STEPS = 5e-3, 4  # [s] to which a pulse is set; steps of the shortest one
 PULSE_RESERVE = 6.0  # times what blows off a part before the nozzles: they do not blow at its middle
+STEEPER_SPACING = 5.0 / 3.0  # times as steep, a spacing section on which a full track lets others pass
 LONGER_PULSE = 2.0  # times, where something is carried through all the same
 
 
@@ -127,6 +138,7 @@ class Proposal:
     purity: float = 1.0  # [1] by the static rule, midway between what is sure and what may be
     margin: float = np.inf  # [m] the least, of passing and of returning
     sweeps: tuple[int, ...] = ()  # [deg] of a blade, those that were tried
+    rails: RailSetting | None = None  # values of its rails, where trials search them
     shown_gain: float | None = None  # [1] share that left as wanted in a trial of rails like these
 
     @property
@@ -428,6 +440,39 @@ def _mend_cut(proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orie
     return None
 
 
+def ease_cut(proposal: Proposal, place: int, orientations: Sequence[Orientation]) -> Proposal | None:
+    """Return the proposal with a device at which what is wanted stands moved half the way to its least cut.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    place : int
+        Of the device along what stands on the track, from 1.
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where it is none of the proposal's, its value is no length, or it would return no less.
+    """
+    placed = [device for device in proposal.devices if device.action.has_place]
+    own = [
+        n
+        for n, cut in enumerate(proposal.cuts)
+        if 0 < place <= len(placed) and cut.device is placed[place - 1]
+    ]
+    if not own or not proposal.cuts[own[0]].device.search.bound:
+        return None
+    cut = proposal.cuts[own[0]]
+    limit = 0.5 * (cut.device.limit + cut.smallest.limit)
+    if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
+        return None
+    other = move_cut(cut, limit, orientations, proposal.row)
+    if other.device.limit == cut.device.limit:
+        return None
+    return proposal.with_cut(own[0], other, _move_of(MoveKind.VALUE, other.device))
+
+
 def _slips(cut: Cut, trial: ShortTrial, orientations: Sequence[Orientation]) -> bool:
     """Tell whether something left otherwise that a cut should have returned."""
     return any(trial.wrong[n] and orientations[k].name in cut.returns for n, k in enumerate(trial.rows))
@@ -581,6 +626,67 @@ def add_pressure_break(candidate: Any) -> Proposal | None:
     return replace(proposal, cuts=(cut, *proposal.cuts), move=_move_of(MoveKind.PRESSURE_BREAK, device))
 
 
+def add_second_sensor(candidate: Any) -> Proposal | None:
+    """Return the proposal of a candidate whose sensor and valve stand there twice, one behind the other.
+
+    Where few of the parts are wanted, a few in a thousand that a full track lets past one sensor are several
+    in a hundred of what leaves. Past two they are as many in a million.
+
+    Parameters
+    ----------
+    candidate : Candidate
+
+    Returns
+    -------
+    Proposal or None
+        None without a sensor of the design, and where it has two.
+    """
+    proposal: Proposal = candidate.proposal
+    places = [place for place, cut in enumerate(proposal.cuts) if cut.device.action is Action.SENSE]
+    if len(places) != 1:
+        return None
+    place = places[0] + 1
+    second = proposal.cuts[places[0]]
+    cuts = (*proposal.cuts[:place], second, *proposal.cuts[place:])
+    return replace(proposal, cuts=cuts, move=_move_of(MoveKind.SECOND_SENSOR, second.device))
+
+
+def spread_apart(candidate: Any, without: Sequence[str] = ()) -> Proposal | None:
+    """Return the proposal of a candidate whose parts come farther apart, where a full track lets others pass.
+
+    A chain without a spacing section gets one before its first device; one that leads down is made steeper,
+    once. Behind it the parts are as many times as far apart as they travel faster.
+
+    Parameters
+    ----------
+    candidate : Candidate
+    without : sequence of str
+        Kinds of devices that are not used.
+
+    Returns
+    -------
+    Proposal or None
+        None of a chain with rails, before which the track has to climb and parts close up again; of one
+        without devices; and where the section is as steep as one is proposed.
+    """
+    proposal: Proposal = candidate.proposal
+    if proposal.hangs or not proposal.cuts or any(device.action.leans for device in proposal.before):
+        return None
+    makers = [kind.parting(DESIGN_KEY) for kind in leaning() if kind.kind not in without]
+    usual: Any = next((device for device in makers if device is not None), None)
+    if usual is None:
+        return None
+    place = next((n for n, cut in enumerate(proposal.cuts) if cut.device.kind == usual.kind), None)
+    if place is None:
+        cuts = (plain_cut(usual), *proposal.cuts)
+        return replace(proposal, cuts=cuts, move=_move_of(MoveKind.SPACING, usual))
+    own: Any = proposal.cuts[place].device
+    steeper = replace(own, angle=STEEPER_SPACING * usual.angle).rewritten()
+    if not own.angle < 0.0 or own.angle <= steeper.angle:
+        return None
+    return proposal.with_cut(place, plain_cut(steeper), _move_of(MoveKind.SPACING, steeper))
+
+
 def add_drop(
     proposal: Proposal,
     reject_rows: Sequence[int],
@@ -619,10 +725,12 @@ def add_drop(
     if chosen is None:
         return None
     (kind, middle, listed), room = chosen, best[1]
+    sign = 1.0 if kind.search.bound == "lower" else -1.0
     limit = float(np.round(middle / VALUE_STEP_M) * VALUE_STEP_M)
     device = kind.proposal(DESIGN_KEY, limit).rewritten()
     must = np.array([k in listed for k in range(len(orientations))])
-    ends = [device.valued(limit + half) for half in (-0.5 * room, 0.5 * room)]
+    # the least cut that returns them first: of a narrowed track that is the widest one
+    ends = [device.valued(limit + sign * half) for half in (-0.5 * room, 0.5 * room)]
     cut = judge_cut(orientations, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), move=_move_of(MoveKind.DROP_BEFORE, device))
 
@@ -686,8 +794,21 @@ def follow_orientations(part: Part, aspects: Aspects, bowl: Bowl) -> Orientation
     Returns
     -------
     Orientations
+        Behind rails each that has the head of one that hangs is wanted hanging, also where the static rule
+        says that it leaves lying over the slot.
     """
-    return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+    ways = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+    hanging = [(k, state) for k, state in enumerate(ways.states) if isinstance(state, Hanging)]
+    if not hanging:
+        return ways
+    leaves_as = ways.leaves_as.tolist()
+    for row, orientation in enumerate(ways.lying):
+        head = None if leaves_as[row] >= len(ways.lying) else find_head(orientation)
+        if head is None:
+            continue
+        alike = (k for k, state in hanging if vectors.dot(head.down, state.neck.down) > SAME_HEAD_COSINE)
+        leaves_as[row] = next(alike, leaves_as[row])
+    return replace(ways, leaves_as=check.frozen(np.array(leaves_as)))
 
 
 def shorten_pulse(cut: Cut, orientations: Sequence[Orientation]) -> Cut:

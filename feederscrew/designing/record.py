@@ -493,11 +493,17 @@ class DesignStudy(ReadableRecord, view="design_pages.DESIGN_VIEW"):
     @property
     def status(self) -> Status:
         """The verdict; what was stopped, or not run, is no evidence, neither for a design nor against it."""
+        holds = self.tooling_status in HELD
+        return Status.NO_MACHINE if holds and self.machine_lacks else self.tooling_status
+
+    @property
+    def tooling_status(self) -> Status:
+        """The verdict of draws and queues on track and devices, whatever machine can be made below them."""
         if self.partial or self.request.quick:
             return Status.NOT_PROVED
         if self.bowl is None or not self.delivered[0] > 0.0:
             return Status.FALLS_SHORT if self.bowl is not None and self.queues else Status.NONE
-        if self.shortfalls:
+        if self.tooling_shortfalls:
             return Status.FALLS_SHORT
         return Status.HOLDS if self.hooking is None else Status.HOLDS_SINGLE
 
@@ -509,7 +515,7 @@ class DesignStudy(ReadableRecord, view="design_pages.DESIGN_VIEW"):
     @property
     def condition(self) -> str:
         """The condition under which it holds, as a sentence; '' of one that holds without, or does not."""
-        if self.status != Status.HOLDS_SINGLE or self.hooking is None:
+        if self.tooling_status != Status.HOLDS_SINGLE or self.hooking is None:
             return ""
         return texts.condition_text(self.hooking)
 
@@ -536,7 +542,12 @@ class DesignStudy(ReadableRecord, view="design_pages.DESIGN_VIEW"):
 
     @property
     def shortfalls(self) -> tuple[str, ...]:
-        """Where it does not do what was asked, a sentence each."""
+        """Where it does not do what was asked, a sentence each: its tooling, then its machine."""
+        return (*self.tooling_shortfalls, *(self.machine_lacks if self.bowl is not None else ()))
+
+    @property
+    def tooling_shortfalls(self) -> tuple[str, ...]:
+        """Where its draws and its queues do not do what was asked, a sentence each."""
         if self.bowl is None:
             return tuple(
                 texts.wanted_trials_text(one.wanted, one.trials, one.ends, one.others)
@@ -550,13 +561,14 @@ class DesignStudy(ReadableRecord, view="design_pages.DESIGN_VIEW"):
         if self.request.proof is ProofKind.LONG:
             lines += [self._jams_of(queue) for queue in self.queues if queue.jams]
         elif self.jams:
-            lines.append(f"{counted(self.jams, 'jam')} in {self.queue_seconds:.3g} s of queue")
+            stood = texts.jammed_text(row for queue in self.queues for row in queue.jammed)
+            lines.append(f"{counted(self.jams, 'jam')} in {self.queue_seconds:.3g} s of queue{stood}")
         if self.robust.share < DRAWS_HELD:
             worst = "" if self.robust.worst is None else f": {self.robust.worst_text}"
             lines.append(
                 f"{self.robust.held} of {self.robust.draws} draws of part, friction and drive sort{worst}"
             )
-        return (*lines, *self.machine_lacks)
+        return tuple(lines)
 
     @property
     def wanted_trials(self) -> tuple[WantedTrials, ...]:
@@ -631,8 +643,8 @@ class DesignStudy(ReadableRecord, view="design_pages.DESIGN_VIEW"):
         """The same with a sentence."""
         if self.status in (*HELD, Status.NOT_PROVED):
             return Cause.UNKNOWN, ""
-        if self.machine_lacks:
-            return Cause.DRIVE, "the springs that are drawn do not make the drive that was tried"
+        if self.status is Status.NO_MACHINE:
+            return Cause.DRIVE, "the machine below it cannot be made; its track and devices hold"
         if not self.queues:  # what the trials say, of the best of them
             if not self.attempts:
                 return Cause.PART, "no device tells an orientation that was asked for from the others"

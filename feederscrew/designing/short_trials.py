@@ -91,6 +91,12 @@ class ShortTrial:
         return any(self.right[n] < self.parts[n] for n in self.wanted_places)
 
     @property
+    def left(self) -> tuple[str, ...]:
+        """Names of the orientations, as they came, of which a part left, in whatever state."""
+        lying = self.orientations.lying
+        return tuple(lying[k].name for k, n in zip(self.rows.tolist(), self.right + self.wrong) if n)
+
+    @property
     def weights(self) -> Floats:
         """(R,) [1] shares of those tried, over their number of parts."""
         own = self.shares[self.rows]

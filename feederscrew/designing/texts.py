@@ -1,5 +1,6 @@
 """The sentences that people read of what a design's trials found: made here, and read by no decision."""
 
+from collections import Counter
 from collections.abc import Iterable
 
 import numpy as np
@@ -174,6 +175,9 @@ def move_text(move: Move) -> str:
             return f"lead-in {move.value:.3g} times as long"
         case MoveKind.BLADE_BEHIND:
             return f"{move.device} of {move.device_text} behind the rails"
+        case MoveKind.BLADE_HEIGHT:
+            higher = "higher" if move.value > 0.0 else "lower"
+            return f"blade behind the rails {in_mm(abs(move.value))} {higher}"
         case MoveKind.CUTS_BEFORE:
             return "cuts before the rails by what hangs in the trial"
         case MoveKind.LONGER_PULSE:
@@ -182,12 +186,17 @@ def move_text(move: Move) -> str:
             return f"{move.device} of {move.device_text} before it"
         case MoveKind.PRESSURE_BREAK:
             return f"{move.device} of {move.device_text} before it, for what backs up"
+        case MoveKind.SECOND_SENSOR:
+            return f"a second {move.device} behind the first, for what a full track lets past one"
+        case MoveKind.SPACING:
+            return f"{move.device} of {move.device_text}, for parts that touch"
         case MoveKind.CALMER_DRIVE:
             return f"calmer drive, {1e3 * move.value:.3g} mm peak to peak"
         case MoveKind.LIVELIER_DRIVE:
             return f"livelier drive, {1e3 * move.value:.3g} mm peak to peak"
 
 
+MOST_JAMMED = 3  # orientations of which it is said where they stood
 SEPARATORS = ("a de-tangling drum", "bursts of air", "a magazine that keeps them single")  # before the bowl
 
 
@@ -279,6 +288,26 @@ def difference_text(difference: FillDifference) -> str:
             if not d.count:
                 return f"{text}: fewer come as wanted there"
             return f"{text}: parts that came as wanted fall back {place} ({d.count})"
+
+
+def jammed_text(jammed: Iterable[tuple[str, int, str, int]]) -> str:
+    """Return what stood in queues and was taken out: ' (came as B@0, stood at rails: 2)'.
+
+    Parameters
+    ----------
+    jammed : iterable of (str, int, str, int)
+        As ``FilledQueue.jammed``: orientation, place of the device, its kind, how many.
+
+    Returns
+    -------
+    str
+        '' of nothing.
+    """
+    counts = Counter[str]()
+    for name, _, kind, number in jammed:
+        counts[f"came as {name}, stood {f'at {kind}' if kind else 'on the track'}"] += number
+    words = ", ".join(f"{text}: {number}" for text, number in counts.most_common(MOST_JAMMED))
+    return f" ({words})" if words else ""
 
 
 def leaving_texts(counts: LeavingCounts) -> dict[str, int]:

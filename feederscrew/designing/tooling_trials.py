@@ -79,6 +79,7 @@ class TriedDesign:
     efficiency_ends: tuple[float, float] = (0.0, 1.0)  # [1] 95 % interval
     purity_ends: tuple[float, float] = (0.0, 1.0)  # [1]
     devices_words: tuple[str, ...] = ()  # of the chain, as the trade names them
+    left: tuple[str, ...] = ()  # names of the orientations, as they came, of which a part left
 
     @property
     def agrees(self) -> bool:
@@ -344,7 +345,13 @@ class AskedOrientation:
         taken = max(holds, key=merit, default=0)
         study, first = self.tried[taken]
         others = [tried for k, (_, tried) in enumerate(self.tried) if k != taken]
-        return replace(study, trials=(first, *others), in_vain=tuple(self.in_vain), partial=partial)
+        return replace(
+            study,
+            trials=(first, *others),
+            in_vain=tuple(self.in_vain),
+            partial=partial,
+            left_in_trial=first.left,
+        )
 
 
 def search_chains(asked: AskedOrientation, cost_class: CostClass) -> Iterator[ToolingStudy]:
@@ -555,6 +562,7 @@ def _try_design(study: ToolingStudy, design: Design, run: RunSettings) -> TriedD
         efficiency_ends=efficiency[1:],
         purity_ends=(low, high),
         devices_words=tuple(f"{device.full_name}: {device.value_words}" for device in design.devices),
+        left=trial.left,
     )
 
 

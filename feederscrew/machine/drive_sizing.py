@@ -148,13 +148,27 @@ def _words(user_keys: Collection[str]) -> set[str]:
 
 def _spring_angle(wanted: float, radius: float, machine: Machine, rules: Sizing) -> float:
     """Angle of the springs, in whole degrees, that moves the bowl at its track in a wanted direction."""
-    whole = np.radians(np.round(np.degrees(_needed_angle(machine, radius, wanted))))
+    whole = np.radians(np.round(np.degrees(needed_angle(machine, radius, wanted))))
     return float(np.clip(whole, rules.least_spring_angle, rules.greatest_spring_angle))
 
 
-def _needed_angle(machine: Machine, radius: float, wanted: float) -> float:
-    """Angle [rad] of springs on their circle that moves the bowl in a wanted direction [rad] at a radius [m].
+def needed_angle(machine: Machine, radius: float, wanted: float) -> float:
+    """Return the angle of springs on their circle that moves the bowl in a wanted direction at a radius.
 
+    Parameters
+    ----------
+    machine : Machine
+        With the circle of its springs.
+    radius : float [m]
+    wanted : float [rad]
+        Of the motion there, from the horizontal.
+
+    Returns
+    -------
+    float [rad]
+
+    References
+    ----------
     ``bowl.record.direction``, solved for the springs; docs/bowl.md, "How it is computed".
     """
     rise, turn = shares(machine)
@@ -172,14 +186,14 @@ def _exact(
             return machine
         return replace(machine, spring_radius=_circle(machine, wanted, radius, (usual, farthest)))
     if "spring_radius" in user_words:
-        tenth = np.radians(np.round(np.degrees(_needed_angle(machine, radius, wanted)), 1))
+        tenth = np.radians(np.round(np.degrees(needed_angle(machine, radius, wanted)), 1))
         angle = float(np.clip(tenth, rules.least_spring_angle, rules.steepest_spring_angle))
         return replace(machine, spring_angle=angle)
     angle = _spring_angle(wanted, radius, machine, rules)
     there = _circle(replace(machine, spring_angle=angle), wanted, radius, (machine.leaf_width, radius))
     if there > farthest:
         outside = replace(machine, spring_radius=farthest)
-        whole = np.radians(np.ceil(np.degrees(_needed_angle(outside, radius, wanted))))
+        whole = np.radians(np.ceil(np.degrees(needed_angle(outside, radius, wanted))))
         angle = float(np.clip(whole, rules.least_spring_angle, rules.steepest_spring_angle))
         there = _circle(replace(machine, spring_angle=angle), wanted, radius, (usual, farthest))
     return replace(machine, spring_angle=angle, spring_radius=there)
@@ -298,7 +312,7 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
     if not (two_axis or other_angle or second):
         return None
     makes = replace(drive, vibration_angle=by_springs, phase=0.0, second_harmonic=0.0)
-    needed = _needed_angle(machine, track.radius, drive.vibration_angle + track.climb)
+    needed = needed_angle(machine, track.radius, drive.vibration_angle + track.climb)
     figures = []
     for own, spring_angle in ((drive, needed), (makes, machine.spring_angle)):
         how = answer.answer(replace(bowl, drive=own))

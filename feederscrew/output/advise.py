@@ -66,9 +66,9 @@ CHANGE_COLUMNS: tuple[Column[ChangedPart], ...] = (
 
 
 def summary(study: AdviceStudy) -> Frame:
-    """Return the changes of a part for people: those that gain, or that were tried."""
+    """Return what is printed: the changes that gain or were tried; without one the reasons of the grade."""
     told = [changed for changed in study.changes if changed.gains or changed.is_tried]
-    return of_records(CHANGE_COLUMNS, told)
+    return of_records(CHANGE_COLUMNS, told) if told else of_records(REASON_COLUMNS, study.reasons)
 
 
 def document(study: AdviceStudy) -> dict[str, Any]:
@@ -88,10 +88,12 @@ def remarks(study: AdviceStudy) -> list[str]:
     """Return what is said above the table: the grade, its reasons, and what the best changes bring."""
     lines = [f"{study.part.name}: {study.answer}"]
     lines += [_reason_text(reason) for reason in study.reasons]
-    best = [changed.text for changed in study.changes if changed.gains and changed.is_tried]
+    were_tried = any(changed.is_tried for changed in study.changes)
+    best = [changed.text for changed in study.changes if changed.gains and changed.is_tried is were_tried]
     if not best and study.changes:
-        best = ["no change that was tried makes it easier"]
-    return lines + best
+        judged = "that was tried" if were_tried else "of its shape, by the static rule,"
+        best = [f"no change {judged} makes it easier"]
+    return lines + best[:SHOWN]
 
 
 def _reason_text(reason: Reason) -> str:
@@ -145,10 +147,12 @@ def page(study: AdviceStudy) -> str:
     )
     blocks: list[Block] = [Notes(tuple(_reason_text(reason) for reason in study.reasons))]
     chapters = [Chapter(tuple(blocks), tiles, study.warnings, "answer", "How hard it is to feed")]
+    tried = "Those that gain most by it are tried with parts of true shape."
+    if not any(changed.is_tried for changed in study.changes):
+        tried = "None of them was tried with parts of true shape."
     changes: list[Block] = [
         Text(
-            "Each change is made on the mesh, and the part that has it is judged as the part itself is. "
-            "Those that gain most by the static rule are tried with parts of true shape."
+            f"Each change is made on the mesh, and the part that has it is judged by the static rule. {tried}"
         )
     ]
     for number, changed in enumerate(_shown(study), start=1):

@@ -16,7 +16,7 @@ from feederscrew.machine.vision_station import (
     plan_vision_stations,
 )
 from feederscrew.output.outlet_poses import find_leaving
-from feederscrew.output.tables import Frame, of_rows
+from feederscrew.output.tables import Frame
 from feederscrew.sorting.devices.pneumatics import SEEN_BY
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.units import MM, MM_S
@@ -61,7 +61,7 @@ def rows(beside: Beside) -> list[dict[str, str]]:
 
 def table(beside: Beside) -> Frame:
     """Return the same as a table."""
-    return of_rows(rows(beside), ("where", "what", "value"))
+    return Frame.of_rows(rows(beside), ("where", "what", "value"))
 
 
 def _length(size: float) -> str:

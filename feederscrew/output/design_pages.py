@@ -325,7 +325,7 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
         yield Chapter((lead, Table(beside_bowl.table(beside))), anchor="beside", title="Beside the bowl")
     if build.sheet is not None:
         rows = [row for row in machine.summary(build.sheet).rows() if row["quantity"] in SHOP]
-        blocks: list[Block] = [Table(tables.of_rows(rows, ("quantity", "value")))]
+        blocks: list[Block] = [Table(Frame.of_rows(rows, ("quantity", "value")))]
         if drawing := papers.get("bowl.png"):
             blocks.append(Picture(drawing.name, tables.file_bytes(drawing.make()), drawing.alt))
         yield Chapter(tuple(blocks), anchor="springs", title="Springs and drive")
@@ -551,7 +551,7 @@ def family_page(study: FamilyStudy) -> str:
     answer: list[Block] = [Text(status), Table(Frame.of_rows(rows).headed(above))]
     answer += [Text("The machine that each part asks for:"), Notes(tuple(machines))]
     answer += [Notes(tuple(lines), loud=True) for lines in (warned, risks) if lines]
-    changes, changed = _changes(study), tables.frame(changeover(study))
+    changes, changed = _changes(study), Frame.of(changeover(study))
     by_hand = sum(how == SWAPPED for _, how, _ in changes)
     tiles = (
         Tile("status", study.status, "the worst of all parts"),

@@ -267,7 +267,7 @@ def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
     table |= {"becomes": becomes, "left": [row["left"] for row in rows]}
     for name in ("entering", "arriving"):
         table[f"{name} [%]"] = [round(100.0 * row[f"share_{name}"], 1) for row in rows]
-    return tables.frame(table)
+    return Frame.of(table)
 
 
 def nearest(study: DesignStudy) -> dict[str, Any] | None:
@@ -569,7 +569,7 @@ def acceptance(study: DesignStudy) -> Frame:
                 line = SheetLine(name, "", unit, None, None, float(value))
                 lines.append(replace(line, low=line.demand[0], high=line.demand[1]))
     cells = ([_cell(getattr(line, name)) for name in acceptance_sheet.SHEET_COLUMNS] for line in lines)
-    return tables.of_cells(acceptance_sheet.SHEET_COLUMNS, cells)
+    return Frame.of_cells(acceptance_sheet.SHEET_COLUMNS, cells)
 
 
 def _cell(value: str | float | None) -> str:
@@ -743,7 +743,7 @@ def trial_of(study: DesignStudy) -> Verified | None:
         return None
     value, low, high = study.delivered
     return Verified(
-        study.status,
+        study.tooling_status,  # what was tried: a machine that cannot be made denies no trial
         study.wanted,
         study.request.target,
         value,
@@ -785,7 +785,7 @@ def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
         ends = (end if np.isfinite(end) else None for end in line.demand)
         low, high, *others = map(_cell, (*ends, line.measured, line.sample, line.computed))
         rows.append((line.quantity, line.fill, low, high, line.unit, *others, verdict.value, why))
-    return tables.of_cells(names, rows)
+    return Frame.of_cells(names, rows)
 
 
 def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from feederscrew.output.record_lines import rate_text, tune_text
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import entering
+from feederscrew.sorting.devices.leans import Separation
 from feederscrew.studies.rate import RATE_COLUMNS, RateStudy
 from feederscrew.studies.tune import TuneStudy
 from feederscrew.units import MM, PER_MINUTE
@@ -190,11 +191,16 @@ def _spacing_remarks(study: RateStudy) -> list[str]:
     orientations = study.rate.orientations
     if study.rate.gap > orientations.gap or not orientations.gap > 0.0:
         return []
-    kinds = [device.kind for device in study.devices if device.gap(orientations.lying[0], 0.0) > 0.0]
-    return [
+    lying = orientations.lying[0]
+    places = [k for k, device in enumerate(study.devices) if device.gap(lying, 0.0) > 0.0]
+    kinds = [study.devices[k].kind for k in places]
+    line = (
         f"{units.listed(kinds)} looks at one part at a time: the rate is that of parts that come "
-        f"{orientations.gap / MM:.3g} mm apart - a spacing section before it makes that less"
-    ]
+        f"{orientations.gap / MM:.3g} mm apart"
+    )
+    if not any(device.kind == Separation.kind for device in study.devices[: places[0]]):
+        line += f" - a {Separation.kind} before it makes that less"
+    return [line]
 
 
 def offers(study: RateStudy) -> list[offer.Offer]:

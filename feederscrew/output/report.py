@@ -70,8 +70,8 @@ from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.rates.well_oriented import Rate, fed
 from feederscrew.resting.aspects import Aspects
+from feederscrew.sorting.device_passages import Passage
 from feederscrew.sorting.orientations import Orientation
-from feederscrew.sorting.track_sections import Passage
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
 from feederscrew.trials.course import Fate
@@ -648,7 +648,7 @@ def trial(case: ReportStudy) -> Chapter | None:
     played, captions = rides.scene(study.part, run)
     views = Views(played, tuple((*item, ()) for item in captions), "trial-views", "Orientation", plays=True)
     matrix, paths, stills = map(_picture, trial_tables.pictures(study))
-    table = Table(trial_tables.frame(study, people=True).only(columns(run.counts)))
+    table = Table(trial_tables.frame(study).only(columns(run.counts)))
     result = Notes(tuple(trial_tables.summary(study)))
     blocks = (lead, result, views, replace(stills, printed=True), table, matrix, paths)
     return Chapter(blocks, warnings=study.warnings)

@@ -42,11 +42,6 @@ HEADING_ZERO = (
 Cells = dict[str, list[str]]  # of one width by the name of the column
 
 
-frame = Frame.of
-of_rows = Frame.of_rows
-of_cells = Frame.of_cells
-
-
 def data_frame(frame: Frame) -> "DataFrame":
     """Return the table as a pandas DataFrame, as users of the library expect one.
 

@@ -1,6 +1,6 @@
 """Files of ``feeder tooling``: tables, documents, the bowl file, drawings."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import tooling_text
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.kinds import CostClass
 from feederscrew.sorting.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
@@ -237,23 +237,19 @@ def status(study: ToolingStudy, place: int) -> str:
     return "confirmed"
 
 
-def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
+def frame(study: ToolingStudy) -> Frame:
     """Return the rows as a table.
 
     Parameters
     ----------
     study : ToolingStudy
-    people : bool, optional
-        Whether devices are named as the trade does.
 
     Returns
     -------
     Frame
     """
     rows = _rows(study)
-    for row, design in zip(rows, study.designs):
-        if people and design is not None:
-            row["devices"] = [cut.device.kind for cut in design.cuts]
+    for row in rows:
         for name, between in (("devices", ", "), ("left_over", " "), ("reasons", "; ")):
             row[name] = between.join(row[name] or ())
     return Frame.of_rows(rows).headed(ROW_HEADS)
@@ -275,7 +271,7 @@ def summary(study: ToolingStudy, format: str = "csv") -> Frame:
     """
     people, rows = format == "table", []
     if study.design is None:
-        return frame(study, people=people)
+        return frame(study)
     orientations: dict[str, set[str]] = {}  # of each aspect
     for orientation in study.orientations:
         orientations.setdefault(orientation.aspect, set()).add(orientation.name)
@@ -420,7 +416,7 @@ def passages(study: PassagesStudy) -> Frame:
             doubt = "" if last.verdict.sure else ", not sure"
             outcomes.append(f"{last.fate} by the {last.device.kind}{doubt}")
         else:
-            outcomes.append(track_sections.passage_fate(orientation, ridden))
+            outcomes.append(device_passages.passage_fate(orientation, ridden))
     return Frame.of(table, above)
 
 
@@ -528,7 +524,10 @@ def offers(
         drawn = offer.picture("tooling.png", what, lambda: tooling_figures.limits(study, words))
         return marking.pictures([*files, drawn], mark)
     design, wanted_row = _asked_for(study)
-    devices, chain = design.devices, (design.devices, study.orientations, study.shares, wanted_row)
+    devices, chain = (
+        design.devices,
+        (design.devices, study.orientations, study.shares, wanted_row, study.left_in_trial),
+    )
 
     if study.partial:
         drawn = offer.picture("tooling.png", what, lambda: tooling_figures.chain(*chain))
@@ -576,7 +575,11 @@ def chain_picture(
 
 
 def solid_picture(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
+    devices: Sequence[Device],
+    orientations: Sequence[Orientation],
+    shares: Floats,
+    wanted_row: int,
+    left_in_trial: Collection[str] = (),
 ) -> offer.Offer:
     """Offer the picture of a part over the cuts, in three dimensions.
 
@@ -588,13 +591,16 @@ def solid_picture(
     shares : (M,) array [1]
         In which they come.
     wanted_row : int
+    left_in_trial : collection of str
+        Names of orientations of which a part left in a trial.
 
     Returns
     -------
     Offer
     """
-    alt, chain = "The part over the cut: what passes, and the nearest that falls", (devices, orientations)
-    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain, shares, wanted_row))
+    alt = "The part over the cut: what passes, and the nearest that falls"
+    chain = devices, orientations, shares, wanted_row, left_in_trial
+    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain))
 
 
 def _draw_section(

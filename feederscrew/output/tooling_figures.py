@@ -1,7 +1,7 @@
 """Pictures of tooling: each orientation at the worst place of each device, and what isolates each."""
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,12 +16,12 @@ from shapely import affinity
 from feederscrew.arrays import Floats
 from feederscrew.designing import texts
 from feederscrew.output import style
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
+from feederscrew.sorting.device_passages import Passage
 from feederscrew.sorting.devices.base import Device, Verdict
 from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import LEAST_SHARE  # what comes less often has no row
 from feederscrew.sorting.orientations import Hanging, Orientation
-from feederscrew.sorting.track_sections import Passage
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.units import MM
 
@@ -54,8 +54,11 @@ def chain(
     orientations: Sequence[Orientation],
     shares: Floats,
     wanted_row: int | None = None,
+    left_in_trial: Collection[str] = (),
 ) -> Figure:
     """Draw each orientation at the worst place of each device that it meets, the one wanted first.
+
+    What left in a trial is drawn as what leaves, with what the static rule says of it.
 
     Parameters
     ----------
@@ -66,6 +69,8 @@ def chain(
     shares : (M,) float [1]
         In which they come.
     wanted_row : int, optional
+    left_in_trial : collection of str
+        Names of orientations of which a part left in a trial.
 
     Returns
     -------
@@ -99,19 +104,22 @@ def chain(
         panel, line = divmod(place, high)
         left, top = panel * wide, PAGE_HEAD_PX + line * ROW
         orientation = orientations[k]
-        passages = track_sections.until_returned(placed, orientation, orientations)
+        passages = device_passages.until_returned(placed, orientation, orientations)
         if panel == 0:
             _draw_rule(page, top)
         # what becomes of it, at the left of its row
         through = all(passage.verdict.passes > 0.0 for passage in passages)
         if through:
-            word = track_sections.passage_fate(orientation, passages)
+            word = device_passages.passage_fate(orientation, passages)
             if orientation.returned and (other := _would_return(placed, orientation, orientations)):
                 word = f"{word}; else returned by {other.kind}"
         else:
             word = f"{passages[-1].fate} by {passages[-1].device.kind}"
         last = passages[-1].after if passages else orientation
-        colour = PASSED_COLOUR if through and not last.returned else REJECTED_COLOUR
+        leaves = through and not last.returned
+        if not leaves and orientation.name in left_in_trial:
+            leaves, word = True, left_words(word)
+        colour = PASSED_COLOUR if leaves else REJECTED_COLOUR
         write_text(page, left + 16, top + 30, orientation.name, size=12, weight="bold", colour=colour)
         write_text(page, left + 16, top + 52, f"{100.0 * shares[k]:.3g} % of the parts")
         texts: list[tuple[str, style.Look]] = [(text, {"colour": colour}) for text in textwrap.wrap(word, 24)]
@@ -119,22 +127,38 @@ def chain(
         for below, (text, look) in enumerate(texts, start=1):
             write_text(page, left + 16, top + 52 + below * TEXT_LINE_PX, text, **look)
         for step, passage in enumerate(passages):
-            _cell(page, (left + FATE_COLUMN_PX + step * column, top, column, ROW), passage, size)
+            cell = left + FATE_COLUMN_PX + step * column, top, column, ROW
+            _cell(page, cell, passage, size, leaves=leaves)
         if passages and through:
             box = left + wide - OUT + 8, top + 8, OUT - 24, ROW - 38
             _draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
         if orientation.returned:  # by the bare track
             cell = left + FATE_COLUMN_PX, top, column, ROW
-            _draw_from_above(_axes(page, cell, size, True), orientation, None, None, REJECTED_COLOUR)
-            write_text(page, cell[0] + 8, top + ROW - 12, "before it meets a device", colour=REJECTED_COLOUR)
+            _draw_from_above(_axes(page, cell, size, True), orientation, None, None, colour)
+            write_text(page, cell[0] + 8, top + ROW - 12, "before it meets a device", colour=colour)
     return page
+
+
+def left_words(rule: str) -> str:
+    """Return what is said of an orientation that left in a trial and not by the static rule.
+
+    Parameters
+    ----------
+    rule : str
+        What becomes of it by the rule: 'stopped by wiper'.
+
+    Returns
+    -------
+    str
+    """
+    return f"leaves in the trial (by the rule {rule})"
 
 
 def _would_return(
     devices: Sequence[Device], orientation: Orientation, orientations: Sequence[Orientation]
 ) -> Device | None:
     """The first device that returns an orientation, should the bare track carry it after all."""
-    passages = (track_sections.worst_passage(device, orientation, orientations) for device in devices)
+    passages = (device_passages.worst_passage(device, orientation, orientations) for device in devices)
     return next((passage.device for passage in passages if passage.verdict.passes <= 0.0), None)
 
 
@@ -200,11 +224,13 @@ def limits(study: ToolingStudy, words: str) -> Figure:
     return page
 
 
-def _cell(page: Figure, box: Box, passage: Passage, size: float) -> None:
+def _cell(page: Figure, box: Box, passage: Passage, size: float, *, leaves: bool) -> None:
+    """An orientation at a device; ``leaves`` where a trial let it through, whatever the rule says."""
     good = passage.verdict.passes > 0.0
-    colour = PASSED_COLOUR if good else REJECTED_COLOUR
+    colour = PASSED_COLOUR if good or leaves else REJECTED_COLOUR
     axes = _axes(page, box, size, passage.picture == "above")
     word = "hangs" if passage.verdict.hangs else "passes" if good else f"is {passage.fate}"
+    word = f"by the rule {word}" if leaves and not good else word
     words = turned_words(passage) if passage.verdict.onto else f"{word}, {margin_words(passage.verdict)}"
     if passage.picture == "turned":
         words = _draw_turned(axes, passage, colour)
@@ -259,7 +285,7 @@ def _draw_from_above(
     _fill_area(axes, curved if hole is None else curved.difference(in_mm(hole)), TRACK_FACE, "#b8c2cb", 1)
     outline = np.add(orientation.outline, [0.0, orientation.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART_FACE, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
-    touching = in_mm(track_sections.foot_area(orientation))
+    touching = in_mm(device_passages.foot_area(orientation))
     if hole is not None:
         _fill_area(axes, in_mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
     left_over = touching if hole is None else touching.difference(in_mm(hole))

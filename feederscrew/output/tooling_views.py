@@ -1,7 +1,7 @@
 """The part in three dimensions over a cut: the orientation that leaves, and the nearest that falls."""
 
 import textwrap
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -15,14 +15,14 @@ from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import turned
 from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera, Mesh
-from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, margin_words
+from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, left_words, margin_words
 from feederscrew.solidbowl import section as printed
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
+from feederscrew.sorting.device_passages import Passage
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.isolating.chain import LEAST_SHARE
 from feederscrew.sorting.orientations import Orientation
 from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, lay_out
-from feederscrew.sorting.track_sections import Passage
 
 # pixels of one view and of two lines over it
 VIEW_WIDTH_PX = 620
@@ -36,7 +36,11 @@ CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
 
 
 def figure(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
+    devices: Sequence[Device],
+    orientations: Sequence[Orientation],
+    shares: Floats,
+    wanted_row: int,
+    left_in_trial: Collection[str] = (),
 ) -> Figure | None:
     """Draw the wanted orientation over its least cut, and the nearest that falls.
 
@@ -49,13 +53,15 @@ def figure(
     shares : (M,) float [1]
         In which they come.
     wanted_row : int
+    left_in_trial : collection of str
+        Names of orientations of which a part left in a trial: none of them is drawn as what falls.
 
     Returns
     -------
     matplotlib.figure.Figure or None
         None without cuts.
     """
-    views = _views(devices, orientations, shares, wanted_row)
+    views = _views(devices, orientations, shares, wanted_row, left_in_trial)
     if not views:
         return None
     captions = [_caption_lines(words) for _, words, _ in views]
@@ -80,21 +86,32 @@ def _caption_lines(words: Sequence[str]) -> list[tuple[str, bool]]:
 
 
 def _views(
-    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted_row: int
+    devices: Sequence[Device],
+    orientations: Sequence[Orientation],
+    shares: Floats,
+    wanted_row: int,
+    left_in_trial: Collection[str] = (),
 ) -> list[Any]:
     """Return what leaves, and what falls by least, of the frequent: passage, lines of text, colour."""
     placed, views, rejected = [device for device in devices if device.action.has_place], [], []
-    passages = _drawable(track_sections.until_returned(placed, orientations[wanted_row], orientations))
+    passages = _drawable(device_passages.until_returned(placed, orientations[wanted_row], orientations))
     if passages:
         least = min(passages, key=lambda passage: passage.verdict.margin)
-        words = _caption(least, "passes")
+        words, colour = _caption(least, "passes"), PASSED_COLOUR
+        if not least.verdict.passes > 0.0:  # by the rule
+            fate = f"{least.fate} by {least.device.kind}"
+            is_left = orientations[wanted_row].name in left_in_trial
+            colour = PASSED_COLOUR if is_left else REJECTED_COLOUR
+            name = least.orientation.name
+            words = f"{name} {left_words(fate) if is_left else f'is {fate}'}", words[1]
         if least.verdict.hangs:
             words = f"{least.orientation.name} hangs between the rails", "by its head, from here on"
             least = replace(least, orientation=least.after)
-        views.append((least, words, PASSED_COLOUR))
+        views.append((least, words, colour))
     for k, orientation in enumerate(orientations):
-        if k != wanted_row and shares[k] >= LEAST_SHARE and not orientation.returned:
-            passages = track_sections.until_returned(placed, orientation, orientations)
+        is_left = k == wanted_row or orientation.name in left_in_trial
+        if not is_left and shares[k] >= LEAST_SHARE and not orientation.returned:
+            passages = device_passages.until_returned(placed, orientation, orientations)
             rejected += [last for last in passages[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
     if rejected:
         nearest = max(rejected, key=lambda passage: round(passage.verdict.margin, 9))

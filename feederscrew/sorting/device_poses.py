@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.arrays import Floats
+from feederscrew.sorting.device_passages import until_returned
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.isolating.chain import LEAST_SHARE
 from feederscrew.sorting.orientations import Orientation
-from feederscrew.sorting.track_sections import until_returned
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ def find_device_poses(
 
     References
     ----------
-    ``track_sections.until_returned``; docs/tooling.md, "1. The method".
+    ``device_passages.until_returned``; docs/tooling.md, "1. The method".
     """
     placed = [device for device in devices if device.action.has_place]
     groups: list[dict[str, dict[str, SharedPose]]] = [

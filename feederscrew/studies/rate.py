@@ -28,12 +28,12 @@ from feederscrew.resting.rules.recommended import LAUNCH, launch_of_name
 from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER as RECOMMENDED
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import OnCores
+from feederscrew.sorting.device_passages import Passage, until_returned
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.orientation_names import rows, split_name
 from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.design import PLAY_M, TOLERANCE_M
 from feederscrew.sorting.orientations import Orientation, orientations
-from feederscrew.sorting.track_sections import Passage, until_returned
 from feederscrew.studies import arguments, simulation_cache
 from feederscrew.studies.arguments import Path, Quantity, former_keywords
 from feederscrew.studies.aspects import aspects as resting

@@ -172,6 +172,8 @@ class ToolingStudy(ReadableRecord, view="tooling.TOOLING_VIEW"):
     partial: bool = False  # stopped by the user before all was searched and tried
     state: str = ""  # what leaves, as a design that was tried says it: 'hanging', 'A@2 or B'
     in_vain: tuple[tuple[CostClass, int], ...] = ()  # cheaper classes, and in how many trials no chain held
+    # names of the orientations, as they come, of which a part left in the trial of `design`
+    left_in_trial: tuple[str, ...] = ()
     dearer: Design | None = None  # of the next class that isolates the orientation asked for too
 
     @property

@@ -33,9 +33,10 @@ from feederscrew.trials import course, result
 from feederscrew.trials.fills import FedRow, FillLevel
 from feederscrew.trials.long_ride import long_ride
 from feederscrew.trials.part_poses import MAX_START_PLAY_M
-from feederscrew.trials.queue import MEAN_GAP_SHARE, QueuePlan, queue_of
+from feederscrew.trials.queue import queue_of
 from feederscrew.trials.result import Outlet, TrialRun
 from feederscrew.trials.shape import solid_of
+from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 from feederscrew.trials.wanted import states_of_name, wanted_rows
 
 ENGINE = "feeder's own kernel"

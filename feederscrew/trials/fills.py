@@ -19,7 +19,9 @@ from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.orientations import Hanging
-from feederscrew.trials.queue import MEAN_GAP_SHARE, PartsQueue, QueuedParts, QueuePlan
+from feederscrew.trials.queue import PartsQueue
+from feederscrew.trials.queue_counts import QueuedParts
+from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 from feederscrew.trials.wanted import find_poses, wanted_rows
 
 TOUCHING_PARTS = 12  # in a row of parts that touch
@@ -115,6 +117,9 @@ class FilledQueue:
     counts_by_entry: tuple[tuple[int, int], ...] = ()
     # where parts that came as wanted fell back: names of devices, '' the bare track, and how many, most first
     wanted_returned_at: tuple[tuple[str, int], ...] = ()
+    # what was taken out: the orientation in which it came, the place of the device along the chain of what
+    # stands on the track, from 1, its kind, and how many, the most first
+    jammed: tuple[tuple[str, int, str, int], ...] = ()
 
     @property
     def rate(self) -> float:
@@ -323,6 +328,10 @@ class FedRow:
         rows = wanted_rows(self.orientations, self.states)
         fallen = outcome.returned_at[rows].sum(axis=0) if outcome.returned_at.size else np.zeros(0, int)
         names = [BARE_TRACK, *(device.kind for device in self.bowl.devices if device.action.has_place)]
+        stood = Counter[tuple[str, int, str]]()
+        for row, place in np.argwhere(outcome.jammed_at).tolist():
+            key = self.orientations.lying[row].name, place, names[place]
+            stood[key] += int(outcome.jammed_at[row, place])
         lost = Counter[str]()
         for name, number in zip(names, fallen.tolist()):
             lost[name] += number
@@ -342,4 +351,5 @@ class FedRow:
             left_instead=self.left_instead(outcome),
             counts_by_entry=tuple(zip(offered.tolist(), as_wanted.tolist(), strict=True)),
             wanted_returned_at=tuple((name, n) for name, n in lost.most_common() if n),
+            jammed=tuple((*key, n) for key, n in stood.most_common()),
         )

@@ -3,14 +3,14 @@
 import itertools
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from enum import Enum, auto
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Column
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import zero_rows
@@ -27,10 +27,11 @@ from feederscrew.trials.kernel import travel, workspace
 from feederscrew.trials.kernel.steps import BEHIND, BELOW
 from feederscrew.trials.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trials.part_poses import State
+from feederscrew.trials.queue_counts import QueueCounts, QueuedParts
 from feederscrew.trials.shape import round_circles, solid_of
 from feederscrew.trials.staging import Stage
+from feederscrew.trials.supply import MEAN_GAP_SHARE, PartSupply, QueuePlan
 
-MEAN_GAP_SHARE = 0.2  # of a part's length: mean free way between parts as they come in a row
 JAM_SECONDS = 1.0  # a part that stands at a device so long, nothing before it, is taken out by hand
 BACKED_UP_SECONDS = 0.5  # a part that stands at a pressure break so long, and is pushed, has left the track
 STANDING_WAY = 0.05  # of the unit of length: a part that has come no further stands
@@ -39,8 +40,6 @@ CARRIED_SHARE = 0.1  # of its weight that other parts carry, and ...
 CLIMB_HEIGHT = 0.02  # ... as high over the track: a part has climbed on others
 WHOLE_PERIOD_TOLERANCE = 1e-6  # of a period: a time so little longer than whole periods is that of them
 PITCHES_BEFORE = 2.0  # greatest pitches of parts that come with room for a sensor: track before its devices
-PARTS_IN_SHARES = 40  # parts that come in exact shares
-POURED_SPACING = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
 SPEED_PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
 TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
 
@@ -99,6 +98,20 @@ def lay_out_track(
     windows = [(item.start, item.end) for item in tooled.devices]
     spans = check.frozen(np.reshape(windows, (-1, 2)).astype(float))
     return CrowdedTrack(stage, -room, spans, check.frozen(np.array(levels)), tooled.length)
+
+
+Reaches = dict[int, list[float]]  # [L] by part: rear and front along the wall, and its lowest point
+
+
+class QueueOutcome(Enum):
+    """What has become of a part of a queue in a period of the drive."""
+
+    LEFT = auto()  # beyond the outlet, on the track
+    FELL = auto()  # beyond the free edge, below the track, or back from where the track begins
+    GOES_ON = auto()
+    STANDS = auto()  # held, by a device or by the part before it
+    BACKED_UP = auto()  # stood at a pressure break, and was pushed off there
+    JAMS = auto()  # stands at a device so long that somebody takes it out
 
 
 class PartsOnTrack:
@@ -244,7 +257,7 @@ class PartsOnTrack:
         """Return (N, 2) mean forces of others in the last period, from behind and below, over the weight."""
         return self.arrays.strains / self.period
 
-    def reaches(self, rows: Iterable[int]) -> dict[int, list[float]]:
+    def reaches(self, rows: Iterable[int]) -> Reaches:
         """Return, by part, how far it reaches along the wall and down.
 
         Parameters
@@ -259,87 +272,6 @@ class PartsOnTrack:
         """
         states = self.arrays.states[list(rows)]
         return dict(zip(rows, part_poses.reaches(states, self.hull, self.part_in_bowl.radius).tolist()))
-
-
-@dataclass(frozen=True, eq=False)
-class QueuedParts:
-    """Counts of a queue of N parts; D devices, S orientations in which parts may leave, A aspects."""
-
-    parts: int  # N
-    on_track: int  # of them at a time, at most; the others wait to enter
-    is_poured: bool
-    seconds: float  # [s] followed
-    counted_seconds: float  # [s] of them since the first part came to the outlet; 0 where none did
-    delivered: float  # parts that left the last device then, that in the outlet as the share of its length
-    # (S + 1, A + 1) in which orientation whole ones left, the last is none of the known; on which aspect
-    # those lay, whatever their heading, the last hung
-    whole: Ints
-    left_by_entry: Ints  # (M, S + 1, A + 1) the same by the orientation in which they came
-    returned_by_entry: Ints  # (M,)
-    returned: int  # fell back into the bowl
-    jams: int  # stood at a device and were taken out
-    climbs: int  # times that a part came to lie on others
-    velocity: float  # [m/s] mean of all parts
-    gap: float  # [m] mean free way between neighbours
-    touching: float  # [1] share of the parts that are pushed from behind
-    pressure: Floats  # (D,) [N] greatest mean force of a period on a part that stands at a device
-    depth: float  # [m] the deepest that anything was in anything
-    partial: bool  # stopped by the user: of the seconds until then
-    # (M, D + 1) where those that were returned fell: on the bare track before the devices, at each device
-    returned_at: Ints = field(default_factory=lambda: np.zeros((0, 0), int))
-    relieved: int = 0  # of those returned, backed up at a pressure break and pushed off there
-    # (F, N, 7) position [m] and attitude w x y z (principal axes to bowl), evenly over the time; NaN of a
-    # part that waits to enter
-    poses: Floats = field(default_factory=lambda: np.zeros((0, 0, 7)))
-    moments: tuple[tuple[float, int, int], ...] = ()  # time [s], parts left and returned by then, of each
-    stage: Stage | None = None  # the track with all its devices, on which they lie
-    pulses: tuple[tuple[tuple[float, float], ...], ...] = ()  # [s] begin and end of each, by sensor
-
-    @property
-    def rate(self) -> float:
-        """Return delivered parts [1/s]; 0 where none came to the outlet."""
-        return self.delivered / self.counted_seconds if self.counted_seconds > 0.0 else 0.0
-
-    @property
-    def leaving_counts(self) -> Ints:
-        """Return (S + 1,) int, in which orientation whole parts left; the last is none of the known."""
-        return self.whole.sum(axis=1)
-
-    @property
-    def aspects(self) -> Ints:
-        """Return (A + 1,) int, on which aspect whole parts left, whatever their heading; the last hung."""
-        return self.whole.sum(axis=0)
-
-
-QUEUED_COLUMNS: tuple[Column[QueuedParts], ...] = (
-    Column("parts", lambda queue: queue.parts),
-    Column("on_track", lambda queue: queue.on_track),
-    Column("poured", lambda queue: queue.is_poured),
-    Column("seconds", lambda queue: queue.seconds),
-    Column("counted_seconds", lambda queue: queue.counted_seconds),
-    Column("delivered", lambda queue: queue.delivered),
-    Column("returned", lambda queue: queue.returned),
-    Column("backed_up", lambda queue: queue.relieved),
-    Column("jams", lambda queue: queue.jams),
-    Column("climbs", lambda queue: queue.climbs),
-    Column("velocity_mm_s", lambda queue: queue.velocity, "mm/s"),
-    Column("mean_gap_mm", lambda queue: queue.gap, "mm"),
-    Column("touching", lambda queue: queue.touching),
-)
-
-
-@dataclass(frozen=True)
-class QueuePlan:
-    """Plan of a queue: its number of parts, how they come, and how long they are followed."""
-
-    parts: int
-    seconds: float  # [s] at most
-    # [1] mean free way between parts as they come in a row, over their length, beside the room that devices
-    # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
-    gaps: float | None = MEAN_GAP_SHARE
-    frames: int = 0  # poses of all parts that are noted for a film
-    is_balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
-    is_ridden: bool = False  # they come as they are behind a ride: where devices need room, on a short way
 
 
 def queue_of(
@@ -422,44 +354,36 @@ class PartsQueue:
         seed: int,
     ) -> None:
         self.part, self.bowl, self.plan, (self.orientations, shares) = part, bowl, plan, supply
-        solid, length, self.principal = solid_of(part)
-        solid = round_circles(solid, course.roll_axes(self.orientations, self.principal))
+        solid, length, principal = solid_of(part)
+        solid = round_circles(solid, course.roll_axes(self.orientations, principal))
         self.part_in_bowl = runs.setting(solid, length, bowl)
-        count, self.chances = plan.parts, np.cumsum(shares)
-        self.rng, self.tilts = (np.random.default_rng(key) for key in ((seed, count), (seed, count, 1)))
-        longest = max(orientation.length for orientation in self.orientations)
-        turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
-        room = min(1.5 * longest * count + 2.0 * longest, max(turn, 2.0 * longest))
-        spacing = stream.needed_spacing(bowl.devices, self.orientations, bowl)
-        if plan.is_ridden and spacing > 0.0:  # parts that come with room do not push each other
-            room = min(room, PITCHES_BEFORE * (spacing + (1.0 + 2.0 * (plan.gaps or 0.0)) * longest))
-        self.track = lay_out_track(bowl, self.orientations, bowl.devices, room)
+        count, spacing = plan.parts, stream.needed_spacing(bowl.devices, self.orientations, bowl)
+        self.track = lay_out_track(bowl, self.orientations, bowl.devices, self._room(spacing))
         self.devices = [device for device in bowl.devices if device.action.has_place]
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
-        self.spacing = spacing / length
         self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
-        self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
+        self.looks = Looks(poses, solid, length, principal, bowl.track.radius)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
+        self.supply = PartSupply(
+            self.part_in_bowl, self.orientations, shares, principal, plan, spacing / length, seed
+        )
         # Of each part: where it was last on its way, since when, whether it lies on others, how it came.
         self.mark, self.since = np.zeros((2, count))
         self.on_others, self.entry_rows = np.zeros(count, bool), np.zeros(count, int)
-        self.drawn_rows: list[int] = []  # orientations of the parts to come
-        # drawn, without room yet; as `_next_part` returns it
-        self.next_part: tuple[int, State, float, float, float] | None = None
         self.waiting_parts, self.periods = list(range(count)), 0
-        # What has been counted.
-        self.left = np.zeros((len(self.orientations), len(poses) + 1, len(aspects.names) + 1), int)
-        self.returned_at = np.zeros((len(self.orientations), len(self.windows) + 1), int)
-        self.returned = self.jams = self.climbs = self.relieved = self.whole = self.max_on_track = 0
-        self.pressure, self.depth = np.zeros(len(self.windows)), 0.0
-        self.ways: list[float] = []
-        self.free_ways: list[float] = []
-        self.touch_shares: list[float] = []
-        self.first_time: float | None = None  # when the first part came to the outlet
-        self.first_share = 0.0  # how much of it had left
+        self.counts = QueueCounts(len(self.orientations), len(poses), len(aspects.names), len(self.windows))
         self.poses: list[Floats] = []
         self.moments: list[tuple[float, int, int]] = []
         self.enter()
+
+    def _room(self, spacing: float) -> float:
+        """The length of the bare track [m] before the devices, which need a spacing [m]."""
+        longest = max(orientation.length for orientation in self.orientations)
+        turn = PART_OF_TURN * 2.0 * np.pi * self.bowl.track.radius - 2.0 * longest  # some rolls back
+        room = min(1.5 * longest * self.plan.parts + 2.0 * longest, max(turn, 2.0 * longest))
+        if self.plan.is_ridden and spacing > 0.0:  # parts that come with room do not push each other
+            room = min(room, PITCHES_BEFORE * (spacing + (1.0 + 2.0 * (self.plan.gaps or 0.0)) * longest))
+        return room
 
     @property
     def time(self) -> float:
@@ -505,15 +429,14 @@ class PartsQueue:
                 poses = np.concatenate([places, attitudes], axis=1)
                 poses[~self.crowd.is_on] = np.nan
                 self.poses.append(poses)
-                self.moments.append((self.time, self.whole, self.returned))
+                self.moments.append((self.time, self.counts.whole, self.counts.returned))
             if tell:
                 tell(self.periods, count)
 
-    def enter(self, reach: dict[int, list[float]] | None = None) -> None:
+    def enter(self, reach: Reaches | None = None) -> None:
         """Let waiting parts in at the end of the row, as long as there is room.
 
-        What has no room yet is the next one to come: were another drawn for it, short ones would come more
-        often than they do.
+        What has no room yet is the next one to come.
 
         Parameters
         ----------
@@ -528,51 +451,18 @@ class PartsQueue:
         rears = [rear for n, (rear, _, _) in reach.items() if self.crowd.is_on[n]]
         end = min(rears, default=0.0)
         while self.waiting_parts:
-            self.next_part = self.next_part or self._next_part()
-            row, state, gap, rear, front = self.next_part
-            place = min(end, 0.0) - gap - front
-            if place + rear < self.track.start / self.part_in_bowl.length:
+            part = self.supply.see_next()
+            place = min(end, 0.0) - part.gap - part.front
+            if place + part.rear < self.track.start / self.part_in_bowl.length:
                 break
-            self.next_part = None
+            self.supply.take_next()
             n = self.waiting_parts.pop(0)
-            self.crowd.lay(n, part_poses.move_along_wall(state[None], place, self.part_in_bowl.radius)[0])
+            state = part_poses.move_along_wall(part.state[None], place, self.part_in_bowl.radius)[0]
+            self.crowd.lay(n, state)
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
-            self.entry_rows[n] = row
-            end = place + rear
-        self.max_on_track = max(self.max_on_track, int(self.crowd.is_on.sum()))
-
-    def _next_part(self) -> tuple[int, State, float, float, float]:
-        """A part to come: its orientation, state at the place 0, free way before it, rear and front."""
-        k = self._next_orientation()
-        orientation, solid, length = self.orientations[k], self.part_in_bowl.solid, self.part_in_bowl.length
-        if self.plan.gaps is not None:
-            track, play = orientation.track, part_poses.MAX_START_PLAY_M * self.rng.random()
-            state = part_poses.pose_on_track(orientation, self.principal, length, track, place=0.0)
-            state = part_poses.tilt_state(state, solid.corners, self.tilts)
-            state = part_poses.set_play(state, solid, track, length, play, orientation.wall_leans)
-            gap = self.spacing + 2.0 * self.plan.gaps * self.rng.random() * orientation.length / length
-        else:
-            state, turn, gap = np.zeros(body.STATE), self.rng.standard_normal(4), 0.0
-            over = solid.radius * POURED_SPACING
-            state[:3] = 0.0, over, over * (1.0 + self.rng.random())
-            state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
-        rear, front, _ = part_poses.reaches(state[None], self.crowd.hull, self.part_in_bowl.radius)[0]
-        return k, state, gap, rear, front
-
-    def _next_orientation(self) -> int:
-        """The row of the orientation in which the next part comes.
-
-        Balanced, PARTS_IN_SHARES parts come in their shares as nearly as whole parts can, in random order: a
-        systematic sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
-        """
-        last, most = len(self.orientations) - 1, self.chances[-1]
-        if not self.plan.is_balanced:
-            return min(int(np.searchsorted(self.chances, self.rng.random() * most)), last)
-        if not self.drawn_rows:
-            points = (np.arange(PARTS_IN_SHARES) + self.rng.random()) / PARTS_IN_SHARES * most
-            rows = np.minimum(np.searchsorted(self.chances, points), last)
-            self.drawn_rows = self.rng.permutation(rows).tolist()
-        return self.drawn_rows.pop()
+            self.entry_rows[n] = part.row
+            end = place + part.rear
+        self.counts.max_on_track = max(self.counts.max_on_track, int(self.crowd.is_on.sum()))
 
     def ride(self, turn: int) -> None:
         """Move all parts for one period of the drive, and look what became of them.
@@ -583,8 +473,9 @@ class PartsQueue:
             Which period, from 0.
         """
         lying, radius = np.flatnonzero(self.crowd.is_on), self.part_in_bowl.radius
+        counts = self.counts
         before = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
-        self.depth = max(self.depth, self.crowd.ride(turn))
+        counts.depth = max(counts.depth, self.crowd.ride(turn))
         self.periods += 1
         after = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
         self.crowd.watch(lying, before, after, turn + 1)
@@ -597,58 +488,89 @@ class PartsQueue:
         fallen = blown | (z * length < self.track.levels.min() - size * length)
         on = lying[~blown[lying]]
         if len(on):
-            self.ways.append((after - before)[on].mean())
+            counts.ways.append((after - before)[on].mean())
         reach = self.crowd.reaches(lying)
         order = lying[np.argsort(-after[lying], kind="stable")].tolist()
-        self.free_ways += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
+        counts.free_ways += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
         forces = self.crowd.forces
-        self.touch_shares.append((forces[lying, BEHIND] > 0.0).mean())
+        counts.touch_shares.append((forces[lying, BEHIND] > 0.0).mean())
         for n in lying.tolist():  # parts that have come to lie on others
             climbed = bool(forces[n, BELOW] > CARRIED_SHARE and reach[n][2] > CLIMB_HEIGHT)
-            self.climbs += climbed and not self.on_others[n]
+            counts.climbs += climbed and not self.on_others[n]
             self.on_others[n] = climbed
         for n in order:
-            self._look(n, after[n], reach, order, fallen[n])
+            self._count(n, self.outcome_of(n, after[n], reach, fallen[n]), after[n], reach)
         self.enter(reach)
 
-    def _look(
-        self, n: int, place: float, reach: dict[int, list[float]], order: Sequence[int], has_fallen: bool
-    ) -> None:
-        """Look what became of one part: it left, fell, stands at a device, or goes on."""
+    def outcome_of(self, n: int, place: float, reach: Reaches, has_fallen: bool) -> QueueOutcome:
+        """Return what has become of a part in a period.
+
+        Parameters
+        ----------
+        n : int
+            The part.
+        place : float [L]
+            Of its centre of mass along the wall.
+        reach : dict of int to list of float [L]
+            Of all parts, as ``PartsOnTrack.reaches`` returns it.
+        has_fallen : bool
+            Whether it is beyond the free edge, or below the track.
+
+        Returns
+        -------
+        QueueOutcome
+        """
         rear, front, _ = reach[n]
-        if self.first_time is None and front > self.outlet and not has_fallen:
-            self.first_time = self.time
-            self.first_share = self._outside(rear, front)
+        stood = self.time - self.since[n]
         if rear > self.outlet and not has_fallen and not self.crowd.slides_off(n):
-            # It has left: its orientation, and the aspect on which it lies, as if the track were at the level
-            # at which it began.
-            state = np.array(self.crowd.arrays.states[n])
-            state[body.Z] -= self.track.levels[-1] / self.part_in_bowl.length
-            orientation = self.looks.find_orientations([state])[0]
-            hangs = orientation != OTHER and self.hanging[orientation]
-            self.whole += 1
-            aspect = OTHER if hangs else self.below.find_aspects([state])[0]
-            self.left[self.entry_rows[n], orientation, aspect] += 1
-            self._send_back(n)
-        elif has_fallen or front < self.track.start / self.part_in_bowl.length:
-            self._send_back(n, fell_at=front)
-        elif place - self.mark[n] > STANDING_WAY:
-            self.mark[n], self.since[n] = place, self.time
-        elif self.time - self.since[n] >= BACKED_UP_SECONDS and self._is_pushed_off(n, rear, front):
-            self.relieved += 1
-            self._send_back(n, fell_at=front)
-        else:
-            # It stands: what pushes it, and whether it is what holds the others up.
-            at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
-            if not len(at):
-                return
-            self.pressure[at[0]] = max(self.pressure[at[0]], self.crowd.forces[n, BEHIND])
-            ahead = [
-                reach[m][0] - front for m in order if m != n and self.crowd.is_on[m] and reach[m][1] > front
-            ]
-            if self.time - self.since[n] >= JAM_SECONDS and min(ahead, default=np.inf) > MEAN_GAP_SHARE:
-                self.jams += 1
-                self._send_back(n)
+            return QueueOutcome.LEFT
+        if has_fallen or front < self.track.start / self.part_in_bowl.length:
+            return QueueOutcome.FELL
+        if place - self.mark[n] > STANDING_WAY:
+            return QueueOutcome.GOES_ON
+        if stood >= BACKED_UP_SECONDS and self._is_pushed_off(n, rear, front):
+            return QueueOutcome.BACKED_UP
+        if not len(self._devices_at(front)):
+            return QueueOutcome.STANDS
+        # Whether it is what holds the others up: nothing stands close before it.
+        ahead = [reach[m][0] - front for m in reach if m != n and self.crowd.is_on[m] and reach[m][1] > front]
+        is_first = min(ahead, default=np.inf) > MEAN_GAP_SHARE
+        return QueueOutcome.JAMS if stood >= JAM_SECONDS and is_first else QueueOutcome.STANDS
+
+    def _count(self, n: int, outcome: QueueOutcome, place: float, reach: Reaches) -> None:
+        """Count what has become of a part, and take it off the track where it is no longer on it."""
+        rear, front, _ = reach[n]
+        if front > self.outlet and outcome is not QueueOutcome.FELL:
+            self.counts.note_first(self.time, self._outside(rear, front))
+        match outcome:
+            case QueueOutcome.LEFT:
+                self.counts.note_left(self.entry_rows[n], *self._way_up(n))
+                self._take_off(n)
+            case QueueOutcome.FELL | QueueOutcome.BACKED_UP:
+                self.counts.relieved += outcome is QueueOutcome.BACKED_UP
+                self.counts.note_returned(self.entry_rows[n], int(np.searchsorted(self.windows[:, 0], front)))
+                self._take_off(n)
+            case QueueOutcome.GOES_ON:
+                self.mark[n], self.since[n] = place, self.time
+            case QueueOutcome.STANDS | QueueOutcome.JAMS:
+                devices = self._devices_at(front)[:1]
+                for device in devices:
+                    self.counts.note_pressure(device, self.crowd.forces[n, BEHIND])
+                if outcome is QueueOutcome.JAMS:
+                    self.counts.note_jam(self.entry_rows[n], int(devices[0]) + 1)
+                    self._take_off(n)
+
+    def _devices_at(self, front: float) -> Ints:
+        """The devices (K,) at whose stretch a part stands, by the place of its front [L]."""
+        return np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
+
+    def _way_up(self, n: int) -> tuple[int, int]:
+        """The pose and the aspect in which a part leaves, as if the track were at its first level."""
+        state = np.array(self.crowd.arrays.states[n])
+        state[body.Z] -= self.track.levels[-1] / self.part_in_bowl.length
+        pose = self.looks.find_orientations([state])[0]
+        hangs = pose != OTHER and self.hanging[pose]
+        return pose, OTHER if hangs else self.below.find_aspects([state])[0]
 
     def _is_pushed_off(self, n: int, rear: float, front: float) -> bool:
         """Tell whether a part that stands is at a pressure break, reaches over its ledge, and is pushed.
@@ -667,16 +589,8 @@ class PartsQueue:
         across = float(radius - np.hypot(x, radius - y).min())
         return across * self.part_in_bowl.length > min(limits)
 
-    def _send_back(self, n: int, *, fell_at: float | None = None) -> None:
-        """Take a part off the track; it waits to enter again.
-
-        ``fell_at`` is where the front of one that fell back into the bowl was along the wall: that counts at
-        the last device it has come to.
-        """
-        if fell_at is not None:
-            self.returned += 1
-            device = int(np.searchsorted(self.windows[:, 0], fell_at))  # 0 before the first
-            self.returned_at[self.entry_rows[n], device] += 1
+    def _take_off(self, n: int) -> None:
+        """Take a part off the track; it waits to enter again."""
         self.crowd.take(n)
         self.waiting_parts.append(n)
 
@@ -700,29 +614,30 @@ class PartsQueue:
         length, unit, seconds = self.part_in_bowl.length, self.part_in_bowl.unit, self.time
         reach = self.crowd.reaches(np.flatnonzero(self.crowd.is_on))  # none of them has fallen
         part = sum(self._outside(rear, front) for rear, front, _ in reach.values())
-        counted_seconds = 0.0 if self.first_time is None else seconds - self.first_time
+        counts, counted_seconds = self.counts, self.counts.counted_seconds(seconds)
         logs = [pulses.log for pulses in self.crowd.pulses]
         return QueuedParts(
             parts=self.plan.parts,
-            on_track=self.max_on_track,
+            on_track=counts.max_on_track,
             is_poured=self.plan.gaps is None,
             seconds=seconds,
             counted_seconds=counted_seconds,
-            delivered=self.whole + part - self.first_share if counted_seconds else 0.0,
-            whole=check.frozen(self.left.sum(axis=0)),
-            left_by_entry=check.frozen(np.array(self.left)),
-            returned_by_entry=check.frozen(self.returned_at.sum(axis=1)),
-            returned_at=check.frozen(np.array(self.returned_at)),
-            returned=self.returned,
-            jams=self.jams,
-            climbs=self.climbs,
-            velocity=float(np.mean(self.ways)) * length * self.bowl.drive.frequency,
-            gap=float(np.mean(self.free_ways)) * length if self.free_ways else 0.0,
-            touching=float(np.mean(self.touch_shares)),
-            pressure=check.frozen(self.pressure * self.part.mass * self.bowl.gravity),
-            depth=self.depth * length,
+            delivered=counts.whole + part - counts.first_share if counted_seconds else 0.0,
+            whole=check.frozen(counts.left.sum(axis=0)),
+            left_by_entry=check.frozen(np.array(counts.left)),
+            returned_by_entry=check.frozen(counts.returned_at.sum(axis=1)),
+            returned_at=check.frozen(np.array(counts.returned_at)),
+            jammed_at=check.frozen(np.array(counts.jammed_at)),
+            returned=counts.returned,
+            jams=counts.jams,
+            climbs=counts.climbs,
+            velocity=float(np.mean(counts.ways)) * length * self.bowl.drive.frequency,
+            gap=float(np.mean(counts.free_ways)) * length if counts.free_ways else 0.0,
+            touching=float(np.mean(counts.touch_shares)),
+            pressure=check.frozen(counts.pressure * self.part.mass * self.bowl.gravity),
+            depth=counts.depth * length,
             partial=partial,
-            relieved=self.relieved,
+            relieved=counts.relieved,
             poses=check.frozen(np.reshape(self.poses, (len(self.poses), self.plan.parts, 7))),
             moments=tuple(self.moments),
             stage=self.track.stage,

@@ -26,7 +26,7 @@ from feederscrew.sorting.orientations import Orientation, neck
 from feederscrew.trials import course
 from feederscrew.trials.course import Landing
 from feederscrew.trials.fills import FilledQueue
-from feederscrew.trials.queue import QueuedParts
+from feederscrew.trials.queue_counts import QueuedParts
 
 CLEAR_MARGIN_M = 2.5e-4  # [m] margin from which a static verdict should hold
 VERDICT_SHARE = 0.95  # [1] of the trials in which it should

@@ -168,7 +168,14 @@ def states_of_name(
         for k, state in enumerate(orientations.leaves_as)
         if first in (orientations.states[state].name.casefold(), orientations.states[state].aspect.casefold())
     ]
-    if not rows:
+    if not rows:  # what a trial alone has shown to hang
+        hangs = [
+            k
+            for k, state in enumerate(orientations.states)
+            if isinstance(state, Hanging) and first == state.name.casefold()
+        ]
+        if hangs:
+            return (hangs[0],), ()
         raise ValueError(f"no orientation leaves as {name}")
     row = max(rows, key=lambda k: shares[k])
     states = wanted_states(orientations, (row, *equivalent_rows(orientations.lying, row, up)))

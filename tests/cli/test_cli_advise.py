@@ -27,6 +27,16 @@ def test_the_grade_alone_looks_for_no_change(run):
     assert json.loads(done.stdout)["changes"] == []
 
 
+def test_without_changes_the_reasons_are_printed_and_a_rule_is_named_as_one(run):
+    """The table of no changes was a line of headings."""
+    call = ("advise", PARTS / "washer_m6.stl", "--rule", "closed", "--static")
+    alone = run(*call, "--grade-only")
+    first, *lines = alone.stdout.splitlines()
+    assert first.split() == ["reason", "grades", "less", "because"] and len(lines) >= 3
+    said = " ".join(run(*call).stderr.split())
+    assert "by the static rule" in said and "that was tried" not in said
+
+
 @pytest.mark.parametrize("part", ["magnet.yaml"])
 def test_a_part_card_has_no_shape_to_change(run, part):
     done = run("advise", PARTS / part, "--static")

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import click
 import pytest
+from click.testing import CliRunner
 from command_lines import NUT, names, rows
 
 from feederscrew.batch import batch_run as batches
@@ -23,6 +24,8 @@ UNDRAWN = True  # test_pictures.py and others look at pictures
 QUICK = ("--no-pictures", "--jobs", 1, "--rule", "closed")  # nothing is simulated
 FULL = Path("/dev/full")
 ODD = ("$dollar^_{x}$.stl", "=1+1.stl", "n" * 240 + ".stl", os.fsdecode(b"bad\xff\xfe.stl"))
+MOST_HELP_LINES = 60  # of one command
+MOST_HELP_LINES_OF_ALL = 800
 EXTRA = {"config": ("init",), "tune": ("--target", "60/min")}
 EXTRA |= dict.fromkeys(("compare", "calibrate"), ("--with", "x.csv"))
 NO_SPACE = "cannot be read or written (No space left on device) - check the disk and permissions"
@@ -166,3 +169,21 @@ def test_a_name_that_would_command_a_terminal_is_shown_by_its_letters(run, tmp_p
     assert "\x1b" not in good.stderr + good.stdout + bad.stderr
     assert bad.stderr == "Error: no red\\x1b[31m row.stl: no such file - check the path\n"
     assert tables.text(Frame.of({"part": ["a\nb\x07"]}), "table") == "part\na b\\x07\n"
+
+
+def test_each_help_fits_a_screen_and_all_of_them_can_be_read():
+    """With the subcommands they were 962 lines once; the longest had 64."""
+    long, lines = {}, 0
+    for path in sorted(command_paths(feeder)):
+        shown = CliRunner().invoke(feeder, [*path, "--help"], terminal_width=80).output.splitlines()
+        lines += len(shown)
+        long |= {path: len(shown)} if len(shown) > MOST_HELP_LINES else {}
+        assert max(map(len, shown)) <= 80, path
+    assert not long and lines <= MOST_HELP_LINES_OF_ALL
+
+
+def command_paths(group, lead=()):
+    """The words of each command, from the program itself to subcommands."""
+    yield lead
+    for name in getattr(group, "commands", {}):
+        yield from command_paths(group.commands[name], (*lead, name))

@@ -18,6 +18,7 @@ from feederscrew.designing.findings import End, Fault, FaultKind
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.designing.search import Search
 from feederscrew.sorting.devices.base import Device
+from feederscrew.sorting.devices.trade import Action
 from feederscrew.studies.rate import Shares
 from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
@@ -205,7 +206,7 @@ def answer_to(monkeypatch, block):
         (proposals, "_cut_more"), (loop, "_faster"),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, note(name))
-    wiper = SimpleNamespace(device=SimpleNamespace(overhead=True, hangs=False, kind="wiper"))
+    wiper = SimpleNamespace(device=SimpleNamespace(action=Action.OVERHEAD, kind="wiper"))
     trial = short_trial(block.ways, (0,))
 
     def call(fault):

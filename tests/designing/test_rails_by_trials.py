@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapes
 import trimesh
-from design_counts import short_trial, stopped_at
+from design_counts import end_at, short_trial, stopped_at
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import calm_drive, exploring, hanging, proposals
@@ -19,6 +19,7 @@ from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.sorting.isolating.rails import find_head
 from feederscrew.sorting.orientations import hang, may_hang
 from feederscrew.sorting.orientations import orientations as on_the_track
+from feederscrew.trials.course import Fate
 
 # a sleeve of 7 mm, 9 mm long with its flange of 12 mm: its head is as long as the part
 SLEEVE = [(0, 0), (6, 0), (6, 1.5), (3.5, 1.5), (3.5, 9), (0, 9)]
@@ -109,6 +110,43 @@ def test_what_stands_at_the_blade_asks_for_a_livelier_drive_then_cuts_then_sweep
     clean = trial_of(lying, rails_search, first.proposal, None)
     kinds = {tried.proposal.move.kind for tried in rails_search.moves(first, clean)}
     assert MoveKind.SWEEP not in kinds and not any(t.is_livelier for t in rails_search.moves(first, clean))
+
+
+def test_what_stands_in_a_queue_says_what_is_changed(lying, rails_search):
+    """Another orientation is returned before; of one that hangs the slot, its lead-in or the blade change."""
+    first = next(rails_search.start())
+    proposal = first.proposal
+    placed = [device.kind for device in proposal.devices if device.action.has_place]
+    rails, blade = (placed.index(kind) + 1 for kind in ("rails", "wiper"))
+    # what has no head is swept off by the blade
+    trial = trial_of(lying, rails_search, proposal, None)
+    swept = tuple({end_at(Fate.RETURNED, "wiper", blade): 2} if not right else {} for right in trial.right)
+    trial = replace(trial, ends=swept)
+    own, other = (
+        next(one.name for one in lying if (find_head(one) is None) == is_other) for is_other in (False, True)
+    )
+
+    def changes(*jammed):
+        search = hanging.RailsSearch(lying, rails_search.shares, rails_search.row, (), DesignRequest(0.5), 1)
+        return list(search.mends_of_jams(proposal, trial, jammed))
+
+    def slot(changed):
+        return next(device for device in changed.devices if device.action is Action.HANG)
+
+    at_rails = changes((own, rails, "rails", 2))
+    kinds = [changed.move.kind for changed in at_rails]
+    assert MoveKind.WIDER_SLOT in kinds and MoveKind.LEAD_IN in kinds and MoveKind.BLADE_HEIGHT not in kinds
+    wider = at_rails[kinds.index(MoveKind.WIDER_SLOT)]
+    widths = [np.ptp(slot(one).span) for one in (proposal, wider)]
+    assert widths[0] + 2.5e-4 < widths[1] < widths[0] + 4e-4
+    assert wider.rails.play == pytest.approx(3e-4)  # what is changed next goes on from there
+    at_blade = changes((own, blade, "wiper", 1))
+    kinds = [changed.move.kind for changed in at_blade]
+    assert MoveKind.BLADE_HEIGHT in kinds and MoveKind.WIDER_SLOT not in kinds
+    higher = at_blade[kinds.index(MoveKind.BLADE_HEIGHT)]
+    assert higher.devices[-1].limit > proposal.devices[-1].limit
+    for place in (rails, blade):
+        assert {changed.move.kind for changed in changes((other, place, "", 1))} <= {MoveKind.CUTS_BEFORE}
 
 
 def test_standing_counts_more_against_a_chain_than_coming_back(lying, rails_search):

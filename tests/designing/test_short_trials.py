@@ -254,6 +254,29 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     assert proposals.purify(candidate, ((UNKNOWN, 3),)) is None
 
 
+def test_a_cut_at_which_what_is_wanted_stands_in_a_queue_cuts_less(rows, dropped):
+    """Half the way to its least cut; nothing of a place where no cut of the design stands, or of a sensor."""
+    ways = rows[0]
+    proposal, seen = dropped
+    (before,) = proposal.cuts
+    (after,) = proposals.ease_cut(proposal, 1, ways.lying).cuts
+    middle = 0.5 * (before.device.limit + before.smallest.limit)
+    assert after.device.limit == pytest.approx(middle, abs=proposals.VALUE_STEP_M)
+    assert after.margin_pass > before.margin_pass
+    for place in (-1, 0, 2):
+        assert proposals.ease_cut(proposal, place, ways.lying) is None
+    # a queue that jams at it asks for the same; what else stands there is cut more
+    search = SimpleNamespace()
+    candidate = SimpleNamespace(proposal=proposal, trial=seen, orientations=ways)
+    mends = list(exploring.mends_of_jams(search, candidate, (("A@0", 1, before.device.kind, 2),)))
+    assert [one.cuts[0].device.limit for one in mends] == [after.device.limit]
+    (more,) = exploring.mends_of_jams(search, candidate, (("A@90", 1, before.device.kind, 1),))
+    assert abs(more.cuts[0].device.limit - before.largest.limit) < abs(
+        before.device.limit - before.largest.limit
+    )
+    assert not list(exploring.mends_of_jams(search, candidate, ()))
+
+
 def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_stop_of_it(block, rows):
     ways, along, across = rows
     assert equivalent_rows(ways.lying, along, ()) == ()
@@ -420,6 +443,46 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
     assert 6e-3 + proposals.MARGINS[-1] <= cut.device.limit <= 12e-3 - proposals.MARGINS[-1]
     again = SimpleNamespace(proposal=changed, trial=seen, orientations=ways)
     assert proposals.add_pressure_break(again) is None  # it has one
+
+
+def test_what_a_full_track_lets_past_a_sensor_meets_a_second_one(rows):
+    """The same once more, behind the first; a chain of steel and one that has two get none."""
+    ways, along, _ = rows
+    like = {"like": (ways.lying[along].aspect, ways.lying[along].heading, 1e-3), "text": "test"}
+    sees, gap = make_device("vision reject", "test", **like), make_device("gap", "test", limit=7e-3)
+    cuts = tuple(Cut(device, 1e-3, 1e-3, device, device, ("B@0",)) for device in (sees, gap))
+    once = proposals.Proposal(along, cuts, (), "test")
+    twice = proposals.add_second_sensor(SimpleNamespace(proposal=once))
+    assert [device.kind for device in twice.devices] == ["vision reject", "vision reject", "gap"]
+    assert twice.move.kind is MoveKind.SECOND_SENSOR and "second vision reject" in texts.move_text(twice.move)
+    assert proposals.add_second_sensor(SimpleNamespace(proposal=twice)) is None
+    steel = replace(once, cuts=cuts[1:])
+    assert proposals.add_second_sensor(SimpleNamespace(proposal=steel)) is None
+
+
+def test_parts_that_touch_come_apart_on_a_spacing_section_then_on_a_steeper_one(rows):
+    """Before the first device; once steeper; nothing of the user's own stretches, or of no device."""
+    ways, along, _ = rows
+    narrow = make_device("narrowed track", "test", limit=9e-3)
+    none = np.zeros(len(ways.lying), bool)
+    cut = proposals.judge_cut(ways.lying, along, narrow, none, narrow, narrow)
+    proposal = proposals.Proposal(along, (cut,), (), "test")
+    angles = []
+    for _ in range(2):
+        proposal = proposals.spread_apart(SimpleNamespace(proposal=proposal))
+        assert [device.kind for device in proposal.devices] == ["spacing section", "narrowed track"]
+        assert proposal.move.kind is MoveKind.SPACING
+        angles.append(float(np.degrees(proposal.devices[0].angle)))
+    assert angles[0] == pytest.approx(-6.0) and angles[1] == pytest.approx(-10.0)
+    text = proposal.devices[0].text
+    assert text == "{climb: -10 deg}" and text in texts.move_text(proposal.move)
+    assert proposals.spread_apart(SimpleNamespace(proposal=proposal)) is None
+    bare = SimpleNamespace(proposal=replace(proposal, cuts=()))
+    assert proposals.spread_apart(bare) is None
+    kept = SimpleNamespace(proposal=replace(proposal, cuts=(cut,)))
+    assert proposals.spread_apart(kept, ("spacing section",)) is None
+    led = SimpleNamespace(proposal=replace(proposal, cuts=(cut,), before=proposal.devices[:1]))
+    assert proposals.spread_apart(led) is None
 
 
 @pytest.mark.parametrize(("lost", "draws", "held"), [((0, 2), 3, 1), ((3,), 5, 4)])

@@ -19,14 +19,24 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl import reading
 from feederscrew.bowl.reading import settings_of_text
 from feederscrew.bowl.record import shares, vibration_angle
+from feederscrew.bowl.verified import Status
 from feederscrew.conveying import answer
 from feederscrew.designing import calm_drive, design
+from feederscrew.designing.record import Alternative
 from feederscrew.dropping.plate_test import throw_number
-from feederscrew.errors import ArgumentError
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine import drive_sizing, sizing, springs
 from feederscrew.machine.drive_sizing import can_make
 from feederscrew.machine.springs import analyse_springs, greatest_amplitude, leaf_stress, stroke
-from feederscrew.output import bowl_sheet, design_pages, designs, machine, machine_figures, tooling_drawing
+from feederscrew.output import (
+    bowl_sheet,
+    design_pages,
+    designs,
+    machine,
+    machine_figures,
+    marking,
+    tooling_drawing,
+)
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.studies import bowl as machines
@@ -218,15 +228,30 @@ def test_longer_leaves_where_none_of_the_usual_length_tunes_a_slow_drive():
     assert drive_sizing.on_leaves(bowl, {"leaf_length"}) == bowl.machine
 
 
-def test_a_design_whose_drawn_springs_do_not_make_its_angle_does_not_hold():
+def test_a_design_whose_drawn_springs_do_not_make_its_angle_holds_but_for_its_machine():
     steep = (*ONE, "drive.vibration_angle=50 deg", "drive.amplitude=0.15 mm")
     one = proved(PART, bowls.read(None, steep))
     assert one.status == "holds"
     settings = bowls.settings(None, steep)
-    found = design.with_machine(one, design.Built(machines.machine(settings)))
-    assert found.status == "falls short" and "the springs make it" in found.why
+    row = Alternative(1, one.status, chain=("gap: 9 mm",))
+    found = design.with_machine(replace(one, alternatives=(row,)), design.Built(machines.machine(settings)))
+    assert found.status is Status.NO_MACHINE and "the springs make it" in found.why
+    assert found.tooling_status is Status.HOLDS  # what was tried is not denied
+    assert found.alternatives[0].status is Status.NO_MACHINE and found.alternatives[0].reasons
     assert found.cause == "drive" and found.nearest.rate == one.request.target
     assert "springs that stand at" in found.nearest.change and found.nearest.draws_held == 20
+    # the machine that is named makes the drive, on leaves that last: its angle and circle are those of words
+    angle, circle = (
+        float(text)
+        for text in re.findall(r"at ([\d.]+) deg on a circle of ([\d.]+)", found.nearest.change)[0]
+    )
+    bowl = replace(
+        found.bowl,
+        machine=replace(found.bowl.machine, spring_angle=np.radians(angle), spring_radius=5e-4 * circle),
+    )
+    assert can_make(bowl) is None and can_make(found.bowl) is not None
+    # papers of its tooling bear no mark: its trial holds
+    assert marking.of_trial(designs.trial_of(found)) == ""
 
 
 @pytest.mark.parametrize("name", [None, "d300-60hz"])
@@ -421,3 +446,17 @@ def test_the_page_is_true(run, monkeypatch):
             if "left alone" not in was:
                 before, after = (np.array(NUMBER_BOWL.findall(one), dtype=float) for one in (was, now))
                 np.testing.assert_allclose(after, before, rtol=NEAR, atol=1e-9)
+
+
+def test_a_bowl_that_was_tried_is_sized_though_the_static_rule_lets_nothing_through():
+    """The rule warns, and names what it finds; it refuses the same file where nothing was tried."""
+    text = BOWL.replace("gap: 5 mm", "narrowed_track: 1 mm")
+    settings = settings_of_text(text, "bowl.yaml")
+    with pytest.raises(FeederError):
+        machines.size_machine(settings, STEEL_PART, 0.5)
+    sheet = machines.size_machine(settings, STEEL_PART, 0.5, as_tried=True)
+    assert sheet.bowl.drive.amplitude == pytest.approx(0.42e-3) and sheet.order.target == 0.5
+    assert sheet.remarks[0].startswith("the drive is the one that was tried, 0.84 mm peak to peak")
+    assert "static rule finds none for 30/min" in sheet.remarks[0]
+    # it is sized for the parts that the track carries, and filled with them
+    assert sheet.order.flow.parts > 0.0 and sheet.filled_with == machines.PART

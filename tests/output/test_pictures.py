@@ -27,6 +27,7 @@ from feederscrew.output import slide as slide_output
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Table
 from feederscrew.output.tables import regime_words
+from feederscrew.output.trial import figures
 from feederscrew.output.trial.rides import DeviceRide
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
@@ -176,10 +177,31 @@ def test_a_ride_is_named_by_its_device_and_the_history_of_a_loop_can_be_read():
         DeviceRide(place, "A@0", Fate.ROLLED_BACK, np.zeros((1, 8))).title(section) for place in range(3)
     ]
     assert titles == [f"A@0 at {name}: rolled back" for name in ("gap 9 mm", "cut-out", "vision reject")]
+    turned = DeviceRide(0, "A@0", Fate.PASSED, np.zeros((1, 8)), becomes="B@90").title(section)
+    assert turned == "A@0 at gap 9 mm: becomes B@90", "it was headed 'passed'"
     # The history of a loop can be read: once it was 7 x 3 pixels.
     attempts = [SimpleNamespace(rate=0.5 * k, clean=k > 1, wanted="A@0") for k in (1, 2)]
     figure = designs.history_figure(SimpleNamespace(attempts=attempts, request=SimpleNamespace(target=1.0)))
     assert (figure.get_size_inches() * figure.dpi >= [600, 250]).all()
+
+
+def test_what_leaves_has_a_row_in_the_picture_of_a_trial_however_seldom_it_comes():
+    """Of 30 orientations the 24 most frequent had one, and the wanted one was left out."""
+    count, names = 30, [f"A@{k}" for k in range(30)]
+    leaving, lost = np.zeros((count, count + 1), int), np.zeros((count, len(Fate)), int)
+    leaving[28, 28], lost[:, Fate.RETURNED] = 2, 2
+    lost[28, Fate.RETURNED] = 0
+    states = [SimpleNamespace(name=name) for name in names]
+    run = SimpleNamespace(
+        shares=np.linspace(2.0, 1.0, count) / 45.0,
+        tried_counts=np.full(count, 2),
+        matrix=leaving,
+        counts=lost,
+        orientations=SimpleNamespace(states=states),
+        is_odd=np.zeros(count, bool),
+    )
+    labels = [label.get_text() for label in figures.matrix(run).axes[0].get_yticklabels()]
+    assert labels == [*names[:23], "A@28"]
 
 
 def test_a_matrix_can_be_sorted_where_it_says_so_and_headings_stand_over_numbers():

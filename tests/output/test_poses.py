@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.output import poses
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, Page, Table, Text
-from feederscrew.output.tables import frame
+from feederscrew.output.tables import Frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
@@ -31,7 +31,7 @@ def aspects(part):
 @pytest.fixture(scope="module")
 def text(part, aspects):
     lines = Text("A@90 leaves; A@90 and Z@1 do not, nor does b@2 <A@0>.")
-    table = Table(frame({"aspect": ["A", "none"], "share": [0.5, 0.5]}))
+    table = Table(Frame.of({"aspect": ["A", "none"], "share": [0.5, 0.5]}))
     chapter = Chapter((lines, table), warnings=("A@90 rocks",), title="X", anchor="x")
     named = [("A@90", "leaves"), ("hanging", "is unknown here")]
     opening = poses.opening(part, aspects, named)

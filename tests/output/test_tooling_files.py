@@ -21,7 +21,7 @@ from feederscrew.output import shading, solid_files, tooling_drawing, tooling_fi
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.solidbowl import section as printed
-from feederscrew.sorting import track_sections
+from feederscrew.sorting import device_passages
 from feederscrew.sorting.devices.base import UNSURE, Verdict
 from feederscrew.sorting.devices.features import Bore, Features, ShopWork
 from feederscrew.sorting.devices.kinds import make_device
@@ -71,7 +71,7 @@ def at_gates(lying):
     """How each orientation stands at the wiper and at the profile."""
     bowl, every = lying
     gates = [device for device in bowl.devices if device.kind in ("wiper", "profile gate")]
-    return [track_sections.worst_passage(device, one, every) for device in gates for one in every]
+    return [device_passages.worst_passage(device, one, every) for device in gates for one in every]
 
 
 def even(every):
@@ -125,7 +125,7 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
     bowl, every = lying
     cut = next(device for device in bowl.devices if device.kind == "cut-out")
     for one in every:
-        passage = track_sections.worst_passage(cut, one, every)
+        passage = device_passages.worst_passage(cut, one, every)
         hull, weight = shapely.MultiPoint(passage.supported).convex_hull, shapely.Point(passage.weight)
         away = hull.boundary.distance(weight) if hull.contains(weight) else -hull.distance(weight)
         assert away == pytest.approx(passage.verdict.margin, abs=2e-5), one.name
@@ -236,6 +236,32 @@ def test_what_the_track_does_not_carry_is_said_to_be_returned_as_the_table_says(
         page = tooling_figures.chain(devices, every, even(every))
         shown = " ".join(text.get_text() for text in page.texts)
         assert ("falls off the track; else returned by vision reject" in shown) == returns
+
+
+def test_what_left_in_a_trial_is_not_drawn_as_stopped(lying):
+    """The wanted orientation was drawn in red, stopped by a wiper, in a bowl that fed it."""
+    every = lying[1]
+    wiper = make_device(
+        "wiper", "here", limit=1e-3
+    )  # lower than any lies: by the rule it stops or returns all
+    by_rule = [device_passages.worst_passage(wiper, one, every) for one in every]
+    assert all(passage.verdict.passes <= 0.0 for passage in by_rule)
+    left, stays = every[0], every[1]
+    for left_in_trial in ((), (left.name,)):
+        page = tooling_figures.chain([wiper], every, even(every), 0, left_in_trial)
+        colours = {text.get_text(): text.get_color() for text in page.texts}
+        is_left = bool(left_in_trial)
+        passed, rejected = tooling_figures.PASSED_COLOUR, tooling_figures.REJECTED_COLOUR
+        assert colours[left.name] == (passed if is_left else rejected) and colours[stays.name] == rejected
+        shown = " ".join(text.get_text() for text in page.texts)
+        assert shown.count("leaves in the trial (by the") == int(is_left)
+        solid = tooling_views.figure([wiper], every, even(every), 0, left_in_trial)
+        first, *_ = solid.texts
+        assert first.get_text().startswith(left.name) and "passes" not in first.get_text()
+        assert ("leaves in the trial" in first.get_text()) is is_left
+        assert first.get_color() == (passed if is_left else rejected)
+    others = tooling_views.figure([wiper], every, even(every), 0, [one.name for one in every])
+    assert len(others.axes) == 1, "none of them falls"
 
 
 def test_rails_are_cut_across_under_what_hangs():

@@ -19,6 +19,7 @@ from feederscrew.conveying import answer
 from feederscrew.dropping import arrival as floor
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.track_balance import seat
+from feederscrew.output import rate as rate_output
 from feederscrew.part.loading import load
 from feederscrew.rates import drive_settings, stream, tipping, well_oriented
 from feederscrew.rates.stream import follow_orientations
@@ -64,6 +65,19 @@ def chain(tmp_path):
         return bowls.read(tmp_path / "bowl.yaml").devices
 
     return read
+
+
+def test_a_spacing_section_is_asked_for_where_the_chain_has_none(tmp_path):
+    """Before the camera: one behind it parts nothing that the camera looks at."""
+    block, lines = shapes.part(shapes.box(20, 12, 5)), {}
+    camera = "  - vision reject: {of: A@0, play: 2 mm, sees: outline, jet: {time: 25 ms}}\n"
+    section = "  - spacing section: {climb: -4 deg}\n"
+    for name, chain in (("none", camera), ("before", section + camera), ("behind", camera + section)):
+        (tmp_path / f"{name}.yaml").write_text(f"devices:\n{chain}")
+        rated = study.rate(block, bowls.read(tmp_path / f"{name}.yaml"), "A", rule="csa")
+        (lines[name],) = [line for line in rate_output.remarks(rated) if "one part at a time" in line]
+    asks = {name for name, line in lines.items() if "a spacing section before it" in line}
+    assert asks == {"none", "behind"}
 
 
 def test_headings_equal_under_a_turn_are_one_and_their_probabilities_sum_to_one(box):

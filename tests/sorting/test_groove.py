@@ -16,9 +16,9 @@ from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import velocity
 from feederscrew.solidbowl import section as printed
 from feederscrew.sorting import solid
+from feederscrew.sorting.device_passages import worst_passage
 from feederscrew.sorting.fates import at_entry, course, leading_devices
 from feederscrew.sorting.tooled_track import lay_out
-from feederscrew.sorting.track_sections import worst_passage
 from feederscrew.sorting.verdicts import becomes_in_groove, groove_height, settled_in_groove, verdict
 from feederscrew.studies.rate import rate, shares
 

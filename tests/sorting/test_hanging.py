@@ -13,12 +13,12 @@ from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.bowl.devices import THREADED_SHANK
 from feederscrew.errors import FeederError
+from feederscrew.sorting.device_passages import until_returned
 from feederscrew.sorting.devices.base import opening_at
 from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import hangs_free
 from feederscrew.sorting.fates import course
 from feederscrew.sorting.orientations import Hanging, neck
-from feederscrew.sorting.track_sections import until_returned
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.studies import tooling as tooling_study
 from feederscrew.studies import trial

@@ -26,8 +26,9 @@ from feederscrew.sorting.orientations import add_travel
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.studies import trial as studies
 from feederscrew.trials import course, looks, part_poses, runs, shape, staging
-from feederscrew.trials.queue import QueuePlan, queue_of
+from feederscrew.trials.queue import queue_of
 from feederscrew.trials.result import TrialRun
+from feederscrew.trials.supply import QueuePlan
 
 L_SHAPE = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
 SLANTED = [(0.0, 6.75), (2.05, 0.0), (19.55, 0.0), (23.5, 7.35), (16.85, 9.1), (12.85, 9.25)]  # [mm]

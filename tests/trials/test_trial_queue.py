@@ -19,6 +19,7 @@ from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import part_poses, queue, result, runs
 from feederscrew.trials.kernel.steps import BEHIND, BELOW
+from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 
 STILL = still(climb=0.0)
 # throw number 2.27 at 100 Hz, no rebound: 83.2 mm/s
@@ -54,13 +55,13 @@ def ride(row, turns, begin=0):
 
 
 def queued(bowl, *planned, run=USUAL_RUN, **own):
-    plan = queue.QueuePlan(*planned, **own)
+    plan = QueuePlan(*planned, **own)
     return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, SHARES, plan, run)
 
 
 def row_of(bowl, *planned, shares=SHARES, seed=3):
     every = lying(PART, bowl)
-    return queue.PartsQueue(PART, bowl, ASPECTS, (every, shares), every, queue.QueuePlan(*planned), seed)
+    return queue.PartsQueue(PART, bowl, ASPECTS, (every, shares), every, QueuePlan(*planned), seed)
 
 
 def ways(row):
@@ -123,9 +124,9 @@ def test_lists_of_what_may_touch_decide_nothing(monkeypatch, room):
 
 @pytest.mark.parametrize(("bowl", "gaps", "seconds", "near"), [
     (BOWL, 0.0, 3.0, 0.02),
-    (BOWL, queue.MEAN_GAP_SHARE, 12.0, 0.05),  # so few uneven gaps are off by 1 mm in the mean
+    (BOWL, MEAN_GAP_SHARE, 12.0, 0.05),  # so few uneven gaps are off by 1 mm in the mean
     (HOPPING, 0.0, 3.0, 0.08),
-    (HOPPING, queue.MEAN_GAP_SHARE, 3.0, 0.08),
+    (HOPPING, MEAN_GAP_SHARE, 3.0, 0.08),
 ])  # fmt: skip
 def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(bowl, gaps, seconds, near):
     """It travels as the point mass, and the rate is its pitch's."""
@@ -138,13 +139,13 @@ def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(bowl, gaps, s
         assert found.depth < 5e-6
 
 
-@pytest.mark.parametrize("gaps", [queue.MEAN_GAP_SHARE, 0.5, 0.0, None])
+@pytest.mark.parametrize("gaps", [MEAN_GAP_SHARE, 0.5, 0.0, None])
 def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
     row = row_of(STILL, 300, 1.0, gaps)
     ends = np.array([row.crowd.reaches([n])[n][:2] for n in range(300)])
     free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
-    assert not row.waiting_parts and ends[0, 1] <= 1e-9 and row.max_on_track == 300
+    assert not row.waiting_parts and ends[0, 1] <= 1e-9 and row.counts.max_on_track == 300
     if gaps:
         assert free.min() > 0.0 and 1.9 * gaps < free.max() < 2.0 * gaps
         assert free.mean() == pytest.approx(gaps, abs=4.0 * 2.0 * gaps / np.sqrt(12 * 300))
@@ -161,11 +162,11 @@ def test_parts_wait_where_the_track_is_full_and_come_next_however_long_they_are(
     assert -room <= min(rears) < -room + 1.4 * FLAT.length + 1e-9
     bowl = replace(BOWL, track=replace(BOWL.track, radius=0.15))
     row = row_of(bowl, 40, 1.0, 0.0, shares=np.full(len(EVERY), 1.0 / len(EVERY)), seed=5)
-    waits, came = row.next_part, list(row.waiting_parts)
+    waits, came = row.supply.waiting, list(row.waiting_parts)
     assert waits is not None and came  # the row reaches back to where the track begins
     for _ in range(20):
         row.enter()
-        assert row.next_part is waits and row.waiting_parts == came
+        assert row.supply.see_next() is waits and row.waiting_parts == came
     on = np.flatnonzero(row.crowd.is_on)
     for n in on[np.argsort(ways(row)[on])][:3]:
         row.crowd.take(int(n))
@@ -240,7 +241,7 @@ def slope():
 def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
     row = row_of(slope(), parts, 1.0, 0.0)
     ride(row, 30)
-    row.pressure[:], row.touch_shares = 0.0, []  # without the impact
+    row.counts.pressure[:], row.counts.touch_shares = 0.0, []  # without the impact
     ride(row, 10, 30)
     found, weight = row.result(), PART.mass * 9.81
     assert found.pressure[0] == pytest.approx((parts - 1) * weight * np.sin(SLOPE), abs=1e-3 * weight)
@@ -249,12 +250,15 @@ def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
 
 def test_what_stands_at_a_blade_for_a_second_is_taken_out():
     row, seen = row_of(slope(), 1, 3.0, 0.0), []
-    while not row.jams and len(seen) < 200:
+    while not row.counts.jams and len(seen) < 200:
         seen.append(ways(row)[0])
         row.ride(len(seen) - 1)
     came = np.sqrt(2.0 * (seen[-1] - seen[0]) / (9.81 * np.sin(SLOPE)))
     assert row.time == pytest.approx(came + 1.0, abs=2.5 / row.bowl.drive.frequency)
-    assert row.jams == 1 and row.whole == row.returned == 0
+    assert row.counts.jams == 1 and row.counts.whole == row.counts.returned == 0
+    # it came in its own orientation, and stood at the blade: the first device
+    jammed = row.result().jammed_at
+    assert jammed.sum() == jammed[row.entry_rows[0], 1] == 1
     row = row_of(STILL, 5, 1.0, 0.5)
     row.ride(0)
     free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
@@ -272,7 +276,7 @@ def test_poured_parts_come_to_lie_and_travel():
     assert velocities[onwards] == pytest.approx(answer.answer(BOWL).velocity, rel=0.05)
     heights = row.crowd.arrays.states[onwards, body.Z] * LENGTH
     assert np.abs(heights[:, None] - [2.5e-3, 6e-3, 10e-3]).min(axis=1).max() < 1e-5  # on a face
-    assert row.depth * LENGTH < 1e-4
+    assert row.counts.depth * LENGTH < 1e-4
 
 
 @pytest.mark.parametrize("ledge, stop, leaves", [(6.5, True, True), (14.0, True, False), (6.5, False, False)])
@@ -281,7 +285,7 @@ def test_parts_that_back_up_and_reach_over_the_ledge_of_a_pressure_break_leave_t
     chain = (make_device("pressure break", "", limit=1e-3 * ledge),)
     chain += (make_device("height bar", "", limit=4e-3),) * stop  # everything stands before it
     known = stream.follow_orientations(PART, ASPECTS, BANKED.track, chain, bowl=BANKED)
-    plan, bowl = queue.QueuePlan(8, 5.0, 0.0), replace(BANKED, devices=chain)
+    plan, bowl = QueuePlan(8, 5.0, 0.0), replace(BANKED, devices=chain)
     found = queue.queue_of(PART, bowl, ASPECTS, known.lying, known.states, SHARES, plan, RunSettings(2))
     assert (found.relieved > 0) == leaves and found.returned == found.relieved
     assert (found.jams > 0) == stop and (found.leaving_counts.sum() > 0 or stop)

@@ -15,7 +15,8 @@ from feederscrew.sorting.orientations import add_travel, orientations, travel_sp
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import course, queue, runs, staging
 from feederscrew.trials.kernel import jets
-from feederscrew.trials.queue import QueuePlan, queue_of
+from feederscrew.trials.queue import queue_of
+from feederscrew.trials.supply import QueuePlan
 
 BOWL = bowls.read(None, ["track.width=40 mm"])
 EVERY = add_travel(orientations(PART, ASPECTS, BOWL.track), BOWL)

@@ -29,7 +29,7 @@ LOOKS: dict[Fate | None, tuple[str, str, str]] = {
 TRACK, AIR_COLOUR = "#e3e8ec", "#009e73"
 PATHS_WIDTH_IN = 7.2  # [in] of a panel of paths
 SIDE_MARGIN_MM, WALL_MARGIN_MM = 2.0, 2.0  # of a panel, before and behind, and outside the wall
-MOST = 24  # orientations that come most often have a row
+MOST = 24  # orientations have a row: those of which parts leave, then those that come most often
 STAYS: dict[int, str] = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves hanging
 
 
@@ -46,7 +46,10 @@ def matrix(run: TrialRun, ax: "style.Axes | None" = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried_counts[k]][:MOST]
+    order = [int(k) for k in np.argsort(-run.shares, kind="stable") if run.tried_counts[k]]
+    leaving = run.matrix.sum(axis=1)  # of what is wanted parts leave: it has a row however seldom it comes
+    shown = set(sorted(order, key=lambda k: leaving[k] == 0)[:MOST])
+    rows = [k for k in order if k in shown]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
     names = [item.name for item in run.orientations.states] + ["other"]
     lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]

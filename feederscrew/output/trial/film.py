@@ -23,7 +23,7 @@ from feederscrew.part.record import Part
 from feederscrew.sorting import solid
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.trials.course import Fate
-from feederscrew.trials.queue import QueuedParts
+from feederscrew.trials.queue_counts import QueuedParts
 from feederscrew.trials.result import TrialRun
 from feederscrew.trials.staging import Stage
 from feederscrew.units import MM

@@ -17,7 +17,7 @@ from feederscrew.output.trial.figures import solids, unroll_path
 from feederscrew.part.record import Part
 from feederscrew.sorting import solid
 from feederscrew.sorting.tooled_track import bend_ring
-from feederscrew.trials import course, runs
+from feederscrew.trials import course, looks, runs
 from feederscrew.trials.course import Fate
 from feederscrew.trials.result import TrialRun
 from feederscrew.trials.shape import solid_of
@@ -43,17 +43,19 @@ class DeviceRide:
     path: Floats  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
     looked: float = np.nan  # [s] when the sensor looks at it; NaN without one
     blows: tuple[float, float] | None = None  # [s] from when to when jets blow at it; None where none does
+    becomes: str = ""  # the orientation in which it goes on, where the device turned it
 
     def title(self, sent: course.Course) -> str:
         """Return 'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
         return f"{self.orientation} {self.caption(sent)}"
 
     def caption(self, sent: course.Course) -> str:
-        """Return the same without the orientation: 'at gap 9 mm: returned'."""
+        """Return the same without the orientation: 'at gap 9 mm: returned', 'at step 5 mm: becomes B@90'."""
         device = sent.stations[self.place].device
         value = device.short if device.is_one_value else ""
         where = f"{device.kind} {value}".strip()
-        return f"at {where}: {self.fate.word.replace('_', ' ')}"
+        outcome = f"becomes {self.becomes}" if self.becomes else self.fate.word.replace("_", " ")
+        return f"at {where}: {outcome}"
 
 
 def rides_to_show(part: Part, *tried: TrialRun) -> list[DeviceRide]:
@@ -78,9 +80,18 @@ def rides_to_show(part: Part, *tried: TrialRun) -> list[DeviceRide]:
             path = path[np.isfinite(path[:, 0])]
             fate = Fate.PASSED if passes else Fate(int(sent.fates[number]))
             name = run.orientations.lying[sent.entry_rows[number]].name
-            rides.append(DeviceRide(place, name, fate, path, *_air_at(part, run, sent.stations[place], path)))
+            air = _air_at(part, run, sent.stations[place], path)
+            rides.append(DeviceRide(place, name, fate, path, *air, _becomes(run, place, number) * passes))
             break
     return rides
+
+
+def _becomes(run: TrialRun, place: int, number: int) -> str:
+    """The orientation into which a station turned a part; '' where it goes on as it came."""
+    before, after = run.course.orientations[place : place + 2, number].tolist()
+    if after == before or after < looks.OTHER:
+        return ""
+    return "another pose" if after == looks.OTHER else run.orientations.states[after].name
 
 
 def deciding_station(sent: course.Course) -> int:

@@ -11,7 +11,7 @@ from feederscrew.designing.evidence import share_at_least
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
-from feederscrew.output import part_facts, tables
+from feederscrew.output import part_facts
 from feederscrew.output.convey import restitution_entry
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import trial_text
@@ -20,7 +20,7 @@ from feederscrew.studies.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
 from feederscrew.trials import course
 from feederscrew.trials.course import LANDING_COLUMNS, Fate
 from feederscrew.trials.fills import FILL_COLUMNS, FILL_COUNT_COLUMNS, FilledQueue
-from feederscrew.trials.queue import QUEUED_COLUMNS
+from feederscrew.trials.queue_counts import QUEUED_COLUMNS
 from feederscrew.trials.result import OUTLET_COLUMNS, RUN_COLUMNS, RUN_DRIVE_COLUMNS, Outlet, TrialRun
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
@@ -109,7 +109,7 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
     fallen, landing, queue = run.landing, None, None
     if fallen is not None:  # what became of the parts that fell onto the track
         landing = values(LANDING_COLUMNS, fallen) | {
-            "aspects": tables.frame(_landing_columns(study, fallen)),
+            "aspects": Frame.of(_landing_columns(study, fallen)),
             "leaves": dict(_leaving_counts(run, fallen.leaving_counts)),
         }
     if (queued := run.queue) is not None and (outlet := study.outlet(run)) is not None:
@@ -174,14 +174,12 @@ def queues_table(rows: Sequence[Mapping[str, Any]]) -> Frame:
     return Frame.of_rows(rows).headed(shares | {name: ColumnHead.of_name(name, "1/min") for name in names})
 
 
-def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]:
+def orientations(run: TrialRun) -> list[dict[str, Any]]:
     """Return one row an orientation tried, those that differ from the static rule first.
 
     Parameters
     ----------
     run : TrialRun
-    people : bool, optional
-        Whether they are for people; the rows are the same.
 
     Returns
     -------
@@ -249,14 +247,12 @@ def _outlet_table(outlet: Outlet) -> Frame:
     return Frame.of(own | measured, own.heads | {name: share_head(name) for name in measured})
 
 
-def frame(study: TrialStudy, *, people: bool = False) -> Frame:
+def frame(study: TrialStudy) -> Frame:
     """Return the rows of every amplitude as a table.
 
     Parameters
     ----------
     study : TrialStudy
-    people : bool, optional
-        Handed to ``orientations``.
 
     Returns
     -------
@@ -265,7 +261,7 @@ def frame(study: TrialStudy, *, people: bool = False) -> Frame:
     rows = []
     for run in study.runs:
         lead = {"amplitude_mm": run.bowl.drive.amplitude / MM} if len(study.runs) > 1 else {}
-        rows += [lead | row for row in orientations(run, people=people)]
+        rows += [lead | row for row in orientations(run)]
     return Frame.of_rows(rows).headed(ROW_HEADS)
 
 
@@ -281,7 +277,7 @@ def _stations(run: TrialRun) -> Frame:
                 here = came & (sent.end_stations == place) & (sent.fates == fate)
                 if here.any():
                     rows.append((*head, course.FATES[fate], int(here.sum())))
-    return tables.of_cells(("station", "device", "comes_as", "becomes", "parts"), rows)
+    return Frame.of_cells(("station", "device", "comes_as", "becomes", "parts"), rows)
 
 
 def summary(study: TrialStudy) -> Iterator[str]:

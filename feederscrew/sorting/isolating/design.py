@@ -377,6 +377,7 @@ def design_around_rails(
     sweep: float | None = None,
     unswept: Bools | None = None,
     partly: bool = False,
+    raised: float = 0.0,
 ) -> Design | None:
     """Return the fewest cuts before rails, and a blade behind them, that return what does not hang.
 
@@ -397,6 +398,8 @@ def design_around_rails(
         Which of the others stand at that wiper, as a trial has shown: they are returned before, if they can.
     partly : bool
         Whether a chain that leaves some over is returned too: a trial decides on it.
+    raised : float [m]
+        By which the wiper stands higher than usual.
 
     Returns
     -------
@@ -413,7 +416,7 @@ def design_around_rails(
     if sweep is not None:
         others = ~passed & ~stands
         blade = rails.blade_behind(
-            device, orientations, same, others, task.margin, sweep, step, sure=not partly
+            device, orientations, same, others, task.margin, sweep, step, sure=not partly, raised=raised
         )
         if blade is None:
             return None

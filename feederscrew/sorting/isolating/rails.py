@@ -43,6 +43,7 @@ class RailSetting:
     offset: float = 0.0  # [m] of the slot, farther off the wall than usual
     play: float = 0.0  # [m] by which the slot is wider than usual
     lead: float = 1.0  # times the usual length of the lead-in
+    blade: float = 0.0  # [m] by which the blade behind them stands higher than usual, below what it sweeps
 
 
 USUAL_RAILS = RailSetting()
@@ -148,6 +149,7 @@ def blade_behind(
     step: float = SHOP_STEP_M,
     *,
     sure: bool = True,
+    raised: float = 0.0,
 ) -> Cut | None:
     """Return a swept wiper behind rails: heads pass below it, and what lies over the slot is swept off.
 
@@ -169,6 +171,8 @@ def blade_behind(
     sure : bool
         Whether only what the static rule is sure of counts as swept; else all that stands high enough, until
         a trial says otherwise.
+    raised : float [m]
+        By which it stands higher than usual; below what it sweeps by the margin all the same.
 
     Returns
     -------
@@ -189,7 +193,9 @@ def blade_behind(
         return None
     lowest = min(one.height for one, some in zip(orientations, tall & others) if some)
     limit = round_finely(
-        snap_to_shop_step(min(0.5 * (heads + lowest), heads + HIGHEST_BLADE_M), step, up=True)
+        snap_to_shop_step(
+            min(min(0.5 * (heads + lowest), heads + HIGHEST_BLADE_M) + raised, lowest - margin), step, up=True
+        )
     )
     blade = Wiper.proposal(DESIGN_KEY, max(limit, low))
     blade = (blade if sweep is None else replace(blade, sweep=sweep)).rewritten()
