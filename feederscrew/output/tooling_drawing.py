@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from feederscrew.arrays import Floats
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
+from feederscrew.output.tables import Frame
 from feederscrew.sorting.devices.features import box_ring
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, bend_ring
@@ -381,6 +382,26 @@ def device_rows(
         rows.append([*near, far[0], f"{angle(start):.4g}", far[1], lines[0]])
         rows += [["", "", "", "", "", "", line] for line in lines[1:]]
     return rows
+
+
+def shop_table(strip: TooledTrack) -> Frame:
+    """Return what the shop must do to each cut beside cutting its outline, as a table for pages.
+
+    Parameters
+    ----------
+    strip : TooledTrack
+
+    Returns
+    -------
+    Frame
+        No rows where there is nothing to say.
+    """
+    rows = [
+        {"device": f"{number} {placed.device.full_name}", "what the shop does": str(work)}
+        for number, placed in enumerate(strip.devices, start=1)
+        for work in placed.shop_work(strip.width)
+    ]
+    return Frame.of_rows(rows, ("device", "what the shop does"))
 
 
 def edges(placed: PlacedDevice, width: float) -> list[tuple[str, Floats]]:

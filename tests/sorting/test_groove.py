@@ -111,7 +111,7 @@ def test_friction_acts_as_over_the_cosine(angle):
         (["groove: 30 deg"], "groove has no angle - write {angle: 30 deg}"),
         (["groove: {angle: 70 deg}"], "angle is 70 deg - give 10 to 60 deg"),
         (["groove: {angle: 5 deg}"], "angle is 5 deg - give 10 to 60 deg"),
-        (["groove: {angle: 30 deg}", "gap: 4 mm"], "gap stands in a groove - list 'bank: 6 deg' before it"),
+        (["groove: {angle: 30 deg}", "gap: 4 mm"], "gap stands in a groove - list 'banked track: 6 deg'"),
         (["groove: {angle: 30 deg}", "separation: {climb: -4 deg}", "wiper: 4 mm"], "wiper stands in a"),
         (["rails: {from: 4 mm, to: 8 mm}", "groove: {angle: 30 deg}"], "no meaning for parts that hang"),
     ],

@@ -244,7 +244,7 @@ class Profile(Device):
         if not self.like:
             return shapely.Polygon(self.corners)
         aspect, heading, play = self.like
-        k = orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
+        k = orientation_names.place_of(orientations, aspect, heading, self.where, f"{self.kind} names")
         outline = orientations[k].view_ahead.buffer(play)
         # what the part shows through a hole of its own is no island in the gate: nothing would carry it
         parts = [part for part in shapely.get_parts(outline) if part.geom_type == "Polygon"]
