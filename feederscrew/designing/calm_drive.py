@@ -378,6 +378,35 @@ def _slow_down(bowl: Bowl, velocity: float) -> Bowl:
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 
 
+def slow_to(bowl: Bowl, velocity: float, *, at_worst: bool = True) -> Bowl:
+    """Return a bowl at the least amplitude that has a velocity.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    velocity : float [m/s]
+        That is asked for.
+    at_worst : bool, optional
+        Whether ``LEAST_VELOCITY_KEPT`` of it is asked for at the worst friction, as of every design.
+
+    Returns
+    -------
+    Bowl
+        The same bowl where it is no faster than that.
+
+    References
+    ----------
+    Own; docs/design.md: halvings of the amplitude, as a part is the faster the larger it is.
+    """
+    low, high = 0.0, bowl.drive.amplitude
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        slower = with_amplitude(bowl, middle)
+        enough = _is_fast(slower, velocity) if at_worst else speed(slower) >= velocity
+        low, high = (low, middle) if enough else (middle, high)
+    return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
+
+
 def _fast(bowl: Bowl) -> float:
     """The velocity [m/s] that may be asked of a bowl: its own, or less where the worst friction slows it."""
     return min(speed(bowl), slowest(bowl) / LEAST_VELOCITY_KEPT)

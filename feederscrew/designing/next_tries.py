@@ -7,15 +7,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from feederscrew.bowl.verified import HELD, Status
-from feederscrew.designing.calm_drive import DriveKind
+from feederscrew.designing.calm_drive import CALMER_SHARE, STROKES, DriveKind, slow_to, speed, velocity_kept
 from feederscrew.designing.findings import Cause
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
+from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.sorting.isolating.chain import OutcomeKind
-from feederscrew.units import MINUTE
+from feederscrew.units import MINUTE, MM
 
 MOST_TRIES = 3
 SHARE_OF_TRIAL_RATE = 0.5  # [1] of what a clean short trial promises: queues bring less
 OFTEN_SHARE = 0.05  # [1] of the parts, from which an aspect is worth a design of its own
+FAR_MORE = 1.5  # [1] times the rate that was asked for, from which a calmer drive is named
+SPARE = 1.25  # [1] times the rate that was asked for, that it aims at: the middle of 1 to 1.5
 MORE_TRIALS = 2  # times the budget, where nothing else is left
 
 
@@ -53,14 +56,16 @@ class NextTry:
     share: float | None = None  # [1] of the parts that come on that aspect; None where it is not known
     trials: int = 0  # short trials in which that aspect was wanted
     rate: float | None = None  # [1/s] that its trials brought
+    worst_rate: float | None = None  # [1/s] at the worst friction, by the speed there
     settings: tuple[tuple[str, str], ...] = ()  # keys of the bowl and their values
 
 
 def next_tries(study: DesignStudy) -> tuple[NextTry, ...]:
     """Return at most ``MOST_TRIES`` requests to try after a design, the likeliest to hold first.
 
-    What was proved to hold comes first, then what was clean in a short trial, what the request itself ruled
-    out, the aspects that were not tried or did best, another drive, and more trials.
+    After one that holds and brings far more than was asked: the same with a calmer drive. Else: what was
+    proved to hold comes first, then what was clean in a short trial, what the request itself ruled out, the
+    aspects that were not tried or did best, another drive, and more trials.
 
     Parameters
     ----------
@@ -69,10 +74,10 @@ def next_tries(study: DesignStudy) -> tuple[NextTry, ...]:
     Returns
     -------
     tuple of NextTry
-        Empty of a design that holds.
+        Empty of a design that holds and brings about what was asked.
     """
     if study.status in HELD:
-        return ()
+        return tuple(_calmer_drive(study))
     if study.status is Status.NOT_PROVED:
         return (NextTry(TryKind.PROOF, replace(study.request, quick=False)),)
     tries: dict[DesignRequest, NextTry] = {}
@@ -80,6 +85,29 @@ def next_tries(study: DesignStudy) -> tuple[NextTry, ...]:
         if one.request != study.request:
             tries.setdefault(one.request, one)
     return tuple(tries.values())[:MOST_TRIES]
+
+
+def _calmer_drive(study: DesignStudy) -> Iterator[NextTry]:
+    """The same with a smaller amplitude, where the bowl brings far more than was asked."""
+    rate, target, bowl = study.delivered[0], study.request.target, study.bowl
+    keeps_stroke = any(key in word for word in study.call for key in STROKES)
+    if bowl is None or keeps_stroke or is_two_axis(bowl.drive) or rate < FAR_MORE * target:
+        return
+    velocity = speed(bowl) * SPARE * target / rate
+    best = rate
+    # one that keeps its speed where friction is at its worst; else as well one that is as slow as asked for
+    for at_worst in (True, False):
+        calmer = slow_to(bowl, velocity, at_worst=at_worst)
+        less = rate * speed(calmer) / speed(bowl)
+        if less < CALMER_SHARE * best and best >= FAR_MORE * target:
+            yield NextTry(
+                TryKind.CALMER_DRIVE,
+                study.request,
+                rate=less,
+                worst_rate=less * velocity_kept(calmer),
+                settings=(("drive.amplitude", f"{calmer.drive.amplitude / MM:.4g} mm"),),
+            )
+            best = less
 
 
 def _ways(study: DesignStudy) -> Iterator[NextTry]:

@@ -283,6 +283,9 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
             f"{LOWER_BOUND} above {100.0 * SHOWN_PURITY:.3g} %. Nothing jams, and at least {draws:.3g} % of "
             "the draws sort."
         )
+        for entry in d["next"]:
+            yield Text(f"{entry['why'][0].upper()}{entry['why'][1:]}:")
+            yield Code(entry["command"])
     else:
         yield from _what_to_try(study, d)
         is_quick = study.request.quick

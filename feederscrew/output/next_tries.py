@@ -9,6 +9,7 @@ from feederscrew.designing.record import DesignStudy
 from feederscrew.units import PER_MINUTE, counted, listed
 
 LABELS = ("try first", "then", "or")  # of the commands, the likeliest first
+CALMER = ("calmer", "or")  # of those after a design that holds
 
 
 def entries(study: DesignStudy) -> list[dict[str, Any]]:
@@ -87,5 +88,10 @@ def reason(one: NextTry) -> str:
             text = f"{one.request.budget} short trials"
         case TryKind.CALMER_DRIVE:
             keys = listed([f"{key} {text}" for key, text in one.settings])
-            text = f"a calmer drive ({keys})"
+            asked = f"{one.request.target / PER_MINUTE:.3g}/min were asked for"
+            text = f"{asked}; by its speed a calmer drive ({keys}) brings about {rate}"
+            if one.worst_rate is not None:
+                worst = f"{one.worst_rate / PER_MINUTE:.2g}/min" if one.worst_rate > 0.0 else "nothing"
+                text += f", at the worst friction {worst}"
+            text += "; that is not tried"
     return text

@@ -559,6 +559,9 @@ class PartsQueue:
                 if outcome is QueueOutcome.JAMS:
                     self.counts.note_jam(self.entry_rows[n], int(devices[0]) + 1)
                     self._take_off(n)
+                    for other, (_, end, _) in reach.items():  # what it held up has not stood by itself
+                        if end <= front:
+                            self.since[other] = self.time
 
     def _devices_at(self, front: float) -> Ints:
         """The devices (K,) at whose stretch a part stands, by the place of its front [L]."""

@@ -12,6 +12,7 @@ import shapes
 from design_counts import design_study, end_at, heading_off, lost, queue
 
 from feederscrew.bowl.verified import Status
+from feederscrew.designing import calm_drive
 from feederscrew.designing.calls import call_of, call_words
 from feederscrew.designing.findings import Cause, Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.next_tries import Evidence, TryKind, next_tries, rounded_down
@@ -136,8 +137,35 @@ def test_a_call_keeps_what_was_typed_and_changes_the_rest():
     )  # fmt: skip
 
 
+def test_what_brings_far_more_than_was_asked_names_a_calmer_drive():
+    """Asked for 40 a minute a washer came at 190, and nothing was said of it."""
+    fills = [queue(fill=fill) for fill in ("low", "normal", "high")]
+    rate = 60.0 * design_study(PART, *fills).delivered[0]
+    study = design_study(PART, *fills, target=rate / 4.75, call=TYPED)
+    assert study.status is Status.HOLDS
+    robust, step = next_tries(study)
+    assert study.request.target < step.rate < robust.rate < study.delivered[0]
+    kept = calm_drive.with_amplitude(study.bowl, float(robust.settings[0][1].split()[0]) * 1e-3)
+    asked = 1.25 * 60.0 * study.request.target / rate * calm_drive.speed(study.bowl)
+    assert calm_drive.slowest(kept) >= 0.6 * asked, "at the worst friction the first one conveys too"
+    ((key, value),) = step.settings
+    calmer = calm_drive.with_amplitude(study.bowl, float(value.split()[0]) * 1e-3)
+    share = calm_drive.speed(calmer) / calm_drive.speed(study.bowl)
+    assert (step.kind, key, value.split()[1]) == (TryKind.CALMER_DRIVE, "drive.amplitude", "mm")
+    assert 60.0 * step.rate == pytest.approx(rate * share)
+    assert 1.0 <= step.rate / study.request.target <= 1.5  # asked for 40: 40 to 60
+    assert step.worst_rate == pytest.approx(step.rate * calm_drive.velocity_kept(calmer))
+    entry = designs.document(study)["next"][1]
+    assert f"drive.amplitude={value}" in entry["words"] and "not tried" in entry["why"]
+    typed = (*TYPED, "--set", "drive.amplitude=0.3 mm")  # who gave the stroke keeps it
+    assert next_tries(replace(study, call=typed)) == ()
+    near_enough = design_study(PART, *fills, target=rate / 1.4)
+    assert next_tries(near_enough) == ()
+
+
 def test_what_holds_has_nothing_to_try():
     held = design_study(PART, *(queue(fill=fill) for fill in ("low", "normal", "high")))
+    held = replace(held, request=replace(held.request, target=held.delivered[0] / 1.2))
     assert held.status is Status.HOLDS and next_tries(held) == ()
     assert designs.document(held)["next"] == []
 

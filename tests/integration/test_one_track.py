@@ -61,6 +61,11 @@ def draw_device(kind, rng, every):
     if kind == "cut-out":
         corners = [(0.0, mm(-0.5, 2.0)), (mm(6.0, 9.0), mm(0.0, 3.0)), (mm(3.0, 8.0), mm(6.0, 12.0))]
         return made(corners=tuple(corners))
+    if kind == "dish-out":
+        return made(limit=mm(6.0, 11.0), radius=mm(6.0, 25.0))
+    if kind == "cap selector":
+        land, length = mm(2.0, 5.0), mm(16.0, 22.0)
+        return made(limit=land, length=length, tongue=mm(3.0, 8.0), reach=land + mm(3.0, 9.0))
     if kind == "air jet":
         return made(nozzle=mm(1.5, 3.0), pressure=2e4, height=mm(2.0, 7.0))
     if kind == "slot":

@@ -18,6 +18,7 @@ from feederscrew.sorting.devices.base import opening_at
 from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import hangs_free
 from feederscrew.sorting.fates import course
+from feederscrew.sorting.isolating.chain import design_task, judge_cut, propose
 from feederscrew.sorting.orientations import Hanging, neck
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.studies import tooling as tooling_study
@@ -189,3 +190,27 @@ def test_a_trial_says_where_a_head_at_the_wall_may_wedge(tmp_path, near, wedging
     remarks = [line for line in run.remarks if "may wedge" in line]
     assert len(remarks) == bool(wedging)
     assert all(line.startswith("A@189: hangs with its head at the wall") for line in remarks)
+
+
+def test_behind_rails_a_cut_has_the_margin_of_what_hangs_there(pin):
+    """A blade is as high as the heads and no more: for the part as it lies there is no number, and no return.
+
+    A margin of -2e-06 mm stood beside the wanted part, among those that the blade returns.
+    """
+    along = pin.index(along_track(pin))
+    shares = np.full(len(pin), 1.0 / len(pin))
+    task = design_task(pin, shares, along, 1e-4, 1.0, ())
+    same = np.arange(len(pin)) == along
+    slot = judge_cut(pin, along, rails(pin), ~same, rails(pin), rails(pin))
+    blade = device("wiper", limit=6e-3)  # over the heads that hang 4 mm high; the part lies 10 mm high
+    over = judge_cut(pin, along, blade, ~same, blade, blade)
+    assert over.margin_pass < 0.0 and pin[along].name in over.returns
+    design = propose(task, (slot, over), ~same, same)
+    hung = next(cut for cut in design.cuts if cut.device.kind == "wiper")
+    assert hung.margin_pass == pytest.approx(6e-3 - UNDER, abs=2e-4) and pin[along].name not in hung.returns
+    low = device("wiper", limit=3e-3)  # by the rule the head stands at it: no number says by how much
+    under = judge_cut(pin, along, low, ~same, low, low)
+    (last,) = [cut for cut in propose(task, (slot, under), ~same, same).cuts if cut.device.kind == "wiper"]
+    assert np.isnan(last.margin_pass) and pin[along].name not in last.returns
+    alone = propose(task, (over,), ~same, same).cuts[0]
+    assert alone.margin_pass == over.margin_pass, "without rails it lies"

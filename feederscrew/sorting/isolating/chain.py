@@ -27,7 +27,7 @@ from feederscrew.sorting.devices.pneumatics import Sorter
 from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.fates import course
-from feederscrew.sorting.orientations import Orientation
+from feederscrew.sorting.orientations import Orientation, hang
 from feederscrew.sorting.verdicts import DeviceEncounter, opening_margin, verdict
 
 SHOP_STEP_M = 5e-5  # [m] of values that a shop makes
@@ -208,12 +208,14 @@ def candidates(
     encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
     rows = sorted({wanted, *same})
     competitors = [encounter for k, encounter in enumerate(encounters) if k not in rows]
-    blowing: list[Any] = [
+    shaped: list[Any] = [
         kind
         for kind in KINDS.values()
         if kind.search.is_proposed and kind.action is not Action.SENSE and not kind.search.bound
     ]
-    for kind in (kind for kind in blowing if air and constraints.allows(kind.kind)):
+    for kind in (kind for kind in shaped if constraints.allows(kind.kind)):
+        if kind.trade.cost_class > 1 and not air:
+            continue
         devices += kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY)
 
     def unlike(view: str) -> list[Orientation]:
@@ -835,7 +837,7 @@ def propose(task: DesignTask, cuts: Sequence[Cut], is_returned: Bools, same: Boo
     """
     orientations, shares, wanted = task.orientations, task.shares, task.wanted
     same = task.same if same is None else same
-    cuts = (*task.turners, *_add_spacing(task, cuts))
+    cuts = _behind_rails((*task.turners, *_add_spacing(task, cuts)), orientations, wanted, same)
     flow = course((*task.before, *(cut.device for cut in cuts)), orientations)
     # what comes to stand at each
     first, names = 1 + len(task.before), [orientation.name for orientation in orientations]
@@ -914,6 +916,32 @@ def plain_cut(device: Device) -> Cut:
         Without margins.
     """
     return Cut(device, np.nan, np.nan, device, device, ())
+
+
+def _behind_rails(
+    cuts: Sequence[Cut], orientations: Sequence[Orientation], wanted: int, same: Bools
+) -> tuple[Cut, ...]:
+    """Cuts of which those behind rails have the margin of the part as it hangs there.
+
+    Parts that lie have no number there, and what leaves hanging is returned by none of them.
+    """
+    judged: list[Cut] = []
+    rails: Device | None = None
+    own = {orientation.name for orientation, some in zip(orientations, same) if some}
+    own.add(orientations[wanted].name)
+    for cut in cuts:
+        if rails is not None:
+            margins = [cut.margin_pass]
+            if verdict(rails, orientations[wanted], orientations).hangs:
+                hung = hang(orientations[wanted], rails.span)
+                margins.append(verdict(cut.device, hung, orientations).margin)
+            known = [float(margin) for margin in margins if np.isfinite(margin) and margin > 0.0]
+            passes = min(known, default=np.nan)
+            returns = tuple(name for name in cut.returns if name not in own)
+            cut = replace(cut, margin_pass=passes, returns=returns)
+        rails = cut.device if cut.device.action is Action.HANG else rails
+        judged.append(cut)
+    return tuple(judged)
 
 
 def propose_nothing(task: DesignTask, why: str) -> Design:
