@@ -36,6 +36,7 @@ from feederscrew.output import (
     solidbowl_views,
     tables,
     tooling,
+    tooling_drawing,
 )
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import LOWER_BOUND
@@ -233,24 +234,22 @@ def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
     list of (str, str)
         Orientations or aspects with words for each, those that the picture of a page opens with.
     """
-    wanted = (study.wanted or "").split(AMONG)[0]
+    wanted, tooling = (study.wanted or "").split(AMONG)[0], study.tooling
+    arrives = None if tooling is None or tooling.wanted is None else tooling.orientations[tooling.wanted].name
     if study.delivers:
         words = "leaves correctly oriented"
         instead = texts.leaving_texts(study.left_instead)
         others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
         seen = [(name, f"left in its place: {instead[name]}") for name in others[:1]]
-        tooling = study.tooling
-        if wanted == HANGING and tooling is not None and tooling.wanted is not None:  # no pose on a face
-            wanted, words = (
-                tooling.orientations[tooling.wanted].name,
-                "arrives so, leaves hanging by its head",
-            )
+        if wanted == HANGING and arrives:  # no pose on a face
+            wanted, words = arrives, "arrives so, leaves hanging by its head"
         return [(wanted, words), *seen]
     tried = study.wanted_trials
-    seen = [
-        (one.wanted, texts.wanted_trials_text("wanted", one.trials, one.ends, one.others))
-        for one in sorted(tried, key=lambda one: one.wanted != wanted)[:2]
-    ]
+    seen = []
+    for one in sorted(tried, key=lambda one: one.wanted != wanted)[:2]:
+        words = texts.wanted_trials_text("wanted", one.trials, one.ends, one.others)
+        hangs = one.wanted == HANGING and arrives
+        seen.append((arrives, f"arrives so; {words}") if hangs and arrives else (one.wanted, words))
     aspects = {name.partition("@")[0] for name, _ in seen}
     instead_of_it = (one for one in next_tries(study) if one.aspect and one.aspect not in aspects)
     return [*seen, *((one.aspect, f"to try: {reason(one)}") for one in itertools.islice(instead_of_it, 1))]
@@ -321,7 +320,7 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
     ]
     if drawn:
         lead = Text("The part over the cut, what each device does, and the drawing of the cuts.")
-        yield Chapter((lead, *drawn), anchor="tooling", title="The tooling")
+        yield Chapter((lead, *drawn, *_shop_work(build)), anchor="tooling", title="The tooling")
     beside = None if build.drawn is None else beside_bowl.find_beside(build.drawn, designs.trial_of(study))
     if beside is not None:
         lead = Text("What is bought and set beside the bowl: bowl.pdf shows where it stands.")
@@ -340,6 +339,16 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
         text = "" if bowl is None else tables.file_bytes(bowl.make()).decode()
         folded = (Folded("design.yaml, the bowl file", text),) if text else ()
         yield Chapter((*files, *folded), anchor="files", title="Files to build from")
+
+
+def _shop_work(build: Built) -> list[Block]:
+    """What the shop must do to the cuts of a bowl beside cutting their outlines."""
+    solid = None if build.drawn is None else build.drawn.solid
+    if solid is None or solid.plan.stretch is None:
+        return []
+    work = tooling_drawing.shop_table(solid.plan.stretch)
+    lead = Text("What the shop does to each cut beside cutting its outline.")
+    return [lead, Table(work)] if list(work.rows()) else []
 
 
 def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None = None) -> list[offer.Offer]:

@@ -177,6 +177,11 @@ def test_the_page_of_what_hangs_begins_with_the_pose_in_which_it_arrives():
     tooling = SimpleNamespace(wanted=1, orientations=poses)
     study = replace(design_study(PART, *queues), wanted="hanging", tooling=tooling)
     assert study.delivers and design_pages.first_seen(study)[0][0] == "A@354"
+    tried = nothing(attempt("hanging", aspect=""), attempt("B@0"), tooling=tooling)
+    tried = replace(tried, wanted="hanging")
+    assert not tried.delivers
+    (name, words), *_ = design_pages.first_seen(tried)
+    assert name == "A@354" and words.startswith("arrives so; ")
 
 
 def test_the_answer_says_each_thing_once_and_ends_in_commands():

@@ -157,7 +157,7 @@ class Wiper(Overhead):
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
         ahead = 0.0 if self.face is None else track.extent / math.tan(self.sweep)
-        return Features(0.5 * room + ahead, takes=room + ahead, blades=(blade,))
+        return Features(0.5 * room + ahead, blades=(blade,))
 
     def document_values(self) -> dict[str, Any]:
         own = {"sweep_deg": math.degrees(self.sweep)}
@@ -246,7 +246,7 @@ class Profile(Device):
         if not self.like:
             return shapely.Polygon(self.corners)
         aspect, heading, play = self.like
-        k = orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
+        k = orientation_names.place_of(orientations, aspect, heading, self.where, f"{self.kind} names")
         outline = orientations[k].view_ahead.buffer(play)
         # what the part shows through a hole of its own is no island in the gate: nothing would carry it
         parts = [part for part in shapely.get_parts(outline) if part.geom_type == "Polygon"]

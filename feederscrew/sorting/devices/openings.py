@@ -13,7 +13,7 @@ from feederscrew.arrays import Points
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.compiled import frozen_rows, record_type
 from feederscrew.sorting.devices import values
-from feederscrew.sorting.devices.base import UNSURE, Device, Verdict, carried, corners_text, room_of
+from feederscrew.sorting.devices.base import UNSURE, Device, Verdict, carried, corners_text
 from feederscrew.sorting.devices.features import Features, TrackOpening
 from feederscrew.sorting.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
 from feederscrew.sorting.devices.values import Corner
@@ -247,8 +247,7 @@ class CutOut(Across):
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         ring = np.array(self.corners)
-        length = float(ring[:, 0].max())
-        return Features(length, takes=room_of(orientations) + length, openings=(TrackOpening(ring),))
+        return Features(float(ring[:, 0].max()), openings=(TrackOpening(ring),))
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return judge_hole(encounter, np.array(self.corners))

@@ -19,7 +19,6 @@ from feederscrew.sorting.devices.base import (
     length_text,
     length_words,
     mapping_text,
-    room_of,
 )
 from feederscrew.sorting.devices.features import Features, TrackOpening
 from feederscrew.sorting.devices.ledges import SHOP_STEP_M
@@ -69,8 +68,7 @@ class _Bay(Across):
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         ring = self.ring(track.extent)
-        length = float(ring[:, 0].max())
-        return Features(length, takes=room_of(orientations) + length, openings=(TrackOpening(ring),))
+        return Features(float(ring[:, 0].max()), openings=(TrackOpening(ring),))
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return judge_hole(encounter, self.ring(encounter.orientation.track.extent))
