@@ -134,7 +134,7 @@ class CurvedDeflector(Overhead):
             # each goes on behind the face of the one before it, so that they are one plate
             face = shapely.box(-BLADE if blades else 0.0, self.limit, size, tall)
             blades.append(Blade(face, (0.5 * room + along, off), heading))
-        return Features(0.5 * room + end[0], takes=room + end[0], blades=tuple(blades))
+        return Features(0.5 * room + end[0], blades=tuple(blades))
 
     def _feet(self, size: float, radius: float) -> list[tuple[float, float]]:
         """Where its flat pieces of a size [m] begin and the last one ends: along the wall [m], and off it."""
