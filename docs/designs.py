@@ -58,6 +58,8 @@ def run_design(path: str, target: str, more: str, keep: str = "") -> dict[str, s
             [feeder, *options, *shlex.split(more)], capture_output=True, text=True, timeout=MOST_SECONDS
         )
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        bowl_file = next(Path(folder).rglob("design.yaml"), None)
+        tried = None if bowl_file is None else bowl_file.read_text(encoding="utf-8")
     if finished.returncode not in (0, CONDITIONAL):
         raise RuntimeError(f"{path}: {finished.stderr.strip()[-300:]}")
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -65,6 +67,8 @@ def run_design(path: str, target: str, more: str, keep: str = "") -> dict[str, s
     if kept is not None:
         kept.parent.mkdir(parents=True, exist_ok=True)
         kept.write_text(json.dumps(result | {"cpu_s": seconds, "more": more}), encoding="utf-8")
+        if tried is not None:  # to confirm it by other seeds
+            kept.with_suffix(".yaml").write_text(tried, encoding="utf-8")
     return line_of(result, stem, target, more, seconds)
 
 

@@ -84,7 +84,7 @@ def unfit(chain: Sequence[Device]) -> list[ConfigError]:
     for device in chain:
         grooved = device.action is Action.GROOVE or (grooved and device.action is not Action.BANK)
         if grooved and device.action.has_place and not device.action.leans:
-            mend = "list 'bank: 6 deg' before it, which ends the groove"
+            mend = "list 'banked track: 6 deg' before it, which ends the groove"
             faults.append(ConfigError(device.where, f"{device.kind} stands in a groove", mend))
     return faults
 

@@ -11,7 +11,8 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.rates.stream import on_stretch
 from feederscrew.sorting.devices.base import room_of
-from feederscrew.sorting.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, Sorter
+from feederscrew.sorting.devices.features import SAME_PLACE_M, Bore
+from feederscrew.sorting.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, TRIGGER, Sorter
 from feederscrew.sorting.orientations import Orientation, travel_speed
 
 FIELD_MARGIN = 1.2  # [1] of the window: to align the camera (assumption)
@@ -31,10 +32,7 @@ FOCAL_LENGTHS_M = (
     50e-3,
     75e-3,
 )  # fixed C-mount lenses that are stocked
-BRACKET_HOLE_M, BRACKET_THREAD = 3.3e-3, "M4"  # core of M4: ISO 2306
-FIBRE_HOLE_M = 3e-3  # of a fibre's head through the wall (assumption)
 STAND_HOLE_M, STAND_THREAD = 6.6e-3, "M6"  # ISO 273, medium
-BRACKET_SIDE_M, BRACKET_OVER_M = 12e-3, 5e-3  # beside the nozzles, and over the tallest part (assumption)
 STAND_OFF_M = 0.1  # of a laser line over the track (assumption)
 LIGHTS = {  # by what a sensor sees (assumption)
     "outline": "flat dome light over the window, strobed; dull black inlay on the track below it",
@@ -112,17 +110,6 @@ def choose_lens(field: tuple[float, float], resolution: float) -> Lens:
 
 
 @dataclass(frozen=True)
-class BracketHole:
-    """A hole that a bracket or a fibre needs; places from where the device begins."""
-
-    what: str
-    thread: str  # 'M4', or '' of a plain hole
-    place: float  # [m] along the wall
-    height: float  # [m] over the track
-    size: float  # [m] diameter to drill
-
-
-@dataclass(frozen=True)
 class VisionStation:
     """A vision reject as it is built: lengths along the wall from where its device begins."""
 
@@ -144,7 +131,7 @@ class VisionStation:
     valve_delay: float  # [s] that the part takes for it
     valve_setting: float  # [s] to set: less the reaction of sensor and valve
     pulse: float  # [s]
-    holes: tuple[BracketHole, ...]
+    holes: tuple[Bore, ...]  # beside those of the nozzles, which the solid has as well
     lacks: str  # what no camera on the list does; '' where all is well
 
 
@@ -193,20 +180,11 @@ def plan_vision_stations(bowl: Bowl, orientations: Sequence[Orientation]) -> tup
                 f"a pixel covers {1e3 * lens.pixel:.3g} mm, half the resolution is {500 * resolution:.3g} mm"
             )
             lacks = f"{what}: take a line-scan camera, or a narrower window"
-        front = float(wanted.outline[:, 0].max())
-        nozzles = middle + SENSOR_TO_NOZZLE_M
-        trigger, delay = middle + front, 0.0
-        if trigger > nozzles - device.nozzle - FIBRE_HOLE_M:
-            trigger = 0.0
-            delay = (middle + front) / speed if speed > 0.0 else np.inf
+        holes = device.features(bowl.track, orientations).mounts
+        (trigger,) = (hole.place for hole in holes if hole.what == TRIGGER)
+        way = middle + float(wanted.outline[:, 0].max()) - trigger  # of the front, from the barrier on
+        delay = 0.0 if way <= SAME_PLACE_M else way / speed if speed > 0.0 else np.inf
         valve = SENSOR_TO_NOZZLE_M / speed if speed > 0.0 else np.inf
-        over = tallest + BRACKET_OVER_M
-        block, fibre = "valve block at the nozzles", "fibre of the trigger"
-        beside = (nozzles - BRACKET_SIDE_M, nozzles + BRACKET_SIDE_M)
-        holes = (
-            *(BracketHole(block, BRACKET_THREAD, place, over, BRACKET_HOLE_M) for place in beside),
-            BracketHole(fibre, "", trigger, 0.5 * wanted.height, FIBRE_HOLE_M),
-        )
         far = np.inf if lens is None else lens.distance
         stations.append(
             VisionStation(

@@ -54,7 +54,7 @@ def rows(beside: Beside) -> list[dict[str, str]]:
     listed = []
     for station, start in zip(beside.vision, beside.starts):
         where = f"vision reject, device {station.number}"
-        listed += [(where, what, value) for what, value in _vision_rows(station, start)]
+        listed += [(where, what, value) for what, value in vision_rows(station, start)]
     listed += [("behind the outlet", what, value) for what, value in _inline_rows(beside.inline)]
     return [dict(zip(("where", "what", "value"), row)) for row in listed]
 
@@ -69,7 +69,19 @@ def _length(size: float) -> str:
     return f"{size / MM:.{1 if size >= 10.0 * MM else 2}f} mm"
 
 
-def _vision_rows(station: VisionStation, start: float) -> Iterator[tuple[str, str]]:
+def vision_rows(station: VisionStation, start: float) -> Iterator[tuple[str, str]]:
+    """Yield what a vision station is built from, what and value.
+
+    Parameters
+    ----------
+    station : VisionStation
+    start : float [m]
+        Where its device begins, from D.
+
+    Yields
+    ------
+    (str, str)
+    """
     along, across = (size / MM for size in station.field)
     yield "sensor", f"{SEEN_BY[station.sees][0]}, resolves {_length(station.resolution)}"
     yield "speed of parts there", f"{station.speed / MM_S:.3g} mm/s"
@@ -106,7 +118,7 @@ def _vision_rows(station: VisionStation, start: float) -> Iterator[tuple[str, st
     for hole in station.holes:
         thread = f"{hole.thread}, " if hole.thread else ""
         at = f"{_length(start + hole.place)} from D, {_length(hole.height)} over the track"
-        yield "hole to drill in the wall", f"{hole.what}: {thread}Ø{hole.size / MM:.3g}, {at}"
+        yield "hole to drill in the wall", f"{hole.what}: {thread}Ø{hole.diameter / MM:.3g}, {at}"
     if station.lacks:
         yield "does not do", station.lacks
 
@@ -180,7 +192,7 @@ def _vision_document(station: VisionStation, start: float) -> dict[str, Any]:
                 "thread": hole.thread or None,
                 "at_mm": (start + hole.place) / MM,
                 "height_mm": hole.height / MM,
-                "diameter_mm": hole.size / MM,
+                "diameter_mm": hole.diameter / MM,
             }
             for hole in station.holes
         ],

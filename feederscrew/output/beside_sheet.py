@@ -5,7 +5,7 @@ import textwrap
 
 from feederscrew.machine.after_outlet import InlineTrack
 from feederscrew.machine.vision_station import STAND_OFF_M, VisionStation
-from feederscrew.output.beside_bowl import Beside, rows
+from feederscrew.output.beside_bowl import Beside, rows, vision_rows
 from feederscrew.output.drafting import Drawing, scale_words
 from feederscrew.sorting.devices.pneumatics import SEEN_BY
 from feederscrew.units import MM
@@ -19,7 +19,7 @@ CAMERA_MM = 70.0  # [mm] of paper from the track to a camera
 
 
 def draw_beside(drawing: Drawing, beside: Beside, outlet: tuple[float, float], material_mm: float) -> None:
-    """Draw the sheet of what stands beside a bowl: the stub of the inline track, the stations, the list.
+    """Draw the sheet of what stands beside a bowl: the inline track, the first station, the list of all.
 
     Parameters
     ----------
@@ -45,6 +45,25 @@ def draw_beside(drawing: Drawing, beside: Beside, outlet: tuple[float, float], m
         listed += [["", "", line] for line in lines[1:]]
     line = min(ROW_MM, (low - 26.0) / len(listed))
     drawing.table(25.0, low, WIDTHS_MM, listed, size=min(2.2, 0.52 * line), line=line)
+
+
+def draw_station(drawing: Drawing, beside: Beside, number: int) -> None:
+    """Draw the sheet of another vision station.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        On a new sheet, with its title.
+    beside : Beside
+    number : int
+        Of the station, from 1 on: the first is on the sheet of ``draw_beside``.
+    """
+    _draw_vision(drawing, beside.vision[number], beside.starts[number], left=60.0)
+    listed = [["", "what", "value"]]
+    for what, value in vision_rows(beside.vision[number], beside.starts[number]):
+        lines = textwrap.wrap(value, LETTERS) or [""]
+        listed += [["", what, lines[0]], *(["", "", line] for line in lines[1:])]
+    drawing.table(25.0, 125.0, WIDTHS_MM, listed, size=2.2, line=ROW_MM)
 
 
 def _draw_inline(drawing: Drawing, inline: InlineTrack, outlet: tuple[float, float], thick: float) -> float:
@@ -109,9 +128,9 @@ def _corners(left: float, low: float, right: float, high: float) -> list[tuple[f
     return [(left, low), (right, low), (right, high), (left, high)]
 
 
-def _draw_vision(drawing: Drawing, station: VisionStation, start: float) -> None:
+def _draw_vision(drawing: Drawing, station: VisionStation, start: float, left: float = 318.0) -> None:
     """A vision station from the wall: camera, field, trigger and nozzles; the camera nearer than it is."""
-    left, foot, room = 318.0, 160.0, 84.0
+    foot, room = 160.0, 84.0
     along = station.field[0] / MM
     middle, nozzles = station.sensor_at / MM, (station.sensor_at + station.valve_way) / MM
     last = max(nozzles + 14.0, station.trigger_at / MM, middle + 0.5 * along)
@@ -147,5 +166,5 @@ def _draw_vision(drawing: Drawing, station: VisionStation, start: float) -> None
         drawing.text(x + 1.0, y - 12.0 - 4.0 * row, f"{words} {start / MM + place:.1f} from D", 2.2)
     for hole in station.holes:
         x, y = at(hole.place / MM, hole.height / MM)
-        drawing.circle((x, y), 0.5 * hole.size / MM * scale, "BORE")
-        drawing.text(x, y + 0.5 * hole.size / MM * scale + 0.8, hole.thread or "fibre", 1.9, "center")
+        drawing.circle((x, y), 0.5 * hole.diameter / MM * scale, "BORE")
+        drawing.text(x, y + 0.5 * hole.diameter / MM * scale + 0.8, hole.thread or "fibre", 1.9, "center")

@@ -47,6 +47,7 @@ DATUM_CLEAR_RAD = np.radians(35.0)  # from the ray of the datum to that of the t
 NUMBERS_MM = 25.0  # [mm] from the wall of the unrolled track to the list of devices: room for numbers
 POSE_ROWS = 6  # devices on one sheet of poses
 POSE_LETTERS = 72  # of a line of the pose in the title block
+BESIDE_HEAD = "what stands beside the bowl"
 POSES_HEAD = (
     "what each device lets pass and what it returns, seen from inside the bowl; arrow: the way parts travel"
 )
@@ -87,12 +88,13 @@ def draw_sheets(
     rows = [] if poses is None else list(enumerate(poses.devices, start=1))
     of_poses = [rows[k : k + POSE_ROWS] for k in range(0, len(rows), POSE_ROWS)]
     beside = beside_bowl.find_beside(study, trial)
-    count = 2 + (solid.plan.stretch is not None) + len(of_poses) + (beside is not None)
+    stations = 0 if beside is None else max(len(beside.vision) - 1, 0)  # on sheets of their own
+    count = 2 + (solid.plan.stretch is not None) + len(of_poses) + (beside is not None) + stations
     drawing.box(*FRAME)
     _draw_from_above(drawing, solid, sizes, scale)
     _draw_side_views(drawing, solid, sizes, scale)
     _draw_springs(drawing, study.bowl, whole.plan.turned)
-    of_beside = [] if beside is None else _list_beside(beside, count - 1)
+    of_beside = [] if beside is None else _list_beside(beside, count - 1 - stations)
     _draw_list(drawing, study, whole, (246.0, 134.0), of_beside)
     if poses is not None:
         pose_sheet.draw_outlet_views(drawing, poses.leaving, OUTLET_BOX)
@@ -111,11 +113,17 @@ def draw_sheets(
         drawing.mark(of_trial(trial, mark))
     if beside is not None:
         drawing.new_sheet()
-        _draw_title(drawing, order.part.name, None, fields, f"{count - 1} of {count}")
-        _draw_head(drawing, 25.0, 281.0, "what stands beside the bowl", None)
+        _draw_title(drawing, order.part.name, None, fields, f"{count - 1 - stations} of {count}")
+        _draw_head(drawing, 25.0, 281.0, BESIDE_HEAD, None)
         outlet, plate = (whole.plan.outlet, whole.plan.width), whole.plan.material.plate / MM
         beside_sheet.draw_beside(drawing, beside, outlet, plate)
         drawing.mark(of_trial(trial, mark))
+        for number in range(1, stations + 1):
+            drawing.new_sheet()
+            _draw_title(drawing, order.part.name, None, fields, f"{count - 1 - stations + number} of {count}")
+            _draw_head(drawing, 25.0, 281.0, BESIDE_HEAD, None)
+            beside_sheet.draw_station(drawing, beside, number)
+            drawing.mark(of_trial(trial, mark))
     _draw_track(drawing, whole.plan, order.part.name, fields, f"{count} of {count}")
     drawing.mark(of_trial(trial, mark))
     return drawing
@@ -323,9 +331,9 @@ def _draw_springs(drawing: Drawing, bowl: Bowl, outlet: float) -> None:
 def _list_beside(beside: beside_bowl.Beside, sheet: int) -> list[tuple[str, str]]:
     """List what stands beside the bowl, as quantity and what, for the parts list; its sheet has details."""
     listed = []
-    for station in beside.vision:
-        what = SEEN_BY[station.sees][0]
-        listed.append(("1", f"{what} with light, trigger and valve, device {station.number}: sheet {sheet}"))
+    for more, station in enumerate(beside.vision):
+        what = f"{SEEN_BY[station.sees][0]} with light, trigger and valve, device {station.number}"
+        listed.append(("1", f"{what}: sheet {sheet + more}"))
     return [*listed, ("1", f"inline track with two level sensors: sheet {sheet}")]
 
 
@@ -502,8 +510,9 @@ def _draw_devices(
     below = {ledge.start for ledge in stretch.ledges}
     changes = [(f"step {drop / MM:.4g} mm down", at, at) for at, drop in stretch.drops if at not in below]
     for ledge in stretch.ledges:
-        level = f"ledge {ledge.width / MM:.4g} wide, track {ledge.drop / MM:.4g} lower"
-        changes.append((f"{level}; to {ledge.end / MM:.5g} level", ledge.start, ledge.end + ledge.ramp))
+        drop = ledge.drop
+        level = f"ledge {drop.aside / MM:.4g} wide, track {drop.height / MM:.4g} lower"
+        changes.append((f"{level}; to {ledge.end / MM:.5g} level", ledge.start, ledge.foot))
     for start, end, bank in stretch.banks:
         changes.append((f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
     for groove in stretch.grooves:

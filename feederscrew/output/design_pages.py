@@ -36,6 +36,7 @@ from feederscrew.output import (
     solidbowl_views,
     tables,
     tooling,
+    tooling_drawing,
 )
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import LOWER_BOUND
@@ -319,7 +320,7 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
     ]
     if drawn:
         lead = Text("The part over the cut, what each device does, and the drawing of the cuts.")
-        yield Chapter((lead, *drawn), anchor="tooling", title="The tooling")
+        yield Chapter((lead, *drawn, *_shop_work(build)), anchor="tooling", title="The tooling")
     beside = None if build.drawn is None else beside_bowl.find_beside(build.drawn, designs.trial_of(study))
     if beside is not None:
         lead = Text("What is bought and set beside the bowl: bowl.pdf shows where it stands.")
@@ -338,6 +339,16 @@ def _to_build(study: DesignStudy, build: Built, papers: Mapping[str, offer.Offer
         text = "" if bowl is None else tables.file_bytes(bowl.make()).decode()
         folded = (Folded("design.yaml, the bowl file", text),) if text else ()
         yield Chapter((*files, *folded), anchor="files", title="Files to build from")
+
+
+def _shop_work(build: Built) -> list[Block]:
+    """What the shop must do to the cuts of a bowl beside cutting their outlines."""
+    solid = None if build.drawn is None else build.drawn.solid
+    if solid is None or solid.plan.stretch is None:
+        return []
+    work = tooling_drawing.shop_table(solid.plan.stretch)
+    lead = Text("What the shop does to each cut beside cutting its outline.")
+    return [lead, Table(work)] if list(work.rows()) else []
 
 
 def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None = None) -> list[offer.Offer]:

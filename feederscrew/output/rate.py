@@ -193,9 +193,10 @@ def _spacing_remarks(study: RateStudy) -> list[str]:
         return []
     lying = orientations.lying[0]
     places = [k for k, device in enumerate(study.devices) if device.gap(lying, 0.0) > 0.0]
-    kinds = [study.devices[k].kind for k in places]
+    kinds = dict.fromkeys(study.devices[k].kind for k in places)
+    each = "each " * (len(places) > len(kinds))
     line = (
-        f"{units.listed(kinds)} looks at one part at a time: the rate is that of parts that come "
+        f"{each}{units.listed(list(kinds))} looks at one part at a time: the rate is that of parts that come "
         f"{orientations.gap / MM:.3g} mm apart"
     )
     if not any(device.kind == Separation.kind for device in study.devices[: places[0]]):

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from feederscrew.arrays import Floats
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
+from feederscrew.output.tables import Frame
 from feederscrew.sorting.devices.features import box_ring
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, bend_ring
@@ -308,13 +309,18 @@ def draw_wall_bores(drawing: Drawing, devices: Sequence[PlacedDevice], view: Vie
     float [mm]
         Height of the top.
     """
-    jets = [(placed.begin, jet) for placed in devices for jet in placed.features.jets]
-    bores = [(begin + jet.at[0], jet.at[2], jet.radius) for begin, jet in jets]
+    bores = [
+        (placed.begin + bore.place, bore.height, 0.5 * bore.diameter, bore)
+        for placed in devices
+        for bore in placed.features.bores
+    ]
     if not bores:
         return low - 10.0
     along = View((view.at[0], low), view.scale)
-    top = low + max(z + r for _, z, r in bores) / MM * view.scale + 5.0
-    columns = {s: sorted({(z, r) for place, z, r in bores if place == s}) for s, _, _ in sorted(bores)}
+    top = low + max(z + r for _, z, r, _ in bores) / MM * view.scale + 5.0
+    places = sorted({s for s, *_ in bores})
+    columns = {s: sorted({(z, r) for place, z, r, _ in bores if place == s}) for s in places}
+    uses = {s: next(bore for place, _, _, bore in bores if place == s) for s in places}
     middles = {s: float(along.placed([s, 0.0])[0]) for s in columns}
     title = top + 1.0 + 4.0 * len(columns)  # above a line of text for each column
     drawing.lines([[(min(middles.values()) - 25.0, low), (max(middles.values()) + 9.0, low)]], "OUTLINE")
@@ -328,8 +334,9 @@ def draw_wall_bores(drawing: Drawing, devices: Sequence[PlacedDevice], view: Vie
             for (z, _), end in zip(column, ends):
                 at, number, origin = along.placed([s, z]), (middles[s] + 14.0, end), (middles[s], low)
                 drawing.ordinate(at, number, origin, True, view.scale)
-        bore = f"{len(column)} x Ø{2.0 * column[0][1] / MM:.4g} through the wall"
-        text = f"{bore} at {s / MM:.5g} from D, heights over the track"
+        thread = f"{uses[s].thread}, " if uses[s].thread else ""
+        hole = f"{uses[s].what}: {len(column)} x {thread}Ø{2.0 * column[0][1] / MM:.4g} through the wall"
+        text = f"{hole} at {s / MM:.5g} from D, heights over the track"
         drawing.text(view.at[0], title - 4.0 * (row + 1), text, 2.5)
     drawing.text(view.at[0], title, "wall seen from the bowl's axis", 2.5, bold=True)
     return title + 4.0
@@ -366,7 +373,7 @@ def device_rows(
             *device.shop_words,
         ]
         if placed.features.sensor is not None:
-            listed[1] += f", at the cross; window {placed.length / MM:.4g} x {width / MM:.4g} mm"
+            listed[1] += f", at the cross; window {placed.features.length / MM:.4g} x {width / MM:.4g} mm"
         listed += placed.shop_work(width)
         lines = [line for words in listed for line in textwrap.wrap(words, LINE_LETTERS) or [""]]
         opened = any(opening.hangs and not opening.runs_on for opening in placed.openings)
@@ -375,6 +382,26 @@ def device_rows(
         rows.append([*near, far[0], f"{angle(start):.4g}", far[1], lines[0]])
         rows += [["", "", "", "", "", "", line] for line in lines[1:]]
     return rows
+
+
+def shop_table(strip: TooledTrack) -> Frame:
+    """Return what the shop must do to each cut beside cutting its outline, as a table for pages.
+
+    Parameters
+    ----------
+    strip : TooledTrack
+
+    Returns
+    -------
+    Frame
+        No rows where there is nothing to say.
+    """
+    rows = [
+        {"device": f"{number} {placed.device.full_name}", "what the shop does": str(work)}
+        for number, placed in enumerate(strip.devices, start=1)
+        for work in placed.shop_work(strip.width)
+    ]
+    return Frame.of_rows(rows, ("device", "what the shop does"))
 
 
 def edges(placed: PlacedDevice, width: float) -> list[tuple[str, Floats]]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from feederscrew.arrays import Floats, Points, Vector
+from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import turned
 from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera, Mesh
@@ -133,7 +134,7 @@ def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation],
     box.imshow(image, extent=frame.extent, interpolation="none")
 
     def project(points: Points, at: float) -> Floats:
-        return camera.project(_on_section(points, at, radius) - centre) / size
+        return camera.project(_on_section(points, at, section.track) - centre) / size
 
     if _over_a_cut(passage) and passage.orientation.kind != "hanging":
         # hull of the support and the weight, seen through the part
@@ -214,7 +215,10 @@ def track_below(passage: Passage, orientations: Sequence[Orientation]) -> Mesh:
     c, s, down = np.cos(angle), np.sin(angle), corners[:, 1] - radius
     ahead = c * corners[:, 0] + s * down
     from_wall = radius - s * corners[:, 0] + c * down
-    return np.column_stack([ahead, from_wall - orientation.distance, corners[:, 2]]), faces
+    # along the banked surface, and square to it
+    c, s = np.cos(orientation.track.bank), np.sin(orientation.track.bank)
+    inwards, up = c * from_wall + s * corners[:, 2], c * corners[:, 2] - s * from_wall
+    return np.column_stack([ahead, inwards - orientation.distance, up]), faces
 
 
 def part_on_section(passage: Passage, placed: PlacedDevice) -> Points:
@@ -234,13 +238,18 @@ def part_on_section(passage: Passage, placed: PlacedDevice) -> Points:
     points = np.array(orientation.posture.surface)
     flat = turned(points[:, :2], orientation.heading) + [0.0, orientation.distance]
     points = np.column_stack([flat, points[:, 2]])
-    return _on_section(points, passage.angle(placed), orientation.track.radius)
+    return _on_section(points, passage.angle(placed), orientation.track)
 
 
-def _on_section(points: Points, angle: float, radius: float) -> Points:
-    """Return points (N, 3) [m], ahead, from the wall and up, as they lie at an angle of a track section."""
-    c, s, up = np.cos(angle), np.sin(angle), radius - points[:, 1]
-    return np.column_stack([c * points[:, 0] + s * up, radius + s * points[:, 0] - c * up, points[:, 2]])
+def _on_section(points: Points, angle: float, track: Track) -> Points:
+    """Return points (N, 3) [m] as they lie at an angle of a section of a track.
+
+    They are ahead, from the wall along the track's surface, and square to that.
+    """
+    c, s = np.cos(track.bank), np.sin(track.bank)
+    from_wall, up = c * points[:, 1] - s * points[:, 2], c * points[:, 2] + s * points[:, 1]
+    c, s, off = np.cos(angle), np.sin(angle), track.radius - from_wall
+    return np.column_stack([c * points[:, 0] + s * off, track.radius + s * points[:, 0] - c * off, up])
 
 
 def section_of(passage: Passage, orientations: Sequence[Orientation]) -> TooledTrack:
@@ -256,7 +265,8 @@ def section_of(passage: Passage, orientations: Sequence[Orientation]) -> TooledT
     -------
     TooledTrack
     """
-    return lay_out(passage.orientation.track, [passage.device], orientations, lead=1.0)
+    longest = max(orientation.length for orientation in orientations)
+    return lay_out(passage.orientation.track, [passage.device], orientations, lead=longest)
 
 
 def clearest(

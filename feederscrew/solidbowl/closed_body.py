@@ -1,6 +1,7 @@
 """The bowl as one body: made of swept, turned and extruded pieces."""
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -242,22 +243,16 @@ def pieces(plan: BowlPlan, kit: ModuleType = facets) -> tuple[Body, list[tuple[s
     blades = [(placed, blade) for placed in chain for blade in placed.features.blades]
     own_gates = [(placed, blade) for placed, blade in blades if blade.is_gate]
     wall, *ends = walls(plan, kit)
-    groove_cuts, groove_walls = track.groove_walls(plan, kit)
     # the outlet passes through the wall
     end, far = plan.path.end, plan.path.end + 2.0 * plan.outlet
     outlet = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
     low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.path.bank_at(end))
     open_wall = [kit.over(plan.path, outlet, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
     open_wall += [_notch(plan, kit, *gate) for gate in own_gates]
-    for placed, jet in [(item, jet) for item in chain for jet in item.features.jets]:
-        begin, outwards = plan.path.bore(plan.first + placed.begin + jet.at[0], jet.at[2], PIECE_OVERLAP_M)
-        deep = 2.0 * (plan.material.wall + PIECE_OVERLAP_M)
-        open_wall.append(kit.bore(begin, outwards, 2.0 * jet.radius, deep))
-    ring = kit.without(wall, [*open_wall, *groove_cuts])
-    slab = kit.without(track.slab(plan, kit), track.holes(plan, kit, hang=False))
-    plates = [_plate(plan, kit, *blade) for blade in blades if not blade[1].is_gate]
-    added = [*track.sides(plan, kit), *track.yokes(plan, kit), *plates, *track.ledges(plan, kit)]
-    whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added, *groove_walls])
+    standing = [blade for blade in blades if not blade[1].is_gate]
+    tooled = tooled_bodies(plan, kit, kit.without(wall, open_wall), standing)
+    added = [*track.sides(plan, kit), *track.yokes(plan, kit)]
+    whole = kit.united([*_floor(plan, kit), *ends, *tooled, *added])
     # holes of the bolts, in the middle and on their circle, and drain holes
     holes = [((0.0, 0.0), plan.bolt)]
     for r, count, size, phase in (
@@ -271,6 +266,40 @@ def pieces(plan: BowlPlan, kit: ModuleType = facets) -> tuple[Body, list[tuple[s
     whole = kit.without(whole, [*track.holes(plan, kit, hang=True), *drilled])
     gates = [(f"gate_{k + 1}", _plate(plan, kit, *gate)) for k, gate in enumerate(own_gates)]
     return kit.one_piece(whole, "devices"), gates
+
+
+def tooled_bodies(
+    plan: BowlPlan, kit: ModuleType, wall: Body, blades: Sequence[tuple[PlacedDevice, Blade]]
+) -> list[Body]:
+    """Return the wall and the track with what devices cut and set: of a bowl, and of a section to print.
+
+    Slots that parts hang in are not cut yet: they go through all that stands in their way.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``, which the bodies are made with.
+    wall : Body [mm]
+        Whole, but for its outlet.
+    blades : sequence of (PlacedDevice, Blade)
+        Those that stand on the track as a part of it.
+
+    Returns
+    -------
+    list of Body [mm]
+        To be united.
+    """
+    cuts, leaning = track.groove_walls(plan, kit)
+    chain = () if plan.stretch is None else plan.stretch.devices
+    deep = 2.0 * (plan.material.wall + PIECE_OVERLAP_M)
+    for placed, bore in [(item, bore) for item in chain for bore in item.features.bores]:
+        s = plan.first + placed.begin + bore.place
+        begin, outwards = plan.path.bore(s, bore.height, PIECE_OVERLAP_M)
+        cuts.append(kit.bore(begin, outwards, bore.diameter, deep))
+    slab = kit.without(track.slab(plan, kit), track.holes(plan, kit, hang=False))
+    plates = [_plate(plan, kit, *blade) for blade in blades]
+    return [kit.without(wall, cuts), slab, *plates, *track.ledges(plan, kit), *leaning]
 
 
 def _floor(plan: BowlPlan, kit: ModuleType) -> list[Body]:

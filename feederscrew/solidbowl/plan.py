@@ -451,6 +451,7 @@ class BowlPlan:
     left: bool  # mirrored: parts travel clockwise, seen from above
     chord: float
     stairs: Stairs | None = None  # where the wall steps outwards with the track
+    is_section: bool = False  # a stretch alone, to print: its plate goes through the wall, without a fillet
 
     @property
     def across(self) -> float:

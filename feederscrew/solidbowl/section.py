@@ -1,33 +1,27 @@
-"""The printed section: the tooled track in its own plane as one body, of facets or with exact faces.
+"""The printed section: the tooled stretch of track as one body, cut out of a bowl.
 
-The same calls make both: plates, ledges, walls, blades and bores come from a ``TooledTrack``, and ``kit`` is
-``facets`` or ``exact_body``. The track's surface lies in one plane: its climb and bank are those of the place
-where the section is screwed on, and a wall that stands upright beside a banked track leans over it here.
+The bowl's own calls make it (``closed_body.tooled_bodies``), and ``kit`` is ``facets`` or ``exact_body``.
 """
 
-import itertools
+from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
-import shapely
 
 from feederscrew import check
 from feederscrew.arrays import Floats, Points, Triangles
-from feederscrew.solidbowl import facets
+from feederscrew.solidbowl import closed_body, facets, track
 from feederscrew.solidbowl.facets import Body
-from feederscrew.solidbowl.plan import TrackPath
+from feederscrew.solidbowl.plan import FULL_TURN_RAD, BowlMaterial, BowlPlan, TrackPath
+from feederscrew.solidbowl.track import GROOVE_CUT_MARGIN_M
 from feederscrew.sorting import whole_surface
-from feederscrew.sorting.devices.features import box_ring
-from feederscrew.sorting.devices.openings import beyond_borders
-from feederscrew.sorting.solid import PLATE, WALL, WALL_OVERLAP_M, leaning_profile
-from feederscrew.sorting.tooled_track import DRAWN_CHORD_M, Ledge, TooledTrack, walls_of
+from feederscrew.sorting.solid import PLATE, WALL, WALL_OVERLAP_M
+from feederscrew.sorting.tooled_track import DRAWN_SAGITTA_M, TooledTrack
 from feederscrew.units import MM
 
 WALL_MARGIN_M = 5e-3  # [m] of the wall above the tallest part
-BLADE_REACH_M = 2e-6  # [m] from wall and track: a blade that is as near goes on into them
-CUT_MARGIN_M = 1e-3  # [m] by which a cut goes on above and below the plate
-RAMP_SINK_M = 3e-5  # [m] by which a ledge lies lower than the plate before it: no face lies on a face
-NO_LEAN_RAD = 1e-6  # [rad] a wall that leans by less is upright
+LEAD_M = 5e-3  # [m] of track before and behind the stretch, which is cut off
+BEYOND_M = 1.0  # [m] beyond any bowl's track
 
 
 def solid(tooled: TooledTrack) -> tuple[Points, Triangles]:
@@ -40,8 +34,8 @@ def solid(tooled: TooledTrack) -> tuple[Points, Triangles]:
     Returns
     -------
     (V, 3) float [m]
-        Vertices: the wall is tangent to X at the origin, the bowl's axis is at (0, radius), the surface of
-        the track lies in the plane Z = 0, parts move towards +X.
+        Vertices: the wall is tangent to X at the origin, the bowl's axis is at (0, radius), the track begins
+        by the wall at Z = 0, parts move towards +X.
     (F, 3) int
         Faces, corners counter-clockwise seen from outside, in one order however they were made.
     """
@@ -70,7 +64,10 @@ def triangles(tooled: TooledTrack) -> Floats:
 
 
 def section_body(tooled: TooledTrack, kit: ModuleType) -> Body:
-    """Return the printed section as one body.
+    """Return the printed section as one body: the stretch that holds the devices, cut out of a bowl's track.
+
+    The bowl is that of ``section_plan``; wall, track, cuts and blades are made by the bowl's own calls. A
+    gate is part of it.
 
     Parameters
     ----------
@@ -83,76 +80,69 @@ def section_body(tooled: TooledTrack, kit: ModuleType) -> Body:
     Body [mm]
         In the axes of ``solid``.
     """
-    radius, width, overlap = tooled.track.radius, tooled.width, WALL_OVERLAP_M
-    path = TrackPath(radius, 0.0, 0.0, 2.0 * tooled.length, drops=tooled.drops)
-    # between steps of the track: from, to a little into the next, height
-    steps = [(0.0, 0.0), *tooled.drops, (tooled.length, 0.0)]
-    lows = -np.cumsum([drop for _, drop in steps])
-    levels = [(at - overlap * (at > 0.0), end, float(low)) for (at, _), (end, _), low in
-              zip(steps, steps[1:], lows)]  # fmt: skip
-
-    def over(ring: Points, low: float, high: float) -> Body:
-        return kit.over(path, ring, low, high, 2.0 * DRAWN_CHORD_M)
-
-    plates = [over(box_ring(start, end, -WALL, width), low - PLATE, low) for start, end, low in levels]
-    plates += [
-        over(box_ring(end - WALL, end, -WALL, width), low - PLATE, high - 0.5 * PLATE)
-        for (_, end, high), (_, _, low) in itertools.pairwise(levels)
-    ]
-    plates += [_ledge(tooled, kit, path, ledge) for ledge in tooled.ledges]
-    low, high = levels[-1][2] - PLATE - CUT_MARGIN_M, CUT_MARGIN_M
-    tools = []
-    for _, opening in tooled.openings:
-        # cut on through the end of the section, where it is open there
-        places = opening.ring[:, 0] + overlap * (opening.ring[:, 0] >= tooled.length - 1e-9)
-        clear = np.column_stack([places, np.maximum(opening.ring[:, 1], kit.SEAM_M)])
-        tools.append(over(np.array(beyond_borders(clear.tolist(), width - 1e-9, overlap)), low, high))
-    bodies = [kit.without(kit.united(plates), tools)]
-    walls = _walls(tooled, kit, path, -overlap + levels[-1][2])
-    bores = [
-        kit.bore(*path.bore(placed.begin + jet.at[0], jet.at[2], CUT_MARGIN_M), 2.0 * jet.radius, 3.0 * WALL)
+    plan = section_plan(tooled)
+    path, radius = plan.path, plan.path.radius
+    low = -tooled.fallen - 0.5 * PLATE
+    outer, top = radius + plan.material.wall, plan.top
+    wall = kit.turned([(radius, low), (outer, low), (outer, top), (radius, top)], plan.segments)
+    blades = [
+        (placed, replace(blade, is_gate=False))
         for placed in tooled.devices
-        for jet in placed.features.jets
+        for blade in placed.features.blades
     ]
-    bodies.append(kit.without(kit.united(walls), bores))
-    for placed in tooled.devices:
-        for blade in placed.features.blades:
-            axes, foot = path.blade_frame(blade, placed.begin)
-            area = shapely.normalize(blade.carried_into(overlap, overlap, BLADE_REACH_M))
-            bodies.append(kit.plank(area, blade.thickness, axes, foot))
-    body = kit.placed_as(kit.united(bodies), mirrored=False, turned=path.end / radius - 0.5 * np.pi)
+    bodies = closed_body.tooled_bodies(plan, kit, wall, blades)
+    # all but the stretch
+    first, last = (float(path.angle(plan.first + s)) for s in (0.0, tooled.length))
+    box = [(0.0, -BEYOND_M), (BEYOND_M, -BEYOND_M), (BEYOND_M, BEYOND_M), (0.0, BEYOND_M)]
+    others = kit.turned(box, plan.segments, last, FULL_TURN_RAD - (last - first))
+    body = kit.without(kit.united(bodies), [*track.holes(plan, kit, hang=True), others])
+    body = kit.placed_as(body, mirrored=False, turned=-0.5 * np.pi - first)
     return kit.moved(body, (0.0, radius / MM, 0.0))
 
 
-def _walls(tooled: TooledTrack, kit: ModuleType, path: TrackPath, low: float) -> list[Body]:
-    """The wall [mm], stretch by stretch: upright a cylinder from a height [m] on, leaning a cone."""
-    radius, overlap, bodies = path.radius, WALL_OVERLAP_M, []
-    high = max(tooled.tallest + WALL_MARGIN_M, tooled.top)
-    round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_CHORD_M / radius)))
-    for begin, end, lean in walls_of(tooled):  # each goes on into the next one, and not to the ends
-        start, stop = max(begin, overlap), min(end + overlap, tooled.length - overlap)
-        if abs(lean) < NO_LEAN_RAD:
-            ring = box_ring(start, stop, overlap - WALL, 0.0)
-            bodies.append(kit.over(path, ring, low, high, 2.0 * DRAWN_CHORD_M))
-            continue
-        across = leaning_profile(radius, lean, high)
-        bodies.append(kit.turned(across, round_once, float(path.angle(start)), (stop - start) / radius))
-    return bodies
+def section_plan(tooled: TooledTrack) -> BowlPlan:
+    """Return the bowl that a printed section is cut out of: level along the track, banked as the bowl is.
 
+    Its track begins so far before the stretch that a groove of the entry has opened. The climb is left out,
+    as a printer's bed is level: over a stretch of 0.1 m at 3.5 deg, 24 mm wide and 0.15 m from the axis, the
+    helix is 0.5 mm off the section, which bends by as much as it is screwed on.
 
-def _ledge(tooled: TooledTrack, kit: ModuleType, path: TrackPath, ledge: Ledge) -> Body:
-    """A ledge [mm] along the wall, on the lower track beside it, and the ramp on which it comes down."""
-    high = float(path.height(ledge.start - 1e-9)) - RAMP_SINK_M
-    low, down = high - ledge.drop - 0.5 * PLATE, ledge.end + ledge.ramp * (1.0 + 0.4 * PLATE / ledge.drop)
-    legs = []
-    for start, stop in ((ledge.start - 0.5 * PLATE, ledge.end), (ledge.end, down)):
-        pieces = max(int((stop - start) / np.sqrt(8.0 * path.radius * DRAWN_CHORD_M)), 3) + 1
-        s = np.linspace(start, stop, pieces)
-        top = high - ledge.drop * np.maximum((s - ledge.end) / ledge.ramp, 0.0)
-        inward, level = np.array([WALL_OVERLAP_M, -ledge.width]), np.ones((pieces, 1))
-        out = np.hstack([inward * level, inward[::-1] * level])
-        up = np.hstack([top[:, None], top[:, None], low * level, low * level])
-        theta = path.angle(s)
-        outward = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-        legs.append((np.stack([out, up], axis=-1), np.stack([path.plan(s, 0.0), outward], axis=1)))
-    return kit.swept(legs)
+    Parameters
+    ----------
+    tooled : TooledTrack
+
+    Returns
+    -------
+    BowlPlan
+    """
+    first = GROOVE_CUT_MARGIN_M + tooled.longest + LEAD_M
+    made_of = BowlMaterial("print", WALL - WALL_OVERLAP_M, BEYOND_M, PLATE, 0.0, supported=True, flat=True)
+    path = TrackPath(
+        tooled.track.radius,
+        0.0,
+        tooled.track.bank,
+        first + tooled.length + LEAD_M,
+        drops=tuple((first + at, drop) for at, drop in tooled.drops),
+        leans=tuple((first + start, first + end, bank) for start, end, bank in tooled.banks),
+    )
+    return BowlPlan(
+        path=path,
+        width=tooled.width,
+        material=made_of,
+        stretch=tooled,
+        first=first,
+        outlet=0.0,
+        hanging=LEAD_M,
+        headroom=tooled.tallest,
+        top=max(tooled.tallest + WALL_MARGIN_M, tooled.top),
+        hub=0.0,
+        bolts=0,
+        bolt=0.0,
+        bolt_circle=0.0,
+        drains=0,
+        drain=0.0,
+        turned=0.0,
+        left=False,
+        chord=DRAWN_SAGITTA_M,
+        is_section=True,
+    )

@@ -14,6 +14,7 @@ from feederscrew.sorting.devices.features import TrackOpening
 from feederscrew.sorting.devices.openings import beyond_borders
 from feederscrew.sorting.tooled_track import GrooveStretch
 
+SECTION_WALL_M = 3e-3  # [m] by which the plate of a section to print goes on below its wall
 TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
 YOKE_RADIUS_RATIO = 1.05  # its radius over its distance from the wall: it crosses the wall
@@ -27,7 +28,7 @@ TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led
 
 
 def fillet(plan: BowlPlan) -> float:
-    """Return the radius of the fillet below the track, where it meets the wall.
+    """Return the radius of the fillet below the track, where it meets the wall; 0 of a section alone.
 
     Parameters
     ----------
@@ -37,7 +38,7 @@ def fillet(plan: BowlPlan) -> float:
     -------
     float [m]
     """
-    return min(plan.material.plate, 0.5 * plan.across)
+    return 0.0 if plan.is_section else min(plan.material.plate, 0.5 * plan.across)
 
 
 def slab(plan: BowlPlan, kit: ModuleType) -> Body:
@@ -57,7 +58,7 @@ def slab(plan: BowlPlan, kit: ModuleType) -> Body:
     Body [mm]
     """
     runs, path = [], plan.path
-    begin = path.rises(plan.width) - DIP * path.radius
+    begin = 0.0 if plan.is_section else path.rises(plan.width) - DIP * path.radius
     changes = *(at for at, _ in path.bends), *(at for lean in path.leans for at in lean[:2]), path.end
     for start, end in itertools.pairwise([begin, *(at for at, _ in path.drops), path.end + plan.outlet]):
         legs = []
@@ -154,13 +155,18 @@ def _strips(plan: BowlPlan, kit: ModuleType) -> int:
 def _sections(plan: BowlPlan, s: Floats, heights: Floats, strips: int) -> Floats:
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
     plate, bank, r = plan.material.plate, plan.path.bank_at(s), fillet(plan)
+    level = np.ones((len(s), 1))
     inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]
     edge = inward[:, -1:].copy()
+    if plan.is_section:
+        inward[:, 0] = -SECTION_WALL_M
+        out = np.hstack([-inward, -edge, SECTION_WALL_M * level])
+        below = np.hstack([0.0 * inward, -plate * level, -plate * level])
+        return np.stack([out, below - out * np.tan(bank)[:, None] + heights[:, None]], axis=-1)
     inward[:, 0] = -TRACK_PIECE_OVERLAP_M  # no edge lies on the wall
     turn, own = 0.5 * np.pi * np.arange(ARC + 1) / ARC, YOKE_RADIUS_RATIO * r  # the arc goes on into the wall
     arc = np.column_stack([-r + own * np.sin(turn), -plate - own + own * np.cos(turn)])
     arc = arc if plan.material.supported else arc[[0, -1]]
-    level = np.ones((len(s), 1))
     out = np.hstack([-inward, -edge, arc[:, 0] * level, TRACK_PIECE_OVERLAP_M * level])
     below = np.hstack([0.0 * inward, -plate * level, arc[:, 1] * level, (-plate - own) * level])
     slanted = np.hstack([out[:, :-1], 0.0 * level])  # all but the corner deep in the wall
@@ -195,15 +201,17 @@ def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     path, half, strips, bodies = plan.path, 0.5 * plan.material.plate, _strips(plan, kit), []
     for ledge in () if plan.stretch is None else plan.stretch.ledges:
         at, end = plan.first + ledge.start, plan.first + ledge.end
-        ends, legs = [at - half, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)], []
+        lower, aside = ledge.drop.height, ledge.drop.aside
+        ends, legs = [at - half, plan.first + ledge.sunk(0.4 * half)], []
         for leg in _legs(plan, kit, ends, (at, end)):
             s = steps(plan, kit, *leg)
-            low = path.height(s) - ledge.drop * (s < at)
-            high = low + ledge.drop * (1.0 - np.maximum((s - end) / ledge.ramp, 0.0)) - PLATE_OVERLAP_M
-            inward = ledge.width * np.cos(path.bank_at(s))[:, None] * np.arange(strips + 1) / strips
+            low = path.height(s) - lower * (s < at)
+            inward = aside * np.cos(path.bank_at(s))[:, None] * np.arange(strips + 1) / strips
             inward[:, 0] = -TRACK_PIECE_OVERLAP_M
             rise = inward * np.tan(path.bank_at(s))[:, None]
-            top = np.stack([-inward, high[:, None] + rise], axis=-1)
+            down = ledge.level_at(s[:, None] - plan.first, aside * np.arange(strips + 1) / strips)
+            high = low[:, None] + lower + np.maximum(down, -lower - 0.8 * half) - PLATE_OVERLAP_M
+            top = np.stack([-inward, high + rise], axis=-1)
             under = np.stack([-inward, low[:, None] - half + rise], axis=-1)[:, [-1, 0]]
             legs.append((np.concatenate([top, under], axis=1), frames(plan, s)))
         bodies.append(kit.swept(legs))

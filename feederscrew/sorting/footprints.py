@@ -55,6 +55,16 @@ class Footprint:
         """Return every corner of it (V, 2) [m]."""
         return np.concatenate([*self.rings, self.edges.reshape(-1, 2), self.points])
 
+    @cached_property
+    def mouth(self) -> float:
+        """Return how far [m] the weight is from a rim all round it, on which it stands; 0 without one."""
+        area = shapely.Polygon()
+        for ring in self.rings:
+            area = area.symmetric_difference(shapely.Polygon(ring))
+        area, here = area.buffer(SLIT), shapely.Point(0.0, 0.0)  # closes slits between facets of the rim
+        holes = [shapely.Polygon(hole) for part in shapely.get_parts(area) for hole in part.interiors]
+        return next((hole.exterior.distance(here) + SLIT for hole in holes if hole.contains(here)), 0.0)
+
 
 # -- verdicts of a foot
 

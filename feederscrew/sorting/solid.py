@@ -7,7 +7,7 @@ import shapely
 
 from feederscrew.arrays import Points, Triangles
 from feederscrew.heavy import heavy
-from feederscrew.sorting.tooled_track import DRAWN_CHORD_M
+from feederscrew.sorting.tooled_track import DRAWN_SAGITTA_M
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def leaning_profile(radius: float, lean: float, high: float) -> Points:
 def _revolve_leaning(radius: float, start: float, stop: float, lean: float, high: float) -> "Manifold":
     """A body [mm]: a wall from the track's outer edge on, as wide as ``high`` [m] up its slope."""
     across = leaning_profile(radius, lean, high)
-    round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_CHORD_M / radius)))
+    round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_SAGITTA_M / radius)))
     turned, first = np.degrees((stop - start) / radius), np.degrees(start / radius) - 90.0
     body = manifold3d.Manifold.revolve(manifold3d.CrossSection([across / MM]), round_once, turned)
     return body.rotate((0.0, 0.0, first)).translate((0.0, radius / MM, 0.0))

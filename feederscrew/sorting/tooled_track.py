@@ -1,12 +1,14 @@
-"""The tooled track: the features of devices, placed along a track once, for all who draw, print and cut it.
+"""The tooled track: the features of devices, placed along a track once, for all who try, draw and cut it.
 
 A path along the wall, with climb, bank, lean of the wall and level as functions of the length s, and the
 features of each device placed on it, built from a bowl's track, the devices and the part's orientations.
-Dimensions, DXF, SVG, sheets, the printed section, the bowl's solid and its STEP file read it and add nothing;
-the trial takes the same features and the same rule for slots that go on (``continue_slots``).
+The trial, dimensions, DXF, SVG, sheets, the printed section, the bowl's solid and its STEP file read it.
+
+Words: the *size* of a part is its longest diagonal, square across or along the track; the *way* of a device
+is the stretch of track that it is given; its *begin* is the origin of its features; the *entry* of a track is
+its begin in the bowl, far before the stretch: devices that come first and lean the track lean it from there.
 """
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -15,18 +17,19 @@ import shapely
 
 from feederscrew.arrays import Floats, Points, Values
 from feederscrew.bowl.record import Track
-from feederscrew.sorting.devices.base import Device, room_of
-from feederscrew.sorting.devices.features import Features, ShopWork, TrackOpening
+from feederscrew.sorting.devices.base import Device, room_of, size_of
+from feederscrew.sorting.devices.features import Drop, Features, ShopWork, TrackOpening
 from feederscrew.sorting.fates import leading_devices
 from feederscrew.sorting.orientations import Orientation
 
 DRAWN_TRACK_MARGIN_M = 5e-3  # [m] of track beyond what parts and cuts need, where not all of it is drawn
 SLOT_OVERLAP_M = 2e-6  # [m] by which a slot reaches into that of the next rails: no web is left between them
-MAX_EDGE_SLOPE_RAD = np.radians(10.0)  # slope along the track of its free edge, where the bank changes
-RAMP = np.radians(15.0)  # slope on which a ledge comes down to the track beside it
-TWIST = 0.5  # of the room that a part has to itself: over so much the bank changes at least
-DRAWN_CHORD_M = 1e-5  # [m] by which an arc may be seen too flat
-BETWEEN = 0.5  # rooms of a device between two of them
+MAX_EDGE_SLOPE_RAD = np.radians(10.0)  # [rad] of the track's free edge along it, where the bank changes
+MIN_TWIST_ROOMS = 0.5  # [1] of ``room_of`` the part: over so much the bank changes at least
+BORE_RIM = 1.5  # [1] of a bore's diameter: wall over its middle
+DRAWN_SAGITTA_M = 1e-5  # [m] by which an arc may be seen too flat
+SPARE_SIZES = 0.1  # [1] of the part's size: more than half of it, before and behind a device
+CLEAR_SIZES = 0.5 + SPARE_SIZES  # [1] of the part's size: its centre of mass to a device it is clear of
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +37,8 @@ class PlacedDevice:
     """One device at its place along the track."""
 
     device: Device
-    start: float  # [m] s where the track begins that it is given
-    length: float  # [m] of that
+    start: float  # [m] s where its way begins
+    end: float  # [m] s where that ends: a part is clear of it there, and has settled
     begin: float  # [m] s of the origin of its features
     level: float  # [m] of the track where it begins: steps before it are below 0
     features: Features  # from ``begin`` on
@@ -48,9 +51,15 @@ class PlacedDevice:
         return self.device.label
 
     @property
-    def end(self) -> float:
-        """S [m] where the track ends that it is given."""
-        return self.start + self.length
+    def length(self) -> float:
+        """Length [m] of its way."""
+        return self.end - self.start
+
+    @property
+    def drop(self) -> Drop | None:
+        """The drop at it; None where it has none, or one of no height."""
+        drop = self.features.drop
+        return None if drop is None or drop.height <= 0.0 else drop
 
     @property
     def footprints(self) -> list[Points]:
@@ -59,7 +68,7 @@ class PlacedDevice:
 
     @property
     def span(self) -> tuple[float, float]:
-        """From and to s [m]: of a cut or a blade its own, else of the track that it is given."""
+        """From and to s [m]: of a cut or a blade its own, else of its way."""
         rings = [opening.ring for opening in self.openings] or self.footprints
         if not rings:
             return self.start, self.end
@@ -83,16 +92,54 @@ class PlacedDevice:
         return tuple(dict.fromkeys(work))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ledge:
-    """A ledge along the wall, above the track that goes on lower beside it."""
+    """A ledge along the wall, above the track that goes on lower beside it, and the ramp at its end."""
 
     label: str  # 'tipping ledge 6 mm'
     start: float  # [m] s where the track beside it goes on lower
     end: float  # [m] s where it begins to come down
-    width: float  # [m]
-    drop: float  # [m] of the track beside it
-    ramp: float  # [m] over which it comes down
+    drop: Drop
+    radius: float  # [m] of the wall
+
+    @property
+    def foot(self) -> float:
+        """S [m] where all of its ramp has come down to the lower track."""
+        return self.end + self.drop.ramp_length(self.radius)
+
+    def sunk(self, depth: float) -> float:
+        """Return where all of its ramp, made longer, lies below the surface of the lower track.
+
+        Parameters
+        ----------
+        depth : float [m]
+            So far below it.
+
+        Returns
+        -------
+        float [m]
+            S along the wall.
+        """
+        return self.end + replace(self.drop, height=self.drop.height + depth).ramp_length(self.radius)
+
+    def level_at(self, s: Values, y: Values) -> Floats:
+        """Return the level of its surface over that of the ledge; its ramp goes on below the lower track.
+
+        The ramp is flat: it is bent down about the line square to the wall where the ledge ends.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+        y : float or (...) float [m]
+            From the wall.
+
+        Returns
+        -------
+        (...) float [m]
+            At most 0.
+        """
+        turn = np.maximum((np.asarray(s) - self.end) / self.radius, 0.0)
+        return -np.tan(self.drop.ramp) * (self.radius - np.asarray(y)) * np.sin(turn)
 
 
 @dataclass(frozen=True)
@@ -187,6 +234,11 @@ class TooledTrack:
         return -np.sum(fallen, axis=0) if fallen else np.zeros(np.shape(s))
 
     @property
+    def fallen(self) -> float:
+        """By how much [m] the track has gone down by its steps where it ends."""
+        return float(sum(drop for _, drop in self.drops))
+
+    @property
     def openings(self) -> tuple[tuple[PlacedDevice, TrackOpening], ...]:
         """Every opening with its device."""
         return tuple((placed, opening) for placed in self.devices for opening in placed.openings)
@@ -213,8 +265,15 @@ class TooledTrack:
 
     @property
     def falls(self) -> float | None:
-        """S [m] where the last part that a cut returns goes down; None without cuts."""
-        return max((opening.end for _, opening in self.openings), default=None)
+        """S [m] where the last part that a cut returns goes down; None without cuts.
+
+        What falls through rails does so in them, and not in the slot that goes on behind them.
+        """
+        ends = (
+            placed.begin + placed.features.length if opening.hangs else opening.end
+            for placed, opening in self.openings
+        )
+        return max(ends, default=None)
 
     @property
     def hangs(self) -> bool:
@@ -223,17 +282,26 @@ class TooledTrack:
 
     @property
     def top(self) -> float:
-        """Height [m] over the track of the highest blade; 0 without."""
-        return max((b.top for placed in self.devices for b in placed.features.blades), default=0.0)
+        """Height [m] over the track to which the wall must reach for blades and bores; 0 without."""
+        own = [placed.features for placed in self.devices]
+        blades = (blade.top for features in own for blade in features.blades)
+        bores = (bore.height + BORE_RIM * bore.diameter for features in own for bore in features.bores)
+        return max((*blades, *bores), default=0.0)
 
 
 def lay_out(
-    track: Track, devices: Sequence[Device], orientations: Sequence[Orientation], lead: float = 0.5
+    track: Track,
+    devices: Sequence[Device],
+    orientations: Sequence[Orientation],
+    *,
+    lead: float = 0.0,
+    whole: bool = False,
 ) -> TooledTrack:
     """Return the stretch of track that holds a chain of devices, in the order parts meet them.
 
-    Where the bank changes, the free edge rises or falls by at most ``MAX_EDGE_SLOPE_RAD``. Where a part drops
-    beside a ledge, a ramp of ``RAMP`` leads down from that. Both make the stretch longer.
+    Before and behind each device a part has room to be clear of it: ``CLEAR_SIZES`` of its size to either
+    side of its centre of mass. Behind a drop it has as much more as it needs to settle. A bank changes so
+    slowly that the free edge rises or falls by at most ``MAX_EDGE_SLOPE_RAD``.
 
     Parameters
     ----------
@@ -243,8 +311,10 @@ def lay_out(
         Measured yields need no place.
     orientations : sequence of Orientation
         Of the part.
-    lead : float [1]
-        Rooms, of a device each, before the first one.
+    lead : float [m], optional
+        Of bare track before the way that the first device is given.
+    whole : bool, optional
+        Take a very wide track as wide as it is; else as wide as parts and cuts need.
 
     Returns
     -------
@@ -256,77 +326,138 @@ def lay_out(
         A device names an orientation that the part does not have.
     """
     chain = [device for device in devices if device.action.has_place]
-    room, entry = room_of(orientations), len(leading_devices(chain))
-    track = track_at_entry(track, chain, orientations)
-    drawn, own = _drawn_width(track, chain, orientations)
-    placed: list[PlacedDevice] = []
-    climbs: list[tuple[float, float]] = []
-    banks: list[tuple[float, float, float]] = []
-    drops: list[tuple[float, float]] = []
-    ledges: list[Ledge] = []
-    grooves: list[GrooveStretch] = []
-    start, level, bank = lead * room, 0.0, track.bank
+    track, entry = track_at_entry(track, chain, orientations), len(leading_devices(chain))
     longest = max(orientation.length for orientation in orientations)
-    for number, (device, features) in enumerate(zip(chain, own)):
-        length, begin, more = features.takes or room, start + features.before, 0.0
-        openings = tuple(opening.shifted(begin) for opening in features.openings)
-        item = PlacedDevice(device, start, length, begin, level, features, openings, track.radius)
-        placed.append(item)
-        for slope in features.slopes:
-            # the wall leans back from there on, at the entry from the first of the track
-            at = -np.inf if number < entry else begin + slope.begin
-            if slope.climb is not None:
-                climbs.append((begin + slope.begin, slope.climb))
-            if slope.wall is not None and grooves and np.isinf(grooves[-1].end):
-                grooves[-1] = replace(grooves[-1], end=at)
-            if slope.wall:
-                grooves.append(GrooveStretch(at, np.inf, slope.wall, longest))
-            if number >= entry and slope.bank is not None and slope.bank != bank:
-                # the free edge of the track rises or falls gently from one bank to the other
-                edge = track.width * abs(np.sin(slope.bank) - np.sin(bank))
-                twist = max(TWIST * room, edge / np.tan(MAX_EDGE_SLOPE_RAD))
-                banks.append((at, at + float(twist), slope.bank))
-                bank, more = slope.bank, more + max(banks[-1][1] - item.end, 0.0)
-        if features.drop is not None and features.drop.height > 0.0:
-            drop = features.drop
-            drops.append((begin, drop.height))
-            level -= drop.height
-            if drop.aside > 0.0:
-                ramp = float(drop.height / np.tan(RAMP))
-                ends = begin, begin + drop.length
-                ledges.append(Ledge(item.label, *ends, float(drop.aside), float(drop.height), ramp))
-                more += ramp
-        start += length + more + BETWEEN * room
-    slots = continue_slots([item.openings for item in placed], start, SLOT_OVERLAP_M)
+    width = track.extent if whole else _drawn_width(track, chain, orientations)
+    shown = track if track.width <= track.extent else replace(track, width=width)
+    features = _features_along(shown, chain, orientations)
+    twists = _twists(track, features, entry, MIN_TWIST_ROOMS * room_of(orientations))
+    placed = _placed_devices(chain, features, twists, lead, size_of_part(orientations), track.radius)
+    length = placed[-1].end if placed else lead
+    slots = continue_slots([item.openings for item in placed], length, SLOT_OVERLAP_M)
+    begins = [item.begin for item in placed]
     return TooledTrack(
         track=track,
-        length=start,
-        width=drawn,
+        length=length,
+        width=width,
         tallest=max(orientation.height for orientation in orientations),
         longest=longest,
         devices=tuple(replace(item, openings=own) for item, own in zip(placed, slots)),
-        climbs=tuple(climbs),
-        banks=tuple(banks),
-        drops=tuple(drops),
-        ledges=tuple(ledges),
-        grooves=tuple(groove for groove in grooves if groove.end > groove.start),
+        climbs=tuple(
+            (item.begin + slope.begin, slope.climb)
+            for item in placed
+            for slope in item.features.slopes
+            if slope.climb is not None
+        ),
+        banks=tuple(
+            (begin + own.begin, begin + own.begin + own.length, own.bank)
+            for begin, some in zip(begins, twists)
+            for own in some
+        ),
+        drops=tuple((item.begin, item.drop.height) for item in placed if item.drop is not None),
+        ledges=_ledges(placed),
+        grooves=_grooves(placed, entry, longest),
     )
 
 
-def _drawn_width(
-    track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]
-) -> tuple[float, list[Features]]:
-    """Return the width [m] of a track that is drawn, and the features on it: of a very wide one not all."""
-    own = [device.features(track, orientations) for device in devices]
+@dataclass(frozen=True)
+class _Twist:
+    """Where a track twists to another bank, from the origin of the device that banks it."""
+
+    begin: float  # [m]
+    length: float  # [m]
+    bank: float  # [rad] behind it
+
+
+def _drawn_width(track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]) -> float:
+    """Return the width [m] of a track that is drawn: of a very wide one not all."""
     if track.width <= track.extent:
-        return track.width, own
+        return track.width
     needed = [orientation.width for orientation in orientations]
-    for features in own:
+    for features in _features_along(track, devices, orientations):
         ends = np.concatenate([[0.0], *(opening.ring[:, 1] for opening in features.openings)])
         needed.append(float(ends[ends < track.extent].max()))
         needed.append(0.0 if features.drop is None else features.drop.aside)
-    width = min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
-    return width, [device.features(replace(track, width=width), orientations) for device in devices]
+    return min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
+
+
+def _features_along(
+    track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]
+) -> list[Features]:
+    """Return the features of each device on the track as the devices before it leave it."""
+    along = []
+    for device in devices:
+        own = device.features(track, orientations)
+        for slope in own.slopes:
+            track = track if slope.bank is None else replace(track, bank=slope.bank)
+            track = track if slope.climb is None else replace(track, climb=slope.climb)
+        along.append(own)
+    return along
+
+
+def _twists(
+    track: Track, features: Sequence[Features], entry: int, shortest: float
+) -> list[tuple[_Twist, ...]]:
+    """Return the twists of each device; those of the entry bank the track before it begins.
+
+    ``entry`` counts the devices that come first and lean the track from its entry on; ``shortest`` [m] is a
+    twist at least.
+    """
+    bank, twists = track.bank, []
+    for number, own in enumerate(features):
+        here = []
+        for slope in own.slopes if number >= entry else ():
+            if slope.bank is not None and slope.bank != bank:
+                # by how much the free edge rises or falls
+                edge = track.width * abs(np.sin(slope.bank) - np.sin(bank))
+                here.append(
+                    _Twist(slope.begin, float(max(shortest, edge / np.tan(MAX_EDGE_SLOPE_RAD))), slope.bank)
+                )
+                bank = slope.bank
+        twists.append(tuple(here))
+    return twists
+
+
+def _placed_devices(
+    chain: Sequence[Device],
+    features: Sequence[Features],
+    twists: Sequence[tuple[_Twist, ...]],
+    start: float,
+    size: float,
+    radius: float,
+) -> list[PlacedDevice]:
+    """Return the devices one behind the other, each with its way; openings as the device alone has them."""
+    placed, level = [], 0.0
+    for device, own, some in zip(chain, features, twists):
+        begin = start + CLEAR_SIZES * size
+        end = max([clear_behind(begin, own, size), *(begin + twist.begin + twist.length for twist in some)])
+        openings = tuple(opening.shifted(begin) for opening in own.openings)
+        placed.append(PlacedDevice(device, start, end, begin, level, own, openings, radius))
+        level -= 0.0 if placed[-1].drop is None else placed[-1].drop.height
+        start = end
+    return placed
+
+
+def _ledges(placed: Sequence[PlacedDevice]) -> tuple[Ledge, ...]:
+    """Return the ledges along the wall."""
+    return tuple(
+        Ledge(item.label, item.begin, item.begin + item.drop.length, item.drop, item.radius)
+        for item in placed
+        if item.drop is not None and item.drop.aside > 0.0
+    )
+
+
+def _grooves(placed: Sequence[PlacedDevice], entry: int, opens: float) -> tuple[GrooveStretch, ...]:
+    """Return the stretches in which the wall leans back; at the entry from the first of the track on."""
+    grooves: list[GrooveStretch] = []
+    for number, item in enumerate(placed):
+        for slope in item.features.slopes:
+            at = -np.inf if number < entry else item.begin + slope.begin
+            if slope.wall is not None and grooves and np.isinf(grooves[-1].end):
+                grooves[-1] = replace(grooves[-1], end=at)
+            if slope.wall:
+                grooves.append(GrooveStretch(at, np.inf, slope.wall, opens))
+    return tuple(groove for groove in grooves if groove.end > groove.start)
 
 
 def continue_slots(
@@ -363,7 +494,39 @@ def continue_slots(
     return continued[::-1]
 
 
-def bend_ring(ring: Points, radius: float, shift: float = 0.0, chord: float = DRAWN_CHORD_M) -> Points:
+def clear_behind(begin: float, features: Features, size: float) -> float:
+    """Return where a part is clear of a device behind it, and has settled where that drops it.
+
+    Parameters
+    ----------
+    begin : float [m]
+        Where its features begin.
+    features : Features
+    size : float [m]
+        Of the part, as ``size_of_part`` returns it.
+
+    Returns
+    -------
+    float [m]
+    """
+    return begin + features.length + (features.settles + CLEAR_SIZES) * size
+
+
+def size_of_part(orientations: Sequence[Orientation]) -> float:
+    """Return the size of a part: the greatest length of its orientations, along the track or across it.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    float [m]
+    """
+    return max(size_of(orientation) for orientation in orientations)
+
+
+def bend_ring(ring: Points, radius: float, shift: float = 0.0, sagitta: float = DRAWN_SAGITTA_M) -> Points:
     """Return a ring as it lies in the bowl, its sides along the wall bent to arcs.
 
     It is measured from the point where the wall is tangent to X, the bowl's axis at (0, radius).
@@ -376,7 +539,7 @@ def bend_ring(ring: Points, radius: float, shift: float = 0.0, chord: float = DR
         Of the wall.
     shift : float [rad], optional
         By which it is turned ahead.
-    chord : float [m], optional
+    sagitta : float [m], optional
         By which an arc may be seen too flat.
 
     Returns
@@ -384,7 +547,7 @@ def bend_ring(ring: Points, radius: float, shift: float = 0.0, chord: float = DR
     (N, 2) float [m]
     """
     border = shapely.linestrings(np.vstack([ring, ring[:1]]))
-    fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(8.0 * radius * chord)))[:-1]
+    fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(8.0 * radius * sagitta)))[:-1]
     theta, r = fine[:, 0] / radius + shift, radius - fine[:, 1]
     return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
 
@@ -408,32 +571,3 @@ def track_at_entry(track: Track, devices: Sequence[Device], orientations: Sequen
         for slope in device.features(track, orientations).slopes:
             track = track if slope.bank is None else replace(track, bank=slope.bank)
     return track
-
-
-def walls_of(tooled: TooledTrack) -> list[tuple[float, float, float]]:
-    """Return stretches of the wall as the track's own plane has it.
-
-    It leans back by a groove's lean from upright, less the bank of the track: beside a banked track an
-    upright wall stands over it.
-
-    Parameters
-    ----------
-    tooled : TooledTrack
-
-    Returns
-    -------
-    list of (float [m], float [m], float [rad])
-        From, to and lean.
-    """
-    length = tooled.length
-    changes = {0.0, length}
-    for groove in tooled.grooves:
-        changes |= {at for at in (groove.start, groove.end) if 0.0 < at < length}
-    changes |= {at for at, _, _ in tooled.banks if at < length}
-    walls = []
-    for begin, end in itertools.pairwise(sorted(changes)):
-        middle = 0.5 * (begin + end)
-        wall = sum(groove.lean for groove in tooled.grooves if groove.start < middle < groove.end)
-        bank = [tooled.track.bank, *(bank for at, _, bank in tooled.banks if at < middle)][-1]
-        walls.append((begin, end, float(wall - bank)))
-    return walls

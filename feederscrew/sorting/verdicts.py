@@ -582,6 +582,11 @@ class DeviceEncounter:
                 return k
         raise ValueError(f"{own.name} is not one of the orientations")
 
+    @property
+    def mouth(self) -> float:
+        """Return how far [m] its weight is from the rim that it stands on: of a cup mouth down; else 0."""
+        return self.orientation.foot.mouth
+
     def passing(self) -> Verdict:
         """Return the verdict of a device that does nothing."""
         return Verdict(1.0, float("nan"))

@@ -25,6 +25,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.trials import part_poses, runs, staging
 from feederscrew.trials.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trials.part_poses import State, States
@@ -141,13 +142,14 @@ def course(
     part_in_bowl = runs.setting(solid, length, bowl)
     # the bare track, then each device that is no measured yield
     size = max(orientation.length for orientation in orientations)
-    slopes = staging.entry_slopes(devices, bowl.track, orientations)
+    slopes = staging.slopes_before(staging.entry_slopes(devices, bowl.track, orientations))
     slot: tuple[float, ...] = ()
     chain = [staging.stage_bare_track(bowl.track, orientations, RUN_UP * size, slopes)]
-    for device in [device for device in devices if device.action.has_place]:
-        features = device.features(bowl.track, orientations)
-        chain.append(staging.stage_device(device, bowl.track, orientations, slopes=slopes, slot=slot))
-        slopes, slot = (*slopes, *features.slopes), features.slot or slot
+    tooled = lay_out(bowl.track, devices, orientations, whole=True)
+    for number, placed in enumerate(tooled.devices):
+        chain.append(staging.stage_placed(tooled, number, bowl.track, orientations, slopes, slot))
+        slopes = (*slopes, *staging.slopes_before(placed.features.slopes))
+        slot = placed.features.slot or slot
     run.begin()
     if sent.on_track is not None:
         states, times, entries = sent.on_track
@@ -234,7 +236,7 @@ def course(
 def lead_on(states: States, station: Stage, begin: float, part_in_bowl: runs.BowlOfPart) -> States:
     """Return the states of parts behind a station, on the track at the begin of the next one.
 
-    What went down to a lower track goes on at its level; one that begins beside a ledge leads to the wall.
+    What went down to a lower track goes on at its level, as far from the wall.
 
     Parameters
     ----------
@@ -254,11 +256,11 @@ def lead_on(states: States, station: Stage, begin: float, part_in_bowl: runs.Bow
         states, begin / length - part_poses.ways_along_wall(states, radius), radius
     )
     if station.drop > 0.0:
-        down = states[:, 2] < 0.0 if station.aside > 0.0 else np.ones(len(states), dtype=bool)
-        states[down, 2] += station.drop / length
-        out = states[:, :2] - [0.0, radius]
-        out *= 1.0 + down[:, None] * station.aside / length / vectors.length(out)[:, None]
-        states[:, :2] = out + [0.0, radius]
+        states[:, 2] += station.drop / length
+        if station.aside != 0.0:
+            out = states[:, :2] - [0.0, radius]
+            out *= 1.0 - station.aside / length / vectors.length(out)[:, None]
+            states[:, :2] = out + [0.0, radius]
     return states
 
 
@@ -484,7 +486,7 @@ def landing(
     flight, fastest = np.sqrt(2.0 * thrown.fall[1]), thrown.speed[1]
     room = fastest * flight + fastest**2 / (2.0 * max(bowl.friction.kinetic, 0.05)) + solid.radius
     room = min(length * room, MAX_THROW_SHARE * 2.0 * np.pi * bowl.track.radius)
-    slopes = staging.entry_slopes(bowl.devices, bowl.track, orientations)
+    slopes = staging.slopes_before(staging.entry_slopes(bowl.devices, bowl.track, orientations))
     stage = replace(staging.stage_bare_track(bowl.track, orientations, 2.0 * room, slopes), exit=np.inf)
     seconds = part_in_bowl.unit * (flight + EXACT_PACE.settling)
     limits = runs.RideLimits(seconds, 2.0 * seconds, 0.0, np.inf, interval=seconds, places=1)

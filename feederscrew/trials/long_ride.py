@@ -146,7 +146,7 @@ def ride_of_track(
     )
     count = max(round(distance / SEGMENT_M), 1)
     # what follows parts along a segment of bare track
-    slopes = staging.entry_slopes(bowl.devices, bowl.track, orientations)
+    slopes = staging.slopes_before(staging.entry_slopes(bowl.devices, bowl.track, orientations))
     station = staging.stage_bare_track(bowl.track, orientations, distance / count, slopes)
     velocity = answer.answer(bowl).velocity
     speed = max(velocity if np.isfinite(velocity) else 0.0, course.LEAST_SPEED_M_S)

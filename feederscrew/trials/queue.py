@@ -21,6 +21,7 @@ from feederscrew.running import RunSettings
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.sorting.tooled_track import lay_out, size_of_part
 from feederscrew.trials import course, part_poses, runs, staging
 from feederscrew.trials.kernel import travel, workspace
 from feederscrew.trials.kernel.steps import BEHIND, BELOW
@@ -74,34 +75,29 @@ def lay_out_track(
     -------
     CrowdedTrack
     """
-    track, place, level = bowl.track, 0.0, 0.0
-    placed, blows, windows, levels = [], [], [], [0.0]
-    size = staging.size_of(orientations)
-    for device in [device for device in devices if device.action.has_place]:
-        features, start = device.features(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
-        last = staging.exit_place(features, start, size)
-        placed.append((features, start, last))
-        blows.append((features, start, level))
-        level -= 0.0 if features.drop is None else features.drop.height
-        windows.append((place, last))
-        levels.append(level)
-        place = last
-    if placed:  # a ledge goes on behind the outlet
-        placed[-1] = (*placed[-1][:2], place + TAIL * size)
+    track, size = bowl.track, size_of_part(orientations)
+    tooled = lay_out(track, devices, orientations, whole=True)
+    end = tooled.length + TAIL * size
+    placed = staging.place_all(tooled, end, size)
+    levels = [0.0]
+    for item in placed:
+        drop = item.features.drop
+        levels.append(levels[-1] - (0.0 if drop is None else drop.height * float(np.cos(item.bank))))
     # They come apart on a steeper way.
     first = [replace(slope, climb=None) for slope in staging.entry_slopes(devices, track, orientations)]
-    blown = staging.place_air(blows, track, orientations)
+    blown = staging.place_air(placed, track, orientations)
     stage = Stage(
         staging.BARE_TRACK,
-        *staging.build_track(placed, track, size, (-room - size, place + TAIL * size)),
+        *staging.build_track(placed, track, size, (-room - size, end)),
         begin=-room,
         exit=np.inf,
         air=replace(blown, slopes=(*staging.slopes_before(first), *blown.slopes)),
         size=size,
         width=track.extent,
     )
+    windows = [(item.start, item.end) for item in tooled.devices]
     spans = check.frozen(np.reshape(windows, (-1, 2)).astype(float))
-    return CrowdedTrack(stage, -room, spans, check.frozen(np.array(levels)), place)
+    return CrowdedTrack(stage, -room, spans, check.frozen(np.array(levels)), tooled.length)
 
 
 Reaches = dict[int, list[float]]  # [L] by part: rear and front along the wall, and its lowest point
@@ -563,6 +559,9 @@ class PartsQueue:
                 if outcome is QueueOutcome.JAMS:
                     self.counts.note_jam(self.entry_rows[n], int(devices[0]) + 1)
                     self._take_off(n)
+                    for other, (_, end, _) in reach.items():  # what it held up has not stood by itself
+                        if end <= front:
+                            self.since[other] = self.time
 
     def _devices_at(self, front: float) -> Ints:
         """The devices (K,) at whose stretch a part stands, by the place of its front [L]."""

@@ -5,7 +5,7 @@ With them the jets of air and the lean of the track, as the kernel takes them.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -15,18 +15,34 @@ from feederscrew.bowl.record import Track
 from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.geometry.polygons import cross
 from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.features import Blade, Features, Sensor, Slope, box_ring
+from feederscrew.sorting.devices.features import (
+    LONGEST_RAMP_SINE,
+    Blade,
+    Drop,
+    Features,
+    Sensor,
+    Slope,
+    TrackOpening,
+    box_ring,
+)
 from feederscrew.sorting.devices.openings import beyond_borders
 from feederscrew.sorting.fates import leading_devices
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M, Orientation
-from feederscrew.sorting.tooled_track import bend_ring, continue_slots
+from feederscrew.sorting.tooled_track import (
+    CLEAR_SIZES,
+    PlacedDevice,
+    TooledTrack,
+    bend_ring,
+    clear_behind,
+    lay_out,
+    size_of_part,
+)
 from feederscrew.trials.kernel.workspace import BORDER, JET, PLATE_RECORD, Rows
 
 DRAWN_BEHIND_WALL = 0.5  # of the part's size: how far the track is drawn behind the wall
 MAX_SAGITTA_M = 5e-6  # by which an arc may be seen too flat
 SMOOTHING_M = 2e-6  # corners of a border that stand out by less are left out
 CORNER_ANGLE = 1e-4  # [rad] a border that turns by less has no corner
-SPARE_WAY = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
 # of the part's size
 DRAWN_BEFORE = 1.2  # track before where they begin
 DRAWN_AFTER = 0.8  # track behind their end
@@ -34,15 +50,36 @@ BEYOND_OPENINGS_M = 10.0  # beyond any opening
 TRACK_DEPTH_M = 4e-3  # of the track: deeper down its sides hold nothing
 TRACK_FRICTION = np.nan  # friction of a plate that has that of the track
 # of the part's size
-BLEND = 0.25  # way over which a lean of track becomes the next
+BLEND = 0.25  # way over which a climb, or a bank of the entry, becomes the next
 OPENS = 1.0  # way over which a lean of wall becomes the next
 
-# A slope where it begins: [m] place, [rad] climb, bank and lean of the wall from there.
-PlacedSlope = tuple[float, float | None, float | None, float | None]
 # A plate: frame (4, 3), depth [m], friction [1], and borders (B, 10).
 Plate = tuple[Floats, float, float, Floats]
 
 BARE_TRACK = Device("")
+
+
+class PlacedSlope(NamedTuple):
+    """A slope where it begins; None where it leaves something as it was."""
+
+    place: float  # [m]
+    climb: float | None = None  # [rad]
+    bank: float | None = None  # [rad]
+    wall: float | None = None  # [rad] lean of the wall
+    over: float | None = None  # [m] along the wall, up to this lean; None: by the part's size
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """A device on the track that is tried, in the plane of the track before all drops."""
+
+    features: Features
+    openings: tuple[TrackOpening, ...]  # placed along the wall, slots that go on as they are made
+    begin: float  # [m] along the wall
+    last: float  # [m] where the track above its step is drawn to, at most
+    bank: float = 0.0  # [rad] of the track there
+    climb: float = 0.0  # [rad]
+    over: tuple[float | None, ...] = ()  # [m] of each of its slopes, over which the bank changes
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,48 +155,59 @@ class Stage:
     exit: float  # [m] where it has passed
     cut: tuple[float, float] = (np.inf, -np.inf)  # [m] along the wall, where the device begins and ends
     drop: float = 0.0  # [m] by which the track lies lower there
-    aside: float = 0.0  # [m] from the wall, where a track that lies lower begins
+    aside: float = 0.0  # [m] by which that lies further out as well
     leaves_hanging: bool = False  # whether parts leave hanging, their centres of mass below the track
     air: Air = STILL_AIR  # what blows there, and how the track leans
     size: float = 0.0  # [m] of the part, the greatest length of its orientations
     width: float = np.inf  # [m] of the track
 
 
-def size_of(orientations: Sequence[Orientation]) -> float:
-    """Return the greatest length of orientations, in the plane of the track or across it.
-
-    It is the diagonal of an orientation's length and the greater of its width and height.
-
-    Parameters
-    ----------
-    orientations : sequence of Orientation
-
-    Returns
-    -------
-    float [m]
-    """
-    return max(np.hypot(own.length, max(own.width, own.height)) for own in orientations)
-
-
 def stage_device(
     device: Device,
     track: Track,
     orientations: Sequence[Orientation],
-    start: float = 0.0,
-    slopes: Sequence[Slope] = (),
+    slopes: Sequence[PlacedSlope] = (),
     slot: tuple[float, ...] = (),
 ) -> Stage:
-    """Return one device with enough track before and behind it; a measured yield is bare track.
+    """Return one device alone on a track, with enough track before and behind it.
 
     Parameters
     ----------
     device : Device
+        One that has a place.
     track : Track
     orientations : sequence of Orientation
         The longest sets how long a device is that goes on along the track.
-    start : float [m], optional
-        Where the device begins, along the wall.
-    slopes : sequence of Slope, optional
+    slopes, slot : optional
+        As of ``stage_placed``.
+
+    Returns
+    -------
+    Stage
+    """
+    tooled = lay_out(track, [device], orientations, whole=True)
+    return stage_placed(tooled, 0, track, orientations, slopes, slot)
+
+
+def stage_placed(
+    tooled: TooledTrack,
+    number: int,
+    track: Track,
+    orientations: Sequence[Orientation],
+    slopes: Sequence[PlacedSlope] = (),
+    slot: tuple[float, ...] = (),
+) -> Stage:
+    """Return one device of a tooled track by itself, its features from the place 0 on.
+
+    Parameters
+    ----------
+    tooled : TooledTrack
+        Of the whole width.
+    number : int
+        Of the device, from 0.
+    track : Track
+    orientations : sequence of Orientation
+    slopes : sequence of PlacedSlope, optional
         Of the devices before it: they go on.
     slot : tuple of float [m], optional
         Of the rails before it: two distances from the wall. What hangs there goes on hanging up to other
@@ -169,19 +217,29 @@ def stage_device(
     -------
     Stage
     """
-    features, size = device.features(track, orientations), size_of(orientations)
-    blows = place_air([(features, start, 0.0)], track, orientations)
-    blows = replace(blows, slopes=(*slopes_before(slopes), *blows.slopes))
-    begin, beyond = start - (0.5 + SPARE_WAY) * size, exit_place(features, start, size)
+    placed, size = tooled.devices[number], size_of_part(orientations)
+    features, over = placed.features, bank_lengths(tooled, placed)
+    begin = -CLEAR_SIZES * size
+    beyond = max([clear_behind(0.0, features, size), *(way for way in over if way is not None)])
     ends = begin - DRAWN_BEFORE * size, beyond + DRAWN_AFTER * size
+    far = ends[1] + DRAWN_BEHIND_WALL * size
+    openings = tuple(
+        opening.extended(far) if opening.hangs and opening.end < ends[1] else opening
+        for opening in features.openings
+    )
+    bank = float(tooled.bank_at(placed.begin))
+    here = Placement(features, openings, 0.0, ends[1], bank, float(tooled.climb_at(placed.begin)), over)
+    blows = place_air([here], track, orientations)
+    blows = replace(blows, slopes=(*slopes, *blows.slopes))
+    height = 0.0 if placed.drop is None else placed.drop.height
     return Stage(
-        device,
-        *build_track([(features, start, ends[1])], track, size, ends, slot),
+        placed.device,
+        *build_track([here], track, size, ends, slot),
         begin=begin,
         exit=beyond,
-        cut=(start, start + features.length),
-        drop=0.0 if features.drop is None else features.drop.height,
-        aside=0.0 if features.drop is None else features.drop.aside,
+        cut=(0.0, features.length),
+        drop=height * float(np.cos(bank)),
+        aside=height * float(np.sin(bank)),
         leaves_hanging=features.hangs or bool(slot),
         air=blows,
         size=size,
@@ -189,8 +247,67 @@ def stage_device(
     )
 
 
+def place_all(tooled: TooledTrack, end: float, size: float) -> list[Placement]:
+    """Return every device of a tooled track as parts meet them one after the other.
+
+    Parameters
+    ----------
+    tooled : TooledTrack
+        Of the whole width.
+    end : float [m]
+        To which the track goes on, with the slot that is open at its end.
+    size : float [m]
+        Of the part, as ``size_of_part`` returns it.
+
+    Returns
+    -------
+    list of Placement
+    """
+    opened = tooled.opened_to(end + DRAWN_BEHIND_WALL * size)
+
+    def as_tried(placed: PlacedDevice) -> tuple[TrackOpening, ...]:
+        """Return openings; the last slot as rails alone have it, where that reaches beyond what is drawn."""
+        alone = (opening.shifted(placed.begin) for opening in placed.features.openings)
+        return tuple(
+            own if own.hangs and not opening.runs_on and own.end >= end else opening
+            for own, opening in zip(alone, placed.openings)
+        )
+
+    return [
+        Placement(
+            placed.features,
+            as_tried(placed),
+            placed.begin,
+            end if placed.end == tooled.length else placed.end,
+            float(tooled.bank_at(placed.begin)),
+            float(tooled.climb_at(placed.begin)),
+            bank_lengths(tooled, placed),
+        )
+        for placed in opened.devices
+    ]
+
+
+def bank_lengths(tooled: TooledTrack, placed: PlacedDevice) -> tuple[float | None, ...]:
+    """Return over which length of the wall each slope of a device changes the bank.
+
+    Parameters
+    ----------
+    tooled : TooledTrack
+    placed : PlacedDevice
+
+    Returns
+    -------
+    tuple of float [m] or None
+        None where it leaves the bank, leans the wall, or begins at the track's entry.
+    """
+    twists = {start: end - start for start, end, _ in tooled.banks}
+    return tuple(
+        None if slope.wall else twists.get(placed.begin + slope.begin) for slope in placed.features.slopes
+    )
+
+
 def stage_bare_track(
-    track: Track, orientations: Sequence[Orientation], length: float, slopes: Sequence[Slope] = ()
+    track: Track, orientations: Sequence[Orientation], length: float, slopes: Sequence[PlacedSlope] = ()
 ) -> Stage:
     """Return a stretch of the bare track, from the place 0 on.
 
@@ -201,16 +318,16 @@ def stage_bare_track(
         The longest sets how much track is drawn before and behind.
     length : float [m]
         Of the stretch.
-    slopes : sequence of Slope, optional
-        As for ``stage_device``.
+    slopes : sequence of PlacedSlope, optional
+        As for ``stage_placed``.
 
     Returns
     -------
     Stage
     """
-    size = size_of(orientations)
+    size = size_of_part(orientations)
     bare = build_track((), track, size, (-DRAWN_BEFORE * size, length + DRAWN_AFTER * size))
-    blows = replace(STILL_AIR, slopes=slopes_before(slopes))
+    blows = replace(STILL_AIR, slopes=tuple(slopes))
     return Stage(BARE_TRACK, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
 
 
@@ -245,32 +362,12 @@ def slopes_before(slopes: Sequence[Slope]) -> tuple[PlacedSlope, ...]:
     Returns
     -------
     tuple of PlacedSlope
-        Place [m], climb, bank and lean of the wall [rad], None where a slope leaves one as it was.
     """
-    return tuple((-BEYOND_OPENINGS_M, slope.climb, slope.bank, slope.wall) for slope in slopes)
-
-
-def exit_place(features: Features, start: float, size: float) -> float:
-    """Return the place along the wall at which a centre of mass has passed a device.
-
-    Parameters
-    ----------
-    features : Features
-        Of the device.
-    start : float [m]
-        Where it begins.
-    size : float [m]
-        Of the part, as ``size_of`` returns it.
-
-    Returns
-    -------
-    float [m]
-    """
-    return start + features.length + (features.settles + 0.5 + SPARE_WAY) * size
+    return tuple(PlacedSlope(-BEYOND_OPENINGS_M, slope.climb, slope.bank, slope.wall) for slope in slopes)
 
 
 def build_track(
-    placements: Sequence[tuple[Features, float, float]],
+    placements: Sequence[Placement],
     track: Track,
     size: float,
     ends: tuple[float, float],
@@ -278,13 +375,15 @@ def build_track(
 ) -> tuple[Rows, Rows]:
     """Return plates and borders of a stretch of track with its devices.
 
+    A drop is upright: on a banked track what is lower lies further out as well, as the wall does there.
+
     Parameters
     ----------
-    placements : sequence of (Features, float, float) [m]
-        The devices in the order parts meet them: where each begins, and where the track above its drop ends.
+    placements : sequence of Placement
+        The devices in the order parts meet them.
     track : Track
     size : float [m]
-        Of the part, as ``size_of`` returns it.
+        Of the part, as ``size_of_part`` returns it.
     ends : (float, float) [m]
         The stretch, along the wall.
     slot : tuple of float [m], optional
@@ -297,28 +396,31 @@ def build_track(
     borders : (B,) record
         ``trials.kernel.workspace.BORDER`` [m], [1].
     """
-    level, first, holes = 0.0, ends[0], []
+    level, aside, first, holes = 0.0, 0.0, ends[0], []
     plates: list[Plate] = []
-    blades: list[Plate] = []
+    raised: list[Plate] = []  # blades and ramps
     behind = DRAWN_BEHIND_WALL * size
-    cuts = [[opening.shifted(start) for opening in item.openings] for item, start, _ in placements]
-    openings = continue_slots(cuts, ends[1] + behind, SMOOTHING_M, enough=ends[1])
-    slots = [opening.ring for some in openings for opening in some if opening.hangs]
+    slots = [opening.ring for item in placements for opening in item.openings if opening.hangs]
     if slot:  # between the rails before them, up to the first of their own
         until = min((ring[:, 0].min() + SMOOTHING_M for ring in slots), default=ends[1] + behind)
         slots.append(box_ring(ends[0] - behind, until, *slot))
-    for (item, start, last), some in zip(placements, openings):
-        holes += [opening.ring for opening in some if not opening.hangs]
-        blades += [_blade(blade, track, start, size, level) for blade in item.blades]
-        if item.drop is not None and item.drop.height > 0.0:
-            holes.append(item.drop.beside(track.extent) + [start, 0.0])
-            depth = item.drop.height + TRACK_DEPTH_M
-            plates.append(_floor([*holes, *slots], track, size, ends, (first, last), level, depth))
-            level, first, holes = level - item.drop.height, start - TRACK_DEPTH_M, []
-    plates.append(_floor([*holes, *slots], track, size, ends, (first, ends[1]), level))
+    for item in placements:
+        holes += [opening.ring for opening in item.openings if not opening.hangs]
+        raised += [_blade(blade, track, item.begin, size, level, aside) for blade in item.features.blades]
+        drop = item.features.drop
+        if drop is not None and drop.height > 0.0:
+            holes.append(drop.beside(track.extent) + [item.begin, 0.0])
+            last = item.last if drop.aside <= 0.0 else item.begin + drop.length
+            depth = drop.height + TRACK_DEPTH_M
+            plates.append(_floor([*holes, *slots], track, size, ends, (first, last), (level, aside), depth))
+            lower = drop.height * float(np.cos(item.bank)), drop.height * float(np.sin(item.bank))
+            if drop.aside > 0.0:
+                raised.append(_ramp(drop, (item.bank, item.climb), track, size, last, level, aside))
+            level, aside, first, holes = level - lower[0], aside - lower[1], item.begin - TRACK_DEPTH_M, []
+    plates.append(_floor([*holes, *slots], track, size, ends, (first, ends[1]), (level, aside)))
     # All as records, the plates with boxes around their borders.
     rows, borders, count = [], [], 0
-    for frame, depth, friction, own in [*plates, *blades]:
+    for frame, depth, friction, own in [*plates, *raised]:
         box = [end for k in (0, 1) for end in (own[:, k:4:2].min(), own[:, k:4:2].max())]
         rows.append((*frame.ravel(), depth, CUT_BORDER_RADIUS_M, count, count + len(own), friction, *box))
         borders += [(*row, 0.0, 0.0) for row in own]
@@ -332,11 +434,15 @@ def _floor(
     size: float,
     ends: tuple[float, float],
     span: tuple[float, float],
-    level: float,
+    lies: tuple[float, float],
     depth: float = TRACK_DEPTH_M,
 ) -> Plate:
-    """A level surface: a sector about the bowl's axis between two places, without the holes."""
+    """A level surface: a sector about the bowl's axis between two places, without the holes.
+
+    ``lies`` [m] is its level, and where the wall is there: distances from the wall count from that.
+    """
     behind, width, radius = DRAWN_BEHIND_WALL * size, track.extent, track.radius
+    level, aside = lies
     first, last = span
     length = last - first
     # At lengths along the wall and two distances from it; nothing comes behind the wall.
@@ -344,16 +450,15 @@ def _floor(
     fine = np.linspace(first, last, int(length / np.sqrt(8.0 * radius * MAX_SAGITTA_M)) + 2)[::-1]
     ring = [
         np.column_stack([off * np.sin(places / radius), radius - off * np.cos(places / radius)])
-        for places, off in ((coarse, radius + behind), (fine, radius - width))
+        for places, off in ((coarse, radius + behind - aside), (fine, radius - width - aside))
     ]
     area = shapely.Polygon(np.vstack(ring))
     for outline in holes:
         if outline[:, 0].min() >= last + behind:  # of a device further on, on a lower track
             continue
         taken = np.column_stack([np.minimum(outline[:, 0], last + behind), outline[:, 1]])
-        bent = bend_ring(
-            np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind)), radius, chord=MAX_SAGITTA_M
-        )
+        beyond = np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind))
+        bent = bend_ring(beyond + [0.0, aside], radius, sagitta=MAX_SAGITTA_M)
         area = area.difference(shapely.make_valid(shapely.Polygon(bent)))
     frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     near = 1e-6 * radius
@@ -362,12 +467,55 @@ def _floor(
         """Tell whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
         off = [np.hypot(x, radius - y) for x, y in (a, b)]
         place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
-        return bool(min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near)
+        is_behind = min(off) > radius - aside + near
+        return bool(is_behind or max(place) < ends[0] + near or min(place) > ends[1] - near)
 
     return frame, depth, TRACK_FRICTION, _borders(area, ends_drawing)
 
 
-def _blade(blade: Blade, track: Track, start: float, size: float, level: float) -> Plate:
+def _ramp(
+    drop: Drop,
+    leans: tuple[float, float],
+    track: Track,
+    size: float,
+    begin: float,
+    level: float,
+    aside: float,
+) -> Plate:
+    """The flat ramp on which a ledge comes down from a place on; ``leans`` [rad] are bank and climb there."""
+    behind, radius = DRAWN_BEHIND_WALL * size, track.radius - aside
+    theta, inner = begin / track.radius, radius - drop.aside
+    # as the track's plane sees it: in the bowl it falls upright
+    fall, (bank, climb) = np.tan(drop.ramp), leans
+    slope = np.arctan2(fall * np.cos(bank) * np.cos(climb), 1.0 - fall * np.sin(climb) * np.cos(climb))
+    far = drop.height * np.cos(bank) / np.tan(slope)
+    ahead = np.array([np.cos(theta), np.sin(theta), 0.0])
+    inwards = np.array([-ahead[1], ahead[0], 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    c, s = np.cos(slope), np.sin(slope)
+    origin = np.array([0.0, track.radius, level]) - radius * inwards
+    frame = np.array([origin, c * ahead - s * up, inwards, s * ahead + c * up])
+    # seen from above, ahead and inwards: between the wall and the ledge's edge
+    turn = np.arcsin(min(far / inner, LONGEST_RAMP_SINE)) + 2.0 * behind / inner
+    turns = np.linspace(-2.0 * behind / inner, turn, int(turn / np.sqrt(8.0 * MAX_SAGITTA_M / radius)) + 3)
+    rings = [
+        np.column_stack([r * np.sin(some), radius - r * np.cos(some)])
+        for r, some in ((radius + behind, turns), (inner, turns[::-1]))
+    ]
+    area = shapely.Polygon(np.vstack(rings)).intersection(shapely.box(0.0, -1.0, far, 1.0))
+    solid = shapely.transform(area, lambda points: points / [c, 1.0])
+    ends, near = (0.0, far / c), 1e-6 * radius
+
+    def ends_drawing(a: Floats, b: Floats) -> bool:
+        """Tell whether a border from a (2,) to b (2,) [m] joins another plate, or lies behind the wall."""
+        along = any(max(abs(a[0] - end), abs(b[0] - end)) < near for end in ends)
+        off = [np.hypot(c * x, radius - y) for x, y in (a, b)]
+        return bool(along or min(off) > radius + near)
+
+    return frame, TRACK_DEPTH_M, TRACK_FRICTION, _borders(solid, ends_drawing)
+
+
+def _blade(blade: Blade, track: Track, start: float, size: float, level: float, aside: float = 0.0) -> Plate:
     """A blade as a plate seen by the part that arrives: along its face from the foot, and upwards.
 
     It goes on into wall and track where it reaches them: a corner that touches either does not slip past it.
@@ -377,7 +525,7 @@ def _blade(blade: Blade, track: Track, start: float, size: float, level: float) 
     theta = (start + blade.foot[0]) / track.radius
     ahead = np.array([np.cos(theta), np.sin(theta), 0.0])
     inwards = np.array([-ahead[1], ahead[0], 0.0])
-    origin = np.array([0.0, track.radius, level]) - (track.radius - blade.foot[1]) * inwards
+    origin = np.array([0.0, track.radius, level]) - (track.radius - blade.foot[1] - aside) * inwards
     along = np.cos(blade.heading) * ahead + np.sin(blade.heading) * inwards
     front = np.array([-along[1], along[0], 0.0])  # against the part that arrives
     frame = np.array([origin, along, [0.0, 0.0, 1.0], front])
@@ -409,15 +557,13 @@ def _borders(area: Any, is_end: Callable[..., bool]) -> Floats:
     return np.array(borders).reshape(-1, 10)
 
 
-def place_air(
-    placements: Sequence[tuple[Features, float, float]], track: Track, orientations: Sequence[Orientation]
-) -> Air:
+def place_air(placements: Sequence[Placement], track: Track, orientations: Sequence[Orientation]) -> Air:
     """Return the jets, sensors and slopes of devices along a track, in the bowl's frame.
 
     Parameters
     ----------
-    placements : sequence of (Features, float, float) [m]
-        The devices, where each begins along the wall, and the level of the track there.
+    placements : sequence of Placement
+        The devices in the order parts meet them.
     track : Track
     orientations : sequence of Orientation
         Of one part: its mass makes an acceleration of a jet's thrust.
@@ -431,11 +577,12 @@ def place_air(
     watches: list[Watch] = []
     slopes: list[PlacedSlope] = []
     mass = orientations[0].posture.mass
-    for features, start, level in placements:
-        first = len(rows)
+    level, aside = 0.0, 0.0
+    for item in placements:
+        features, start, first = item.features, item.begin, len(rows)
         for jet in features.jets:  # in the bowl's frame; one that a sensor sets off does not blow
             x, y, z = jet.at
-            theta, off = (start + x) / track.radius, track.radius - y
+            theta, off = (start + x) / track.radius, track.radius - y - aside
             c, s, (a, b, up) = np.cos(theta), np.sin(theta), jet.towards
             size = np.sqrt(a * a + b * b + up * up)
             towards = (a * c - b * s) / size, (a * s + b * c) / size, up / size
@@ -446,7 +593,11 @@ def place_air(
             seconds = max((jet.seconds for jet in features.jets), default=0.0)
             place, nozzles = start + features.sensor.at, start + features.jets[0].at[0]
             watches.append(Watch(place, nozzles, features.sensor, slice(first, len(rows)), seconds))
-        slopes += [(start + slope.begin, slope.climb, slope.bank, slope.wall) for slope in features.slopes]
+        for slope, over in zip(features.slopes, item.over or (None,) * len(features.slopes)):
+            slopes.append(PlacedSlope(start + slope.begin, slope.climb, slope.bank, slope.wall, over))
+        if features.drop is not None:
+            level -= features.drop.height * float(np.cos(item.bank))
+            aside -= features.drop.height * float(np.sin(item.bank))
     return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
 
 
@@ -488,7 +639,7 @@ def tabulate_leans(
         Before the slopes.
     size : float [m]
         Of the part: over a share of it one lean becomes the next, ``BLEND``, or ``OPENS`` where the wall
-        leans.
+        leans, where a slope does not say over which length.
     length : float [m]
         The unit of length L.
 
@@ -500,11 +651,12 @@ def tabulate_leans(
     """
     here: Any = (climb, bank, 0.0)
     rows = [] if slopes else [(0.0, *here)]
-    for place, *new in sorted(slopes, key=lambda slope: slope[0]):
-        rows.append((place / length, *here))
+    for slope in sorted(slopes, key=lambda slope: slope.place):
+        rows.append((slope.place / length, *here))
+        new = slope.climb, slope.bank, slope.wall
         before, here = here, tuple(old if value is None else value for old, value in zip(here, new))
-        blend = BLEND if here[-1] == before[-1] else OPENS
-        rows.append((place / length + blend * size / length, *here))
+        over = (BLEND if here[-1] == before[-1] else OPENS) * size if slope.over is None else slope.over
+        rows.append((slope.place / length + over / length, *here))
     leans = []
     for place, rise, tilt, wall in rows:
         c, s, off = np.cos(rise), np.sin(rise), tilt - wall

@@ -33,6 +33,7 @@ class View:
     over: Callable  # height [m] -> material there, of what stands on the track
     bores: list  # (s, z, diameter) [m] of nozzles in the wall
     faces: list = ()  # of blades, seen along the track: distance from the wall and height [m]
+    ramp: Callable | None = None  # level [m] -> what of ramps is above it
 
 
 def unbent(area, radius):
@@ -45,26 +46,46 @@ def unbent(area, radius):
     return shapely.make_valid(shapely.transform(shapely.segmentize(area, FINE), laid))
 
 
-def trial(stage, start, track):
-    """A stage of the trial, its device at ``start`` [m]."""
+def trial(stage, start, track, bank):
+    """A stage of the trial, its device at ``start`` [m]; ``bank`` [rad] there."""
     plates = [_plate(stage, row) for row in stage.plates]
-    floors = [one for one in plates if abs(one[1][2, 2]) > 0.5]
+    floors = [one for one in plates if abs(one[1][2, 2]) > 1.0 - 1e-9]
+    ramps = [one for one in plates if 0.5 < abs(one[1][2, 2]) <= 1.0 - 1e-9]
     blades = [one for one in plates if abs(one[1][2, 2]) <= 0.5]
 
     def laid(areas):
         return affinity.translate(unbent(shapely.union_all(areas), track.radius), -start, 0.0)
 
     def floor(level):
-        return laid([ring for origin, _, _, ring in floors if abs(origin[2] - level) < 1e-7])
+        # a drop is upright: what is lower lies further out in the plane of the track, as the wall does
+        rings = [ring for origin, _, _, ring in floors if abs(origin[2] - level * np.cos(bank)) < 1e-7]
+        return affinity.translate(laid(rings), 0.0, -level * np.sin(bank))
+
+    def ramp(level):
+        """What of the ramps is above a level, seen from above."""
+        areas = []
+        for origin, axes, _, ring in ramps:
+            high = ring.intersection(shapely.box(-1.0, -1.0, (level - origin[2]) / axes[0, 2], 1.0))
+            flat = [*axes[0, :2], *axes[1, :2]]
+            areas.append(affinity.affine_transform(high, [flat[0], flat[2], flat[1], flat[3], *origin[:2]]))
+        return laid(areas)
 
     jets = stage.air.jets
     theta = [np.arctan2(j["mouth_x"], track.radius - j["mouth_y"]) for j in jets]
     bores = [(track.radius * t - start, j["mouth_z"], 2.0 * j["radius"]) for t, j in zip(theta, jets)]
     faces = []
     for origin, axes, _, area in blades:
-        inwards = np.array([-origin[0], track.radius - origin[1]]) / track.radius
+        inwards = np.array([-origin[0], track.radius - origin[1]])
+        inwards = inwards / np.hypot(*inwards)
         faces.append(affinity.scale(area, float((axes[0, :2] * inwards).sum()), 1.0, origin=(0.0, 0.0)))
-    return View(floor, lambda height: laid([_slab(one, height) for one in blades]), in_order(bores), faces)
+    return View(
+        floor, lambda height: laid([_slab(one, height) for one in blades]), in_order(bores), faces, ramp
+    )
+
+
+def _plates(height, blades, laid):
+    """What blades are, seen from above, at a height [m]."""
+    return laid([_slab(one, height) for one in blades])
 
 
 def _plate(stage, row):
@@ -91,36 +112,28 @@ def _slab(plate, height):
     return shapely.union_all(rings)
 
 
-def section(tooled, placed, body=None):
-    """A device on the printed section; ``body`` [mm] in place of its mesh."""
-    if body is None:
-        vertices, faces = printed.solid(tooled)
-        body = facets.manifold3d.Manifold(facets.manifold3d.Mesh64(vertices / MM, faces.astype(np.uint64)))
-    radius = tooled.track.radius
+def unrolled_section(tooled):
+    """The printed section, from its mesh, unrolled."""
+    plan = printed.section_plan(tooled)
+    vertices, faces = printed.solid(tooled)
+    # as the bowl has it that it is cut out of
+    turn = 0.5 * np.pi + float(plan.path.angle(plan.first))
+    x, y, z = (vertices - [0.0, tooled.track.radius, 0.0]).T
+    c, s = np.cos(turn), np.sin(turn)
+    placed = np.column_stack([c * x - s * y, s * x + c * y, z])
+    return plan, unroll(plan, mesh(placed, faces))
 
-    def cut(z):
-        face = facets.cut_face(body, 2, placed.level + z)
-        return affinity.translate(unbent(face, radius), -placed.begin, 0.0)
 
-    def laid(points):
-        x, y, z = np.asarray(points).T * MM
-        s, off = radius * np.arctan2(x, radius - y), radius - np.hypot(x, radius - y)
-        return np.column_stack([s, off, z - placed.level]) / MM
-
+def _round_holes(flat, placed, start, bank):
+    """Middles and diameters of round holes in an unrolled wall, beside a device; upright it leans over it."""
     bores = []
-    if placed.features.jets:
-        bores = _round_holes(body.refine_to_length(REFINED).warp_batch(laid), placed)
-    return View(lambda level: cut(level - UNDER), cut, bores)
-
-
-def _round_holes(flat, placed, start=0.0):
-    """Middles and diameters of round holes in an unrolled wall, beside a device."""
-    bores = []
-    for part in shapely.get_parts(facets.cut_face(flat, 1, -WALL_DEPTH)):
-        for ring in part.interiors:
+    for height in sorted({float(bore.height) for bore in placed.features.bores}):
+        face = facets.cut_face(flat, 1, height * np.tan(bank) - WALL_DEPTH)
+        for ring in (ring for part in shapely.get_parts(face) for ring in part.interiors):
             hole = shapely.Polygon(ring)
             s, z = hole.centroid.x - start, hole.centroid.y
-            if 4.0 * np.pi * hole.area / hole.length**2 > 0.95 and placed.start < s < placed.end:
+            is_round = 4.0 * np.pi * hole.area / hole.length**2 > 0.95
+            if is_round and placed.start < s < placed.end and abs(z - height) < 1e-4:
                 bores.append((s - placed.begin, z, np.sqrt(4.0 * hole.area / np.pi)))
     return in_order(bores)
 
@@ -137,13 +150,26 @@ def bowl(flat, plan, placed):
     def cut(z, level=0.0):
         return affinity.translate(facets.cut_face(flat(placed.level + level), 2, z), -start, 0.0)
 
-    bores = _round_holes(flat(placed.level), placed, plan.first) if placed.features.jets else []
+    bank = float(plan.path.bank_at(start))
+    bores = _round_holes(flat(placed.level), placed, plan.first, bank) if placed.features.bores else []
     return View(lambda level: cut(-UNDER, level), cut, bores)
 
 
+def mesh(vertices, faces):
+    """A body [mm] of a mesh [m]."""
+    return facets.manifold3d.Manifold(facets.manifold3d.Mesh64(vertices / MM, faces.astype(np.uint64)))
+
+
 def unrolled(made):
-    """The tooled stretch of a bowl's mesh [mm]: s, y and height square to the track at a level."""
-    plan = made.plan
+    """The tooled stretch of a bowl's mesh [mm], with its gates, unrolled."""
+    whole = facets.unplaced(made)
+    for _, vertices, faces in made.gates:
+        whole = whole + mesh(vertices, faces)
+    return unroll(made.plan, whole)
+
+
+def unroll(plan, whole):
+    """The tooled stretch of a body [mm]: s, y and height square to the track at a level."""
     way, wall = plan.path, plan.material.wall
     level = replace(way, drops=())
     ends = plan.first, way.end - 1e-4
@@ -151,10 +177,6 @@ def unrolled(made):
     ring = np.array([[s, y] for y, s in ((sides[0], ends[0]), (sides[0], ends[1]), (sides[1], ends[1]),
                                          (sides[1], ends[0]))])  # fmt: skip
     low = min(float(way.height(at)) for at in np.linspace(*ends, 99)) - 2.0 * plan.material.plate
-    whole = facets.unplaced(made)
-    for _, vertices, faces in made.gates:
-        gate = facets.manifold3d.Mesh64(vertices / MM, faces.astype(np.uint64))
-        whole = whole + facets.manifold3d.Manifold(gate)
     piece = whole ^ facets.over(way, ring, low, plan.top + 1.0, 0.05 * plan.chord)
 
     def laid(points, below):

@@ -23,7 +23,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.solidbowl import section as printed
 from feederscrew.sorting import device_passages
 from feederscrew.sorting.devices.base import UNSURE, Verdict
-from feederscrew.sorting.devices.features import ShopWork
+from feederscrew.sorting.devices.features import Bore, Features, ShopWork
 from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.orientations import add_travel, orientations
 from feederscrew.sorting.tooled_track import bend_ring, lay_out
@@ -319,8 +319,8 @@ def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(ly
 
 def test_what_is_written_of_two_columns_of_nozzles_stands_in_lines_of_its_own():
     """Texts of a second sensor lay on those of the first, and equal heights were written twice."""
-    jets = [SimpleNamespace(at=(0.01, 0.0, z), radius=1e-3) for z in (2e-3, 6e-3)]
-    devices = [SimpleNamespace(begin=begin, features=SimpleNamespace(jets=jets)) for begin in (0.04, 0.055)]
+    features = Features(mounts=tuple(Bore("nozzle", 0.01, z, 2e-3) for z in (2e-3, 6e-3)))
+    devices = [SimpleNamespace(begin=begin, features=features) for begin in (0.04, 0.055)]
     texts, heights = [], []
     drawing = SimpleNamespace(
         lines=lambda *_: None, circle=lambda *_: None, ordinate=lambda *shown: heights.append(shown),

@@ -50,9 +50,9 @@ def test_it_is_the_one_that_the_bowl_takes_by_itself_and_a_step_less_is_refused(
     made, devices = spaced
     bowl, stream = on_track(made, devices)
     climb = solidbowl.drawable_climb(bowl, PART, stream)
-    assert np.degrees([bowl.track.climb, climb]) == pytest.approx([3.5, 4.0])
+    assert np.degrees([bowl.track.climb, climb]) == pytest.approx([3.5, 4.25])
     assert drawn(tmp_path, bowl.track, None).bowl.track.climb == pytest.approx(climb, abs=1e-12)
-    with pytest.raises(TrackTooLow, match=r"give a track\.climb of at least 4 deg"):
+    with pytest.raises(TrackTooLow, match=r"give a track\.climb of at least 4\.25 deg"):
         drawn(tmp_path, bowl.track, climb - solidbowl.CLIMB_STEP_RAD)
     for chain in ((), devices[1:]):  # a bowl that can be drawn keeps its climb
         bowl, stream = on_track(made, chain)
@@ -63,7 +63,7 @@ class Stop(Exception):
     """Raised where a trial would begin."""
 
 
-@pytest.mark.parametrize(("fixed", "degrees"), [((), 4.0), (("track.climb",), 3.5)])
+@pytest.mark.parametrize(("fixed", "degrees"), [((), 4.25), (("track.climb",), 3.5)])
 def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeypatch, fixed, degrees):
     """Unless the user gave the climb: the trial of 3.5 deg was of a bowl that nobody can draw."""
     made, devices = spaced

@@ -85,15 +85,20 @@ def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
     plan, whole = solid.plan, facets.unplaced(solid)
     (ledge,), ((placed, gap),) = plan.stretch.ledges, plan.stretch.openings
     start, end = plan.first + ledge.start, plan.first + ledge.end
-    assert (ledge.width, ledge.drop) == (6e-3, 9e-3) and end - start == pytest.approx(1.3 * 18e-3)
-    ramp = 9e-3 / np.tan(np.radians(15.0))
+    assert (ledge.drop.aside, ledge.drop.height) == (6e-3, 9e-3) and end - start == pytest.approx(1.3 * 18e-3)
+    # bent down along a line square to the wall, it is flat: it falls by the way ahead of that line
+    ramp = plan.path.radius * np.arcsin(9e-3 / np.tan(np.radians(15.0)) / (plan.path.radius - 6e-3))
+    assert ledge.foot == pytest.approx(ledge.end + ramp, rel=1e-9)
     for s in np.linspace(start - 8e-3, end + ramp + 5e-3, 60):
-        on = 0.0 if s < end else max(-9e-3, -9e-3 * (s - end) / ramp)
-        low = 0.0 if s < start else -9e-3
-        for y, formula in ((1e-3, on), (5.9e-3, on), (6.1e-3, low), (19e-3, low)):
+        turn, low = max((s - end) / plan.path.radius, 0.0), 0.0 if s < start else -9e-3
+        on = [
+            max(-9e-3, -np.tan(np.radians(15.0)) * (plan.path.radius - y) * np.sin(turn))
+            for y in (1e-3, 5.9e-3)
+        ]
+        for y, formula in ((1e-3, on[0]), (5.9e-3, on[1]), (6.1e-3, low), (19e-3, low)):
             place = [*plan.path.plan(s, y), np.tan(own.climb) * s + 4e-3]
             assert facets.below(whole, place) - np.tan(own.climb) * s == pytest.approx(formula, abs=NEAR)
-    assert placed.label == "gap " and gap.begin > ledge.end + ramp
+    assert placed.label == "gap " and gap.begin > ledge.foot
     assert plan.path.drops == ((start, 9e-3),)
 
 

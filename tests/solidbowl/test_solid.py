@@ -276,9 +276,9 @@ def test_beds_that_are_none(text, line):
         ({}, {"drains": 8, "drain": 12e-3}, "none", "sizing.drain_hole: 12 mm may let parts through that "
          "are 12 mm thick - give less than 12 mm"),
         ({}, {"outlet_height": 0.09}, "gap", "sizing.outlet_height: 90 mm puts a turn of the track below "
-         "the cuts: what falls stays on it - give at most 59.77 mm"),
-        ({}, {"outlet_height": 0.003}, "gap", "sizing.outlet_height: 3 mm leaves 49.05 mm of track, and "
-         "the devices take 56.8 mm - give at least 16.66 mm"),
+         "the cuts: what falls stays on it - give at most 59.09 mm"),
+        ({}, {"outlet_height": 0.0025}, "gap", "sizing.outlet_height: 2.5 mm leaves 40.87 mm of track, and "
+         "the devices take 47.76 mm - give at least 16.66 mm"),
         ({}, {"outlet_height": 0.01}, "gap", "sizing.outlet_height: 10 mm leaves 163.5 mm of track, less "
          "than a quarter turn - give at least 16.66 mm"),
         ({"climb": np.radians(2.5)}, {"shape": "stepped"}, "none", "track.climb: a turn rises 38.2 mm, and "
@@ -311,7 +311,7 @@ def test_a_turn_below_a_cut_is_found_and_a_track_that_was_shortened_says_so():
     with pytest.raises(FeederError, match="meets the track at"):
         ways_down(body(longer))
     (line,) = replace(built("gap"), turns_of_sheet=1.5).remarks
-    assert line.startswith("sizing.outlet_height: 1.04 turns in place of 1.5, or what falls through a cut")
+    assert line.startswith("sizing.outlet_height: 1.03 turns in place of 1.5, or what falls through a cut")
     assert built().remarks == ()
     # The outlet lies where it is wanted.
     plan = planned(asked=SolidOptions(outlet_height=0.04, outlet_angle=0.7))

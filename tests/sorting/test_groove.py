@@ -18,7 +18,7 @@ from feederscrew.solidbowl import section as printed
 from feederscrew.sorting import solid
 from feederscrew.sorting.device_passages import worst_passage
 from feederscrew.sorting.fates import at_entry, course, leading_devices
-from feederscrew.sorting.tooled_track import lay_out, walls_of
+from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.sorting.verdicts import becomes_in_groove, groove_height, settled_in_groove, verdict
 from feederscrew.studies.rate import rate, shares
 
@@ -111,7 +111,7 @@ def test_friction_acts_as_over_the_cosine(angle):
         (["groove: 30 deg"], "groove has no angle - write {angle: 30 deg}"),
         (["groove: {angle: 70 deg}"], "angle is 70 deg - give 10 to 60 deg"),
         (["groove: {angle: 5 deg}"], "angle is 5 deg - give 10 to 60 deg"),
-        (["groove: {angle: 30 deg}", "gap: 4 mm"], "gap stands in a groove - list 'bank: 6 deg' before it"),
+        (["groove: {angle: 30 deg}", "gap: 4 mm"], "gap stands in a groove - list 'banked track: 6 deg'"),
         (["groove: {angle: 30 deg}", "separation: {climb: -4 deg}", "wiper: 4 mm"], "wiper stands in a"),
         (["rails: {from: 4 mm, to: 8 mm}", "groove: {angle: 30 deg}"], "no meaning for parts that hang"),
     ],
@@ -124,16 +124,16 @@ def test_faults_of_a_groove(tmp_path, lines, fault):
 def test_its_section_is_closed_and_has_the_other_face(dowel):
     chain = (groove(30.0), slanted("banked track", 6.0), device("gap", limit=5e-3, text="5 mm"))
     section = lay_out(WIDE.track, chain, dowel)
-    (begin, first, lean), (_, end, banked) = walls_of(section)
-    assert (begin, end) == (0.0, section.length) and lean == pytest.approx(30.0 * DEG)
-    assert banked == pytest.approx(-6.0 * DEG)  # upright beside a track that is banked by so much
+    (stretch,) = section.grooves
+    first, opens = stretch.end, stretch.opens
+    assert stretch.start < 0.0 and stretch.lean == pytest.approx(60.0 * DEG)
     vertices, faces = printed.solid(section)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     assert mesh.is_watertight and mesh.is_winding_consistent
     radius, (x, y, z) = WIDE.track.radius, vertices.T
     off, way = radius - np.hypot(x, radius - y), radius * np.arctan2(x, radius - y)
     behind = (way < first - 1e-3) & (z > 1e-3)  # where the wall leans back
-    assert off[behind].min() < -0.9 * math.sin(30.0 * DEG) * (section.tallest + printed.WALL_MARGIN_M)
-    assert off[(way > first + 3e-3) & (z > 0.9 * z.max())].min() > -1.01 * solid.WALL
-    inner = behind & (np.abs(off + z * math.tan(30.0 * DEG)) < 2e-5)
+    assert off[behind].min() < -0.9 * math.sin(60.0 * DEG) * (section.tallest + printed.WALL_MARGIN_M)
+    assert off[(way > first + opens + 3e-3) & (z > 0.9 * z.max())].min() > -1.01 * solid.WALL
+    inner = behind & (np.abs(off + z * math.tan(60.0 * DEG)) < 2e-5)
     assert inner.sum() > 10  # the face itself, from the wall's foot on

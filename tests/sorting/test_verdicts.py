@@ -187,7 +187,7 @@ def test_a_swept_blade_leans_ahead_from_the_wall_to_the_free_edge(sweep, along, 
     end = np.array([x, y]) + 20e-3 * along * way
     np.testing.assert_allclose(end - [x, 0.0], [20e-3 * ahead, 20e-3], rtol=1e-6, atol=1e-9)
     assert y == 0.0 and features.length == pytest.approx(end[0])
-    assert features.takes == pytest.approx(room_of(every) + 20e-3 * ahead, rel=1e-6, abs=1e-12)
+    assert features.length == pytest.approx(0.5 * room_of(every) + 20e-3 * ahead, rel=1e-6, abs=1e-12)
 
 
 @pytest.fixture(scope="module")

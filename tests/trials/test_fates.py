@@ -81,21 +81,33 @@ def test_a_blade_stops_a_part_at_its_own_place_and_behind_a_step_the_track_is_as
 
 
 @pytest.mark.parametrize("way", [0.0, 0.11])
-def test_what_went_down_beside_a_ledge_comes_to_the_wall_and_what_stayed_up_does_not(way):
-    """At a ledge 6 mm from the wall and 5 mm high, in a bowl of 150 mm; the unit of length is 4 mm."""
-    known, station = SimpleNamespace(length=4e-3, radius=37.5), SimpleNamespace(drop=5e-3, aside=6e-3)
+def test_what_went_down_a_banked_step_goes_on_as_far_from_the_wall(way):
+    """A step of 5 mm at 8 deg: the wall there lies 0.7 mm further out. The unit of length is 4 mm."""
+    lower, out = 5e-3 * np.cos(8.0 * DEG), 5e-3 * np.sin(8.0 * DEG)
+    known, station = SimpleNamespace(length=4e-3, radius=37.5), SimpleNamespace(drop=lower, aside=out)
     states = np.zeros((2, body.STATE))
     angle = way / 0.15
-    for state, off, height in zip(states, (9e-3, 2e-3), (-3e-3, 2e-3)):
-        reach = (0.15 - off) / 4e-3
-        state[:3] = reach * np.sin(angle), 37.5 - reach * np.cos(angle), height / 4e-3
+    for state, off in zip(states, (9e-3, 2e-3)):
+        reach = (0.15 - off + out) / 4e-3
+        state[:3] = reach * np.sin(angle), 37.5 - reach * np.cos(angle), (2e-3 - lower) / 4e-3
         state[body.Q] = 1.0
-    down, up = course.lead_on(states, station, 0.03, known)
-    for state, off, height in ((down, 3e-3, 2e-3), (up, 2e-3, 2e-3)):
+    for state, off in zip(course.lead_on(states, station, 0.03, known), (9e-3, 2e-3)):
         x, y, z = 4e-3 * state[:3]
         assert 0.15 - np.hypot(x, 0.15 - y) == pytest.approx(off, abs=1e-9)
         assert 0.15 * np.arctan2(x, 0.15 - y) == pytest.approx(0.03, abs=1e-9)
-        assert z == pytest.approx(height, abs=1e-9)
+        assert z == pytest.approx(2e-3, abs=1e-9)
+
+
+def test_what_stays_on_a_ledge_comes_down_its_ramp_flat_on_the_lower_track():
+    """A ledge a little wider than the block: it rides on it to its end, and down 10 mm at 15 deg."""
+    ledge = make_device("tipping ledge", "t", limit=13e-3)
+    drop = ledge.features(BOWL.track, EVERY).drop
+    seen = sent(PART, BOWL, [ALONG], 1, (ledge,), seed=3)
+    assert seen.fates[0] == course.PASSED and seen.orientations[-1][0] == ALONG
+    height = seen.rides[1].states[0][body.Z] * seen.length
+    assert drop.height == pytest.approx(10e-3, abs=1e-3)
+    assert seen.depths[0] < 2e-4  # where its front edge meets the lower track at the ramp's foot
+    assert height == pytest.approx(2.5e-3 - drop.height, abs=2e-5)
 
 
 def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
@@ -182,7 +194,7 @@ def in_groove(angle, radius=50.0, bowl=GROOVE_BOWL):
     state = part_poses.pose_on_track(one, principal, length, one.track, place=0.0)
     state[body.Z] -= part_poses.lowest_height(solid.corners, state)
     state = part_poses.set_play(state, solid, one.track, length, 0.0, one.wall_leans)
-    slopes = staging.entry_slopes(chain, bowl.track, every)
+    slopes = staging.slopes_before(staging.entry_slopes(chain, bowl.track, every))
     stage = staging.stage_bare_track(bowl.track, every, min(1.0, radius), slopes)
 
     def ride(seconds):
@@ -231,10 +243,13 @@ def test_a_queue_lies_in_the_groove_from_its_entry_and_its_wall_leans_from_stret
     )
     slopes = queue.lay_out_track(bowl, every, chain, 0.1).stage.air.slopes
     first = slopes[:2]
-    assert [(climb, bank) for _, climb, bank, _ in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]
+    assert [(slope.climb, slope.bank) for slope in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]
     assert all(place < -1.0 for place, *_ in first)
     assert any(climb is not None and place > 0.0 for place, climb, *_ in slopes)
-    slopes = ((0.0, None, 30.0 * DEG, 60.0 * DEG), (0.1, None, 6.0 * DEG, 0.0))
+    slopes = (
+        staging.PlacedSlope(0.0, bank=30.0 * DEG, wall=60.0 * DEG),
+        staging.PlacedSlope(0.1, bank=6.0 * DEG, wall=0.0),
+    )
     rows = staging.tabulate_leans(slopes, 0.0, 0.0, 0.02, 1.0)
     axis, wall = rows[:, 4:6], rows[:, 6:8]
     np.testing.assert_allclose(wall[0], axis[0])

@@ -54,6 +54,8 @@ def bowl(tmp_path):
     ("gap: 9.9 mm", 0.02, True),  # half its length
     ("gap: 11.5 mm", 0.02, False),  # beyond what its way while it tips over adds
     ("narrowed_track: 5.9 mm", 0.02, False),
+    ("dish-out: {leaves: 4 mm, radius: 14 mm}", 0.02, True),  # its ends bridge the bay
+    ("dish-out: {leaves: 4 mm, radius: 14 mm}", 0.012, False),
     ("canyon: 10.8 mm", 0.012, False),  # beyond what the wall carries
     ("wiper: 4.9 mm", 0.012, False),
     ("profile: [[0 mm, 0 mm], [12.1 mm, 0 mm], [12.1 mm, 5.1 mm], [0 mm, 5.1 mm]]", 0.02, True),
@@ -67,6 +69,33 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
     assert (seen.depths < 2.5e-4).all() and (seen.gains < 1e-6).all()
     if passes:
         assert (seen.orientations[-1] == seen.entry_rows).all() and (seen.end_stations == 2).all()
+
+
+def test_a_cap_that_stays_before_a_straight_blade_leaves_along_a_curved_one(bowl):
+    """On its round side, mouth ahead, at 50 Hz and throw number 1.8: a wiper of 30 deg stops it."""
+    fast = ("drive.amplitude=0.52 mm", "drive.frequency=50 Hz", "drive.vibration_angle=20 deg",
+            "drive.phase=0 deg", "track.width=16 mm")  # fmt: skip
+    cap, gone = load("parts/cap_14x10.stl"), []
+    for line in ("wiper: {clearance: 11.5 mm, sweep: 30 deg}",
+                 "curved deflector: {clearance: 11.5 mm, from: 12 deg, to: 50 deg}"):  # fmt: skip
+        one = bowl(line, own=fast)
+        every = lying(cap, one)
+        rows = [k for k, own in enumerate(every) if own.kind == "rolling" and abs(own.heading - np.pi) < 0.2]
+        gone.append(np.mean(sent(cap, one, rows, 8, one.devices).fates == course.RETURNED))
+    assert gone[0] < 0.5 and gone[1] >= 0.75
+
+
+def test_a_cap_on_its_bottom_rides_over_a_selector_and_one_on_its_mouth_falls(bowl):
+    cap, one = (
+        load("parts/cap_14x10.stl"),
+        bowl("cap selector: {land: 3.85 mm, length: 22.1 mm, tongue: 3 mm, reach: 11.8 mm}"),
+    )
+    every = lying(cap, one)
+    flat = sorted((k for k, own in enumerate(every) if own.kind == "flat"), key=lambda k: every[k].foot.mouth)
+    assert len(flat) == 2 and every[flat[0]].foot.mouth == 0.0 < every[flat[1]].foot.mouth
+    seen = sent(cap, one, flat, 4, one.devices)
+    assert (seen.fates[seen.entry_rows == flat[0]] == course.PASSED).all()
+    assert (seen.fates[seen.entry_rows == flat[1]] == course.RETURNED).all()
 
 
 def test_a_fall_down_a_step_or_over_the_free_edge_wins_nothing_and_sinks_nowhere(bowl):

@@ -259,6 +259,16 @@ def test_what_stands_at_a_blade_for_a_second_is_taken_out():
     # it came in its own orientation, and stood at the blade: the first device
     jammed = row.result().jammed_at
     assert jammed.sum() == jammed[row.entry_rows[0], 1] == 1
+    # what stands behind it was held up by it: it is taken out a second after it has come to the blade itself
+    row, turn = row_of(slope(), 3, 5.0, 0.0), 0
+    while not row.counts.jams and turn < 300:
+        row.ride(turn)
+        turn += 1
+    first = row.time
+    while row.counts.jams < 2 and turn < 600:
+        row.ride(turn)
+        turn += 1
+    assert row.counts.jams == 2 and row.time - first >= 1.0
     row = row_of(STILL, 5, 1.0, 0.5)
     row.ride(0)
     free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long

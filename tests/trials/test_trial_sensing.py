@@ -88,7 +88,8 @@ def test_the_thrust_is_that_of_isentropic_flow_on_the_share_that_the_outline_tak
 def test_the_lean_of_the_track_changes_where_a_slope_begins_and_pulses_blow_for_both():
     flat = staging.tabulate_leans((), 0.02, 0.0, 0.01, 1.0)
     assert flat.shape == (1, 8) and flat[0, 1] == pytest.approx(-np.sin(0.02))
-    rows = staging.tabulate_leans([(0.1, -0.05, None, None), (0.2, None, 0.1, None)], 0.02, 0.0, 0.01, 0.5)
+    changes = staging.PlacedSlope(0.1, climb=-0.05), staging.PlacedSlope(0.2, bank=0.1)
+    rows = staging.tabulate_leans(changes, 0.02, 0.0, 0.01, 0.5)
     assert rows[:, 0] == pytest.approx([0.2, 0.205, 0.4, 0.405])
     assert rows[:, 1] == pytest.approx(-np.sin([0.02, -0.05, -0.05, -0.05]))
     assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)] * 2)

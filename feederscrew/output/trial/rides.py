@@ -153,9 +153,9 @@ def section(station: Stage, track: Track, height: float) -> Mesh:
     along, _ = unroll_path(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
     low, high = along.min(), along.max()
     turns = [
-        (place, wall and wall - (bank or 0.0))
-        for place, _, bank, wall in station.air.slopes
-        if wall is not None
+        (slope.place, slope.wall and slope.wall - (slope.bank or 0.0))
+        for slope in station.air.slopes
+        if slope.wall is not None
     ]
     ends = [(low, 0.0), *((max(place, low), lean) for place, lean in turns), (high, 0.0)]
     for (begin, lean), (end, _) in itertools.pairwise(ends):

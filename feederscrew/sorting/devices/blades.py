@@ -49,7 +49,9 @@ SWEPT = forms.mapping(
 
 
 @dataclass(frozen=True)
-class _Overhead(Device):
+class Overhead(Device):
+    """A blade over the track at one clearance, open to the free edge."""
+
     action: ClassVar[Action] = Action.OVERHEAD
     search: ClassVar[ValueSearch] = ValueSearch(bound=Bound.UPPER, limited_by="height")
 
@@ -67,7 +69,7 @@ class _Overhead(Device):
 
 
 @dataclass(frozen=True)
-class Wiper(_Overhead):
+class Wiper(Overhead):
     """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
 
     sweep: float = field(
@@ -155,7 +157,7 @@ class Wiper(_Overhead):
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
         ahead = 0.0 if self.face is None else track.extent / math.tan(self.sweep)
-        return Features(0.5 * room + ahead, takes=room + ahead, blades=(blade,))
+        return Features(0.5 * room + ahead, blades=(blade,))
 
     def document_values(self) -> dict[str, Any]:
         own = {"sweep_deg": math.degrees(self.sweep)}
@@ -171,7 +173,7 @@ class Wiper(_Overhead):
 
 
 @dataclass(frozen=True)
-class HeightBar(_Overhead):
+class HeightBar(Overhead):
     """A bar across the track."""
 
     kind = "height bar"
@@ -184,7 +186,7 @@ class HeightBar(_Overhead):
 
 
 @dataclass(frozen=True)
-class HoldDown(_Overhead):
+class HoldDown(Overhead):
     """A bar above the queue."""
 
     kind = "hold-down"
@@ -244,7 +246,7 @@ class Profile(Device):
         if not self.like:
             return shapely.Polygon(self.corners)
         aspect, heading, play = self.like
-        k = orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
+        k = orientation_names.place_of(orientations, aspect, heading, self.where, f"{self.kind} names")
         outline = orientations[k].view_ahead.buffer(play)
         # what the part shows through a hole of its own is no island in the gate: nothing would carry it
         parts = [part for part in shapely.get_parts(outline) if part.geom_type == "Polygon"]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 BLADE = 1.5e-3  # [m] thickness of a blade
 BEYOND_BLADES_M = 10.0  # [m] beyond any blade
+LONGEST_RAMP_SINE = 0.9  # [1] of the angle about the bowl's axis over which a ramp comes down at most
 FOOTPRINT_STEP_M = 1e-3  # [m] between places of a plate that are unrolled
 FOOTPRINT_CHORD_M = 1e-6  # [m] by which its unrolled sides may be seen too flat
 SAME_PLACE_M = 1e-9  # [m] nearer places are one
@@ -132,7 +133,28 @@ class Drop:
     height: float  # [m]
     aside: float = 0.0  # [m] off the wall, where the lower track begins: the ledge's width, 0 of a step
     reach: float = 0.0  # [m] along the wall, over which a ledge is tried: as good as endless
-    length: float = 0.0  # [m] of a ledge as it is made, before it comes down to the lower track
+    length: float = 0.0  # [m] of a ledge, before it comes down to the lower track
+    ramp: float = 0.0  # [rad] slope of the flat ramp on which a ledge comes down
+
+    def ramp_length(self, radius: float) -> float:
+        """Return how far a ledge's ramp reaches along the wall, to where all of it is down.
+
+        The ramp is bent down about a line square to the wall: at the ledge's edge it comes down last.
+
+        Parameters
+        ----------
+        radius : float [m]
+            Of the wall.
+
+        Returns
+        -------
+        float [m]
+            0 of a step.
+        """
+        if self.aside <= 0.0 or self.ramp <= 0.0:
+            return 0.0
+        ahead = self.height / math.tan(self.ramp) / (radius - self.aside)
+        return radius * math.asin(min(ahead, LONGEST_RAMP_SINE))
 
     def beside(self, width: float) -> Points:
         """Return what is missing of the upper track.
@@ -230,10 +252,10 @@ class Blade:
     def opening(self) -> list[Points]:
         """Return the outlines (K, 2) [m] of what is free below and within it: off the wall, upwards."""
         near, _, far, top = self.solid.bounds
-        free = shapely.box(near, 0.0, far, top).difference(self.solid)
+        free = shapely.box(max(near, 0.0), 0.0, far, top).difference(self.solid)
         parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon"]
         across = np.array([math.sin(self.heading), 1.0])
-        return [shapely.get_coordinates(part.exterior)[:-1] * across for part in parts]
+        return [shapely.get_coordinates(part.exterior)[:-1] * across + [self.foot[1], 0.0] for part in parts]
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,6 +282,17 @@ class Jet:
 
 
 @dataclass(frozen=True, eq=False)
+class Bore:
+    """A round hole through the wall, square to it: of a nozzle, for a bracket's screw or for a fibre."""
+
+    what: str  # that it is for: 'nozzle'
+    place: float  # [m] x
+    height: float  # [m] z
+    diameter: float  # [m] to drill
+    thread: str = ""  # 'M4'; '' of a plain hole
+
+
+@dataclass(frozen=True, eq=False)
 class Sensor:
     """A sensor that looks at each part as its centre of mass comes to a place, and sets off pulsed jets."""
 
@@ -275,15 +308,20 @@ class Features:
     """All that one device cuts out of the track, sets on it and changes of its way."""
 
     length: float = 0.0  # [m] along the wall, in which it acts
-    takes: float = 0.0  # [m] of track that it is given, from ``before`` its begin on; 0: the room of any
-    before: float = 0.0  # [m] of that before its begin
     openings: tuple[TrackOpening, ...] = ()
     blades: tuple[Blade, ...] = ()
     slopes: tuple[Slope, ...] = ()
     drop: Drop | None = None
     jets: tuple[Jet, ...] = ()
+    mounts: tuple[Bore, ...] = ()  # holes for what is screwed to the wall beside the nozzles
     sensor: Sensor | None = None
     settles: float = 0.0  # of the part's size: how far behind the device parts go on until they are looked at
+
+    @property
+    def bores(self) -> tuple[Bore, ...]:
+        """Return every hole through the wall: of its nozzles, and those for what is mounted there."""
+        nozzles = (Bore("nozzle", jet.at[0], jet.at[2], 2.0 * jet.radius) for jet in self.jets)
+        return (*nozzles, *self.mounts)
 
     @property
     def hangs(self) -> bool:

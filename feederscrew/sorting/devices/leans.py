@@ -172,7 +172,7 @@ class Groove(Lean):
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
         length = GROOVE_ROOMS * room_of(orientations)
-        return Features(length, takes=length, slopes=(slope,))
+        return Features(length, slopes=(slope,))
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from feederscrew.sorting.verdicts import DeviceEncounter
 
 LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
+LEDGE_RAMP_RAD = math.radians(15.0)  # [rad] slope on which a ledge comes down to the track beside it
 LOWER_TRACK_LENGTHS = 10.0  # of the part's size: how far the lower track goes on
 SETTLES = 2.0  # of the part's size: how far behind a turning device parts end
 SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
@@ -42,11 +43,9 @@ RAIL_SPAN_FORMS = {"from_": forms.LENGTH_FORM, "to": forms.LENGTH_FORM}
 LEAD_IN_FORMS = {"length": forms.LENGTH_FORM, "taper": forms.LENGTH_FORM}
 
 
-def _lower_track(height: float, aside: float, orientations: "Sequence[Orientation]") -> Features:
-    """A track that goes on lower; a step stands in the middle of the room that it is given."""
-    reach, room = LOWER_TRACK_LENGTHS * max(size_of(one) for one in orientations), room_of(orientations)
-    drop = Drop(height, aside, reach, length=room if aside > 0.0 else 0.0)
-    return Features(before=0.0 if aside > 0.0 else 0.5 * room, drop=drop, settles=SETTLES)
+def _reach(orientations: "Sequence[Orientation]") -> float:
+    """How far [m] a lower track goes on for a verdict."""
+    return LOWER_TRACK_LENGTHS * max(size_of(one) for one in orientations)
 
 
 class Step(Device):
@@ -61,7 +60,7 @@ class Step(Device):
     action = Action.PITCH
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
-        return _lower_track(self.limit, 0.0, orientations)
+        return Features(drop=Drop(self.limit, reach=_reach(orientations)), settles=SETTLES)
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         return encounter.turning(*encounter.pitched_over(self.limit))
@@ -103,7 +102,9 @@ class Tip(_Ledge):
     action = Action.ROLL
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
-        return _lower_track(below_ledge(orientations), self.limit, orientations)
+        length, lower = room_of(orientations), below_ledge(orientations)
+        drop = Drop(lower, self.limit, _reach(orientations), length, LEDGE_RAMP_RAD)
+        return Features(length + drop.ramp_length(track.radius), drop=drop, settles=SETTLES)
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
         margin = self.ledge_margin(encounter)
@@ -323,7 +324,7 @@ class Rails(Device):
         length = room_of(orientations) + sum(self.lead[2:])
         near, far = self.span
         slot = TrackOpening(self._outline(length + 2.0 * size), (near, far), hangs=True)
-        return Features(length, takes=length, openings=(slot,))
+        return Features(length, openings=(slot,))
 
     def _outline(self, length: float) -> Points:
         """Its slot (K, 2) [m] with the lead-in, over a length [m] at least."""

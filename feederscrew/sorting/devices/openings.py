@@ -13,7 +13,7 @@ from feederscrew.arrays import Points
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.compiled import frozen_rows, record_type
 from feederscrew.sorting.devices import values
-from feederscrew.sorting.devices.base import UNSURE, Device, Verdict, carried, corners_text, room_of
+from feederscrew.sorting.devices.base import UNSURE, Device, Verdict, carried, corners_text
 from feederscrew.sorting.devices.features import Features, TrackOpening
 from feederscrew.sorting.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
 from feederscrew.sorting.devices.values import Corner
@@ -184,7 +184,7 @@ def _moved_out(corners: Sequence[Corner], width: float, far: float) -> list[Corn
     return out
 
 
-class _Across(Device):
+class Across(Device):
     """A hole with an edge across the track."""
 
     action: ClassVar[Action] = Action.CUT
@@ -194,7 +194,7 @@ class _Across(Device):
         return orientation.flight
 
 
-class Gap(_Across):
+class Gap(Across):
     """A gap across the track."""
 
     kind = "gap"
@@ -223,7 +223,7 @@ class Gap(_Across):
         return encounter.verdict(carried(needed - self.limit, self.limit - needed, carry))
 
 
-class CutOut(_Across):
+class CutOut(Across):
     """A hole of several corners."""
 
     kind = "cut-out"
@@ -247,18 +247,36 @@ class CutOut(_Across):
 
     def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
         ring = np.array(self.corners)
-        length = float(ring[:, 0].max())
-        return Features(length, takes=room_of(orientations) + length, openings=(TrackOpening(ring),))
+        return Features(float(ring[:, 0].max()), openings=(TrackOpening(ring),))
 
     def judged(self, encounter: "DeviceEncounter") -> Verdict:
-        orientation = encounter.orientation
-        hole = polygon(np.array(self.corners), orientation.track.radius)
-        margin, shift = encounter.over_hole(hole)
-        if margin < 0.0 < orientation.carry:
-            margin = carried(margin, encounter.unheld(hole), orientation.carry)
-            length = float(np.ptp(np.array(self.corners)[:, 0]))
-            area = shapely.Polygon(self.corners)
-            across = (shapely.LineString([(x, -FAR_M), (x, FAR_M)]) for x, _ in self.corners)
-            if encounter.rides(max(area.intersection(line).length for line in across), length):
-                margin = max(margin, -UNSURE)
-        return encounter.verdict(margin, shift)
+        return judge_hole(encounter, np.array(self.corners))
+
+
+def judge_hole(encounter: "DeviceEncounter", ring: Points) -> Verdict:
+    """Return what a hole of an outline does with an orientation: that of one that travels needs time to tip.
+
+    Parameters
+    ----------
+    encounter : DeviceEncounter
+    ring : (K, 2) float [m]
+        The outline: along the wall, and from it.
+
+    Returns
+    -------
+    Verdict
+
+    References
+    ----------
+    docs/tooling.md, "1. The method".
+    """
+    orientation = encounter.orientation
+    hole = polygon(ring, orientation.track.radius)
+    margin, shift = encounter.over_hole(hole)
+    if margin < 0.0 < orientation.carry:
+        margin = carried(margin, encounter.unheld(hole), orientation.carry)
+        area = shapely.Polygon(ring)
+        across = (shapely.LineString([(x, -FAR_M), (x, FAR_M)]) for x in ring[:, 0])
+        if encounter.rides(max(area.intersection(line).length for line in across), float(np.ptp(ring[:, 0]))):
+            margin = max(margin, -UNSURE)
+    return encounter.verdict(margin, shift)

@@ -60,7 +60,7 @@ def place(
     where : str
         Where it is written, for the fault.
     named : str, optional
-        What names it: 'profile names'.
+        What names it: 'profile gate names'.
     kind : class, optional
         Of the fault.
 

@@ -31,7 +31,7 @@ from feederscrew.sorting.devices.base import (
     mapping_text,
     room_of,
 )
-from feederscrew.sorting.devices.features import Features, Jet, Sensor
+from feederscrew.sorting.devices.features import Bore, Features, Jet, Sensor
 from feederscrew.sorting.devices.trade import Action, ProposedBy, Trade, ValueSearch
 
 if TYPE_CHECKING:
@@ -58,6 +58,11 @@ NOZZLE_COUNT = 4.0
 BAR_PA, MS = units.factor("bar", "pressure"), units.factor("ms", "time")
 REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
 SENSOR_TO_NOZZLE_M = 0.01  # [m] behind the sensor: a part is blown at as its middle comes to the nozzles
+# of what stands at a vision reject
+TRIGGER = "fibre of the trigger"
+BRACKET_HOLE_M, BRACKET_THREAD = 3.3e-3, "M4"  # core of M4: ISO 2306
+FIBRE_HOLE_M = 3e-3  # [m] of a fibre's head through the wall (assumption)
+BRACKET_SIDE_M, BRACKET_OVER_M = 12e-3, 5e-3  # [m] beside the nozzles, over the tallest part (assumption)
 SENSOR_VIEWS = ("outline", "side", "height", "relief")
 RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3, "relief": 1e-4}  # [m] camera, fibre, laser
 SEEN_BY = {  # what sees a part so, and what it compares
@@ -464,8 +469,27 @@ class Sorter(Device):
         room = room_of(orientations)
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(orientations), self.like[2], self.blur)
-        jets = self.jet.jets(middle + SENSOR_TO_NOZZLE_M, orientations, self.time)
-        return Features(room + SENSOR_TO_NOZZLE_M, jets=jets, sensor=sensor)
+        nozzles = middle + SENSOR_TO_NOZZLE_M
+        jets, mounts = self.jet.jets(nozzles, orientations, self.time), self._mounts(middle, orientations)
+        return Features(room + SENSOR_TO_NOZZLE_M, jets=jets, mounts=mounts, sensor=sensor)
+
+    def _mounts(self, middle: float, orientations: "Sequence[Orientation]") -> tuple[Bore, ...]:
+        """Holes for the valve block, beside the nozzles over the tallest part, and for the trigger's fibre.
+
+        The fibre is where the front of the wanted part is as its middle comes to the sensor, ``middle`` [m];
+        at the begin of the window where nozzles are in the way there.
+        """
+        nozzles, wanted = middle + SENSOR_TO_NOZZLE_M, self.wanted(orientations)[0]
+        trigger = middle + float(wanted.outline[:, 0].max())
+        if trigger > nozzles - self.nozzle - FIBRE_HOLE_M:
+            trigger = 0.0
+        over = max(orientation.height for orientation in orientations) + BRACKET_OVER_M
+        block = "valve block at the nozzles"
+        beside = (nozzles - BRACKET_SIDE_M, nozzles + BRACKET_SIDE_M)
+        return (
+            *(Bore(block, place, over, BRACKET_HOLE_M, BRACKET_THREAD) for place in beside),
+            Bore(TRIGGER, trigger, 0.5 * wanted.height, FIBRE_HOLE_M),
+        )
 
     def hop_blur(self, orientation: "Orientation") -> float:
         return 0.0 if self.sees == "outline" else orientation.hop

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import shapely
+
 from feederscrew import units
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ConfigError
@@ -355,21 +357,9 @@ def crossed(corners: Sequence[Corner]) -> bool:
     bool
     """
 
-    def left(o: Sequence[float], p: Sequence[float], q: Sequence[float]) -> float:
-        return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
-
-    sides = list(zip(corners, (*corners[1:], corners[0])))
-    count = len(sides)
-    for i, (a, b) in enumerate(sides):
-        for j in range(i + 1, count):
-            c, d = sides[j]
-            if a == c:
-                return True
-            if (j - i) % count in (1, count - 1):
-                continue
-            if left(a, b, c) * left(a, b, d) <= 0.0 and left(c, d, a) * left(c, d, b) <= 0.0:
-                return True
-    return False
+    if len(set(corners)) < len(corners):
+        return True
+    return len(corners) > 3 and not shapely.LinearRing(corners).is_simple
 
 
 def written(node: Node) -> str:

@@ -209,12 +209,14 @@ def candidates(
     encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
     rows = sorted({wanted, *same})
     competitors = [encounter for k, encounter in enumerate(encounters) if k not in rows]
-    blowing: list[Any] = [
+    shaped: list[Any] = [
         kind
         for kind in KINDS.values()
         if kind.search.is_proposed and kind.action is not Action.SENSE and not kind.search.bound
     ]
-    for kind in (kind for kind in blowing if air and constraints.allows(kind.kind)):
+    for kind in (kind for kind in shaped if constraints.allows(kind.kind)):
+        if kind.trade.cost_class > 1 and not air:
+            continue
         devices += kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY)
 
     def unlike(view: str) -> list[Orientation]:
