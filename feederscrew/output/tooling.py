@@ -1,6 +1,6 @@
 """Files of ``feeder tooling``: tables, documents, the bowl file, drawings."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +18,16 @@ from feederscrew.output.record_lines import tooling_text
 from feederscrew.sorting import device_passages
 from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.devices.kinds import CostClass
-from feederscrew.sorting.isolating.chain import CUT_COLUMNS, DESIGN_COLUMNS, LEAST_SHARE, Design, in_mm
+from feederscrew.sorting.devices.trade import Action
+from feederscrew.sorting.isolating.chain import (
+    CUT_COLUMNS,
+    DESIGN_COLUMNS,
+    LEAST_SHARE,
+    Cut,
+    Design,
+    in_mm,
+    margins_at,
+)
 from feederscrew.sorting.orientations import (
     ORIENTATION_NAME_COLUMNS,
     ORIENTATION_SIZE_COLUMNS,
@@ -50,6 +59,7 @@ LEAVING = (  # efficiency and purity, of the trial where there is one
 ROW_HEADS = heads((*ORIENTATION_NAME_COLUMNS, *ORIENTATION_SIZE_COLUMNS)) | heads(DESIGN_COLUMNS)
 ROW_HEADS |= {name: share_head(name) for name in ("share", *LEAVING)}
 HIDDEN = ("reasons", *(name for name in LEAVING if "_" in name))  # the sentences of the trial have them
+SURE_M = 1e-6  # [m] a smaller margin stands for a verdict that is not sure
 TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
@@ -83,11 +93,12 @@ def document(study: ToolingStudy) -> dict[str, Any]:
         return entries
     (design, wanted_row), chain = _asked_for(study), []
     orientation, cuts = study.orientations[wanted_row], design.cuts
-    for cut in cuts:
+    for cut, earlier in _with_earlier(cuts):
+        fails_by = _fails_by(study, cut, earlier) / MM
         entry = {
             "device": cut.device.kind,
             **cut.device.document_values(),
-            **values(CUT_COLUMNS, cut),
+            **values(CUT_COLUMNS, cut) | {"margin_reject_mm": None if np.isnan(fails_by) else fails_by},
             "smallest": cut.smallest.document_values(),
             "largest": cut.largest.document_values(),
             "returns": [name for name in cut.returns if name not in cut.stops],
@@ -276,7 +287,7 @@ def summary(study: ToolingStudy, format: str = "csv") -> Frame:
     for orientation in study.orientations:
         orientations.setdefault(orientation.aspect, set()).add(orientation.name)
     margins = ("passes_by_mm", "others_fail_by_mm") if people else ("margin_pass_mm", "margin_reject_mm")
-    for cut in study.design.cuts:
+    for cut, earlier in _with_earlier(study.design.cuts):
         # 'A@2 A@90, all of B, C': aspects of which every orientation is returned come last
         whole = [aspect for aspect, names in orientations.items() if names <= set(cut.returns)]
         returns = [k for k in cut.returns if not any(k in orientations[aspect] for aspect in whole)]
@@ -293,10 +304,38 @@ def summary(study: ToolingStudy, format: str = "csv") -> Frame:
             words = f"turns {', '.join(turns)}; {QUASI_STATIC}" if turns else serves
         device = cut.device.full_name if people else cut.device.kind
         value = cut.device.value_words if people else cut.device.short
-        ends = cut.margin_pass / MM, cut.margin_reject / MM, cut.smallest.text, cut.largest.text
+        ends = cut.margin_pass / MM, _fails_by(study, cut, earlier) / MM, cut.smallest.text, cut.largest.text
         rows.append((device, value, *ends, words))
     names = ("device", "value", *margins, "smallest_cut", "largest_cut", "returns")
     return Frame.of_cells(names, rows).headed({name: ColumnHead.of_name(name, "mm") for name in margins})
+
+
+def _with_earlier(cuts: Sequence[Cut]) -> Iterator[tuple[Cut, set[str]]]:
+    """Yield each cut with the names of what those before it return."""
+    earlier: set[str] = set()
+    for cut in cuts:
+        yield cut, set(earlier)
+        earlier |= {*cut.returns}
+
+
+def _fails_by(study: ToolingStudy, cut: Cut, earlier: Collection[str]) -> float:
+    """By how much [m] the nearest fails of those that a cut returns, also of those it returns too narrowly.
+
+    What the bare track or an earlier cut returns does not count. Behind rails, and where it has to return
+    none, it is the cut's own number.
+    """
+    design = study.design
+    if design is None or not np.isfinite(cut.margin_reject):
+        return cut.margin_reject
+    if any(device.action is Action.HANG for device in design.devices):
+        return cut.margin_reject
+    margins = margins_at(cut.device, study.orientations)
+    own = [
+        -float(margin)
+        for one, margin in zip(study.orientations, margins, strict=True)
+        if one.name in cut.returns and one.name not in earlier and not one.returned and -margin > SURE_M
+    ]
+    return min([cut.margin_reject, *own])
 
 
 def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
@@ -329,7 +368,8 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     if tried is not None and tried.faults:
         lead = f"{orientation.name} is not isolated: {tried.verdicts}"
     elif tried is None:
-        lead = f"{orientation.name} is {'' if study.isolates(wanted_row) else 'not '}isolated: {leave}"
+        verb = "is" if study.isolates(wanted_row) else "is not"
+        lead = f"{orientation.name} {verb} isolated by the static rule, no chain was tried: {leave}"
     else:
         lead = (
             f"{orientation.name} is isolated: of {tried.parts} parts tried {tried.figures}; "

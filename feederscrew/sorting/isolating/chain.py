@@ -28,6 +28,7 @@ from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.fates import course
 from feederscrew.sorting.orientations import Orientation, hang
+from feederscrew.sorting.sensor_views import difference
 from feederscrew.sorting.verdicts import DeviceEncounter, opening_margin, verdict
 
 SHOP_STEP_M = 5e-5  # [m] of values that a shop makes
@@ -570,11 +571,17 @@ def inseparable_reason(wanted: Orientation, other: Orientation, margin: float) -
     shape, side, shift = find_difference(wanted, other)
     if shape < min(margin, 0.5 * max(map(abs, shift))):
         ahead, inwards, up = (1e3 * abs(by) for by in shift)
+        seen = difference(other, wanted, "outline")
+        camera = ""
+        if seen > shape + UNSURE:  # through a bore it sees more than the outside
+            camera = (
+                f"; a camera from above sees them differ by {1e3 * seen:.2g} mm, which is too little for it"
+            )
         return (
             f"{names} have the same outside to {1e3 * max(shape, 1e-5):.2f} mm, "
             f"only the inside differs, as by a bore off the middle or a closed end: the centre of mass lies "
             f"elsewhere by {ahead:.2f} mm along the track, {inwards:.2f} mm across it and {up:.2f} mm in "
-            f"height; needs a feature on the outside; {need}"
+            f"height; needs a feature on the outside; {need}{camera}"
         )
     if shape < 4.0 * margin:
         return (
