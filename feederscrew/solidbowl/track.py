@@ -6,6 +6,7 @@ from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
+import shapely
 
 from feederscrew.arrays import Floats, Values
 from feederscrew.solidbowl.facets import Body
@@ -22,7 +23,9 @@ CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut ov
 OUTLET_OVERRUN_M = 5e-3  # [m] by which a slot that is open at the outlet is cut beyond its end
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
-PLATE_OVERLAP_M = 3e-5  # [m] by which ledges and the outlet's side reach into the plate: no face on a face
+BEYOND_TRACK_M = 10.0  # [m] beyond any track
+LEDGE_SINK_M = 1e-5  # [m] by which a ledge lies lower than the plate before it: no face on a face
+PLATE_OVERLAP_M = 3e-5  # [m] by which the side of the outlet reaches into the plate: no face on a face
 TWISTED = 4  # facets where the bank changes in place of one
 TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led through
 
@@ -209,8 +212,8 @@ def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
             inward = aside * np.cos(path.bank_at(s))[:, None] * np.arange(strips + 1) / strips
             inward[:, 0] = -TRACK_PIECE_OVERLAP_M
             rise = inward * np.tan(path.bank_at(s))[:, None]
-            down = ledge.level_at(s[:, None] - plan.first, aside * np.arange(strips + 1) / strips)
-            high = low[:, None] + lower + np.maximum(down, -lower - 0.8 * half) - PLATE_OVERLAP_M
+            down = ledge.level_at(s[:, None] - plan.first, inward / np.cos(path.bank_at(s))[:, None])
+            high = low[:, None] + lower + np.maximum(down, -lower - 0.8 * half) - LEDGE_SINK_M
             top = np.stack([-inward, high + rise], axis=-1)
             under = np.stack([-inward, low[:, None] - half + rise], axis=-1)[:, [-1, 0]]
             legs.append((np.concatenate([top, under], axis=1), frames(plan, s)))
@@ -294,7 +297,11 @@ def holes(plan: BowlPlan, kit: ModuleType, *, hang: bool) -> list[Body]:
     solid, plate = [], plan.material.plate
     for opening in _openings(plan, hang):
         # carried a little over the edge of the track that it reaches, and into the wall
-        s, y = opening.ring.T
+        corners = opening.ring
+        if corners[:, 1].min() < 0.0:  # a side that only ends in the wall keeps its direction
+            on_track = shapely.box(-BEYOND_TRACK_M, 0.0, BEYOND_TRACK_M, BEYOND_TRACK_M)
+            corners = shapely.get_coordinates(shapely.Polygon(corners).intersection(on_track))[:-1]
+        s, y = corners.T
         corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
         beyond = beyond_borders(corners.tolist(), plan.width - 1e-9, CUT_OVERRUN_M)
         ring = np.array(beyond) + [plan.first, 0.0]

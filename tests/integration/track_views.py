@@ -83,6 +83,19 @@ def trial(stage, start, track, bank):
     )
 
 
+def crowded(stage, placed, track, bank):
+    """A device on the track of a queue, which has all of them, as ``trial`` shows one alone."""
+    whole = trial(stage, placed.begin, track, bank)
+    lower, out = placed.level * np.cos(bank), placed.level * np.sin(bank)
+
+    def own(height):
+        return affinity.translate(whole.over(height + lower), 0.0, -out)
+
+    bores = [(s, z - lower, size) for s, z, size in whole.bores]
+    bores = [bore for bore in bores if placed.start < placed.begin + bore[0] < placed.end]
+    return View(lambda level: whole.floor(placed.level + level), own, in_order(bores), [], whole.ramp)
+
+
 def _plates(height, blades, laid):
     """What blades are, seen from above, at a height [m]."""
     return laid([_slab(one, height) for one in blades])
@@ -195,6 +208,7 @@ def unroll(plan, whole):
     return functools.cache(lambda below: piece.warp_batch(functools.partial(laid, below=below)))
 
 
+@functools.cache
 def drawing(tooled):
     """The outlines [m] of the DXF file by layer, its number left out, and the circles of its bores."""
     file = ezdxf.read(io.StringIO(tooling_drawing.dxf(tooled).decode()))
