@@ -129,9 +129,9 @@ def design(
     cameras with a valve: the first that holds is taken. What falls short says where, with the nearest
     design that would hold, and ends in commands to try.
 
-    The answer is one of holds, holds if parts arrive single (two of them hook), tooling holds, its machine
-    cannot be made, falls short and none, with the numbers it rests on. The exit status is 3 where it holds
-    under such a condition, and else 0 of a run that came to its end.
+    The answer is holds, falls short or none. Two answers hold under a condition: holds if parts arrive single
+    (two of them hook), and tooling holds, its machine cannot be made. The exit status is 3 of these two, and
+    else 0 of a run that came to its end.
 
     The drive is the calmest on one set of leaf springs that is fast enough, at the frequency of the mains
     (machine.mains) or twice that. What --config says of track, drive, machine and friction is kept. Its

@@ -47,6 +47,7 @@ DRAWN_LINE_M = 2e-4  # [m] the width with which a line along or across the track
 CROSS = 2.0  # [mm] of paper: half of a sensor's cross
 DEVICE_LIST_COLUMNS_MM = 9.0, 56.0, 21.0, 19.0, 20.0, 17.0, 160.0  # [mm] of the list of devices
 LINE_LETTERS = 92  # of a line in the last column
+LEAST_ANGLE_DEG = 0.01  # that is dimensioned
 
 
 @dataclass(frozen=True)
@@ -171,7 +172,8 @@ def draw(
         drawing.outline(ring / MM + shift, name)
     middle, out = np.array([0.0, radius]) + shift, radius + 12.0
     starts = [placed.span[0] / strip.track.radius / DEG for placed in strip.devices]
-    for k, start in enumerate(sorted(set(starts))):
+    # a device that begins at the datum has no angle from it
+    for k, start in enumerate(sorted({start for start in starts if start > LEAST_ANGLE_DEG})):
         drawing.angle(middle, out + 6.0 * k, -90.0, -90.0 + start)
     low = float(middle[1]) - out - 6.0 * len(starts) - 8.0
     text = f"as bent: radius of the wall {radius:.6g} mm; angles from the datum D"
