@@ -33,7 +33,7 @@ from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
-from feederscrew.trials.fills import LeavingPose, PoseKind
+from feederscrew.trials.fills import JammedParts, LeavingPose, PoseKind
 from feederscrew.trials.wanted import equivalent_rows, leaves_hanging, wanted_rows
 
 LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of what a part may do at best
@@ -620,9 +620,7 @@ def _try_rails(search: Search, track: BankedTrack, rails: hanging.RailsSearch) -
         yield chosen
 
 
-def mends_of_jams(
-    search: Search, candidate: Candidate, jammed: Sequence[tuple[str, int, str, int]]
-) -> Iterator[Proposal]:
+def mends_of_jams(search: Search, candidate: Candidate, jammed: Sequence[JammedParts]) -> Iterator[Proposal]:
     """Yield what changes a chain whose queue jams, by what stood there and at which device.
 
     Parameters
@@ -630,8 +628,7 @@ def mends_of_jams(
     search : Search
     candidate : Candidate
         That was proved.
-    jammed : sequence of (str, int, str, int)
-        As ``FilledQueue.jammed``.
+    jammed : sequence of JammedParts
 
     Yields
     ------
@@ -641,10 +638,10 @@ def mends_of_jams(
         return
     proposal = candidate.proposal
     if not proposal.hangs:
-        poses = ((LeavingPose(PoseKind.ORIENTATION, name=name), count) for name, _, _, count in jammed)
+        poses = ((LeavingPose(PoseKind.ORIENTATION, name=stood.name), stood.parts) for stood in jammed)
         wanted = {candidate.orientations.lying[row].name for row in candidate.trial.wanted}
         lying = candidate.orientations.lying
-        eased = (proposals.ease_cut(proposal, place, lying) for name, place, _, _ in jammed if name in wanted)
+        eased = (proposals.ease_cut(proposal, stood.place, lying) for stood in jammed if stood.name in wanted)
         yield from (changed for changed in (*eased, proposals.purify(candidate, tuple(poses))) if changed)
         return
     start = replace(calm_drive.drive_at(candidate.plain_bowl(search), 0.0), devices=search.plain.devices)

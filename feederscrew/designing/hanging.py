@@ -29,6 +29,7 @@ from feederscrew.sorting.isolating.design import design_around_rails
 from feederscrew.sorting.isolating.rails import USUAL_RAILS, RailSetting, find_head
 from feederscrew.sorting.orientations import SAME_HEAD_COSINE, Neck, Orientation
 from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import JammedParts
 
 # what is varied, one after the other, from the best chain so far: chosen on an eyelet, a cup with a flange, a
 # T-nut and a push button, for which one of these decides
@@ -222,7 +223,7 @@ class RailsSearch:
             yield from build(kind, value, other, sweep)
 
     def mends_of_jams(
-        self, proposal: Proposal, trial: ShortTrial, jammed: Sequence[tuple[str, int, str, int]]
+        self, proposal: Proposal, trial: ShortTrial, jammed: Sequence[JammedParts]
     ) -> Iterator[Proposal]:
         """Yield what changes a chain whose queue jams, by what stood there and at which device.
 
@@ -234,8 +235,7 @@ class RailsSearch:
         proposal : Proposal
         trial : ShortTrial
             Of that chain.
-        jammed : sequence of (str, int, str, int)
-            As ``FilledQueue.jammed``: orientation, place of the device, its kind, how many.
+        jammed : sequence of JammedParts
 
         Yields
         ------
@@ -250,8 +250,8 @@ class RailsSearch:
             ends = trial.ends[n]
             shown.stands[row] |= bool(ends) and all(0 < end.station < station for end in ends)
         at_rails = at_blade = False
-        for name, place, _, _ in jammed:
-            row = rows.get(name, -1)
+        for stood in jammed:
+            row, place = rows.get(stood.name, -1), stood.place
             if row < 0 or shown.hangs[row]:
                 at_rails, at_blade = at_rails or place == station, at_blade or place > station
                 eased = proposals.ease_cut(proposal, place, self.lying) if place < station else None

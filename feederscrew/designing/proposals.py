@@ -630,7 +630,8 @@ def add_second_sensor(candidate: Any) -> Proposal | None:
     """Return the proposal of a candidate whose sensor and valve stand there twice, one behind the other.
 
     Where few of the parts are wanted, a few in a thousand that a full track lets past one sensor are several
-    in a hundred of what leaves. Past two they are as many in a million.
+    in a hundred of what leaves. Past two they are as many in a million, if the second sensor misses
+    independently of the first: parts in an attitude that neither tells apart pass both.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from feederscrew.designing.fill_verdicts import DifferenceKind, FillDifference
 from feederscrew.designing.findings import End, Fault, FaultKind, Hooking, Move, MoveKind, SeldomPart
 from feederscrew.sorting.isolating.chain import in_mm
 from feederscrew.trials.course import Fate
-from feederscrew.trials.fills import LeavingCounts
+from feederscrew.trials.fills import JammedParts, LeavingCounts
 from feederscrew.units import counted
 
 
@@ -290,13 +290,12 @@ def difference_text(difference: FillDifference) -> str:
             return f"{text}: parts that came as wanted fall back {place} ({d.count})"
 
 
-def jammed_text(jammed: Iterable[tuple[str, int, str, int]]) -> str:
+def jammed_text(jammed: Iterable[JammedParts]) -> str:
     """Return what stood in queues and was taken out: ' (came as B@0, stood at rails: 2)'.
 
     Parameters
     ----------
-    jammed : iterable of (str, int, str, int)
-        As ``FilledQueue.jammed``: orientation, place of the device, its kind, how many.
+    jammed : iterable of JammedParts
 
     Returns
     -------
@@ -304,8 +303,9 @@ def jammed_text(jammed: Iterable[tuple[str, int, str, int]]) -> str:
         '' of nothing.
     """
     counts = Counter[str]()
-    for name, _, kind, number in jammed:
-        counts[f"came as {name}, stood {f'at {kind}' if kind else 'on the track'}"] += number
+    for some in jammed:
+        where = f"at {some.kind}" if some.kind else "on the track"
+        counts[f"came as {some.name}, stood {where}"] += some.parts
     words = ", ".join(f"{text}: {number}" for text, number in counts.most_common(MOST_JAMMED))
     return f" ({words})" if words else ""
 

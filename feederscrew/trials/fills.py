@@ -8,6 +8,7 @@ import enum
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -96,6 +97,15 @@ def join_leaving_counts(*counts: LeavingCounts) -> LeavingCounts:
     return tuple(total.most_common())
 
 
+class JammedParts(NamedTuple):
+    """Parts of one orientation that stood at one device of a queue and were taken out."""
+
+    name: str  # of the orientation in which they came
+    place: int  # of the device along the chain of what stands on the track, from 1; 0 before the first
+    kind: str  # of the device; '' of the bare track
+    parts: int
+
+
 @dataclass(frozen=True)
 class FilledQueue:
     """Counts of a queue at one fill."""
@@ -117,9 +127,7 @@ class FilledQueue:
     counts_by_entry: tuple[tuple[int, int], ...] = ()
     # where parts that came as wanted fell back: names of devices, '' the bare track, and how many, most first
     wanted_returned_at: tuple[tuple[str, int], ...] = ()
-    # what was taken out: the orientation in which it came, the place of the device along the chain of what
-    # stands on the track, from 1, its kind, and how many, the most first
-    jammed: tuple[tuple[str, int, str, int], ...] = ()
+    jammed: tuple[JammedParts, ...] = ()  # what was taken out, the most first
 
     @property
     def rate(self) -> float:
@@ -351,5 +359,5 @@ class FedRow:
             left_instead=self.left_instead(outcome),
             counts_by_entry=tuple(zip(offered.tolist(), as_wanted.tolist(), strict=True)),
             wanted_returned_at=tuple((name, n) for name, n in lost.most_common() if n),
-            jammed=tuple((*key, n) for key, n in stood.most_common()),
+            jammed=tuple(JammedParts(*key, n) for key, n in stood.most_common()),
         )

@@ -20,6 +20,7 @@ from feederscrew.sorting.isolating.rails import find_head
 from feederscrew.sorting.orientations import hang, may_hang
 from feederscrew.sorting.orientations import orientations as on_the_track
 from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import JammedParts
 
 # a sleeve of 7 mm, 9 mm long with its flange of 12 mm: its head is as long as the part
 SLEEVE = [(0, 0), (6, 0), (6, 1.5), (3.5, 1.5), (3.5, 9), (0, 9)]
@@ -128,7 +129,7 @@ def test_what_stands_in_a_queue_says_what_is_changed(lying, rails_search):
 
     def changes(*jammed):
         search = hanging.RailsSearch(lying, rails_search.shares, rails_search.row, (), DesignRequest(0.5), 1)
-        return list(search.mends_of_jams(proposal, trial, jammed))
+        return list(search.mends_of_jams(proposal, trial, [JammedParts(*some) for some in jammed]))
 
     def slot(changed):
         return next(device for device in changed.devices if device.action is Action.HANG)
