@@ -4,9 +4,11 @@ A path along the wall, with climb, bank, lean of the wall and level as functions
 features of each device placed on it, built from a bowl's track, the devices and the part's orientations.
 The trial, dimensions, DXF, SVG, sheets, the printed section, the bowl's solid and its STEP file read it.
 
-Words: the *size* of a part is its longest diagonal, square across or along the track; the *way* of a device
-is the stretch of track that it is given; its *begin* is the origin of its features; the *entry* of a track is
-its begin in the bowl, far before the stretch: devices that come first and lean the track lean it from there.
+Words: the *size* of a part is the root of its length squared plus the square of its width or its height,
+whichever is larger, in the orientation where that is greatest. The *way* of a device is the stretch of track
+from ``start`` to ``end`` that it is given; ``begin`` lies within it and is the origin of its features. The
+*entry* of a track is its begin in the bowl, far before the stretch: devices that come first and lean the
+track lean it from there.
 """
 
 from collections.abc import Sequence
@@ -25,10 +27,10 @@ from feederscrew.sorting.orientations import Orientation
 DRAWN_TRACK_MARGIN_M = 5e-3  # [m] of track beyond what parts and cuts need, where not all of it is drawn
 SLOT_OVERLAP_M = 2e-6  # [m] by which a slot reaches into that of the next rails: no web is left between them
 MAX_EDGE_SLOPE_RAD = np.radians(10.0)  # [rad] of the track's free edge along it, where the bank changes
-MIN_TWIST_ROOMS = 0.5  # [1] of ``room_of`` the part: over so much the bank changes at least
+MIN_TWIST_ROOMS = 0.5  # [1] of ``room_of`` the orientations: least length of a twist
 BORE_RIM = 1.5  # [1] of a bore's diameter: wall over its middle
 DRAWN_SAGITTA_M = 1e-5  # [m] by which an arc may be seen too flat
-SPARE_SIZES = 0.1  # [1] of the part's size: more than half of it, before and behind a device
+SPARE_SIZES = 0.1  # [1] of the part's size: free way beyond half of it, before and behind a device
 CLEAR_SIZES = 0.5 + SPARE_SIZES  # [1] of the part's size: its centre of mass to a device it is clear of
 
 
@@ -40,7 +42,7 @@ class PlacedDevice:
     start: float  # [m] s where its way begins
     end: float  # [m] s where that ends: a part is clear of it there, and has settled
     begin: float  # [m] s of the origin of its features
-    level: float  # [m] of the track where it begins: steps before it are below 0
+    level: float  # [m] of the track where it begins; below 0 behind steps down
     features: Features  # from ``begin`` on
     openings: tuple[TrackOpening, ...]  # s and distance from the wall [m]: slots go on as they are made
     radius: float  # [m] of the wall
@@ -513,7 +515,7 @@ def clear_behind(begin: float, features: Features, size: float) -> float:
 
 
 def size_of_part(orientations: Sequence[Orientation]) -> float:
-    """Return the size of a part: the greatest length of its orientations, along the track or across it.
+    """Return the size of a part: the greatest ``size_of`` its orientations.
 
     Parameters
     ----------

@@ -30,14 +30,15 @@ from feederscrew.trials.part_poses import State
 from feederscrew.trials.queue_counts import QueueCounts, QueuedParts
 from feederscrew.trials.shape import round_circles, solid_of
 from feederscrew.trials.staging import Stage
-from feederscrew.trials.supply import MEAN_GAP_SHARE, PartSupply, QueuePlan
+from feederscrew.trials.supply import PartSupply, QueuePlan
 
+JAM_CLEARANCE = 0.2  # [L] of free way ahead: a part that stands behind so much is held by a device alone
 JAM_SECONDS = 1.0  # a part that stands at a device so long, nothing before it, is taken out by hand
 BACKED_UP_SECONDS = 0.5  # a part that stands at a pressure break so long, and is pushed, has left the track
-STANDING_WAY = 0.05  # of the unit of length: a part that has come no further stands
+STANDING_WAY = 0.05  # [L] of the part's length: a part that has come no further since its last mark stands
 PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
-CARRIED_SHARE = 0.1  # of its weight that other parts carry, and ...
-CLIMB_HEIGHT = 0.02  # ... as high over the track: a part has climbed on others
+CARRIED_SHARE = 0.1  # [1] of its weight: a part of which others carry more, and which lies higher than
+CLIMB_HEIGHT = 0.02  # [L] over the first level of the track, has climbed on others
 WHOLE_PERIOD_TOLERANCE = 1e-6  # of a period: a time so little longer than whole periods is that of them
 PITCHES_BEFORE = 2.0  # greatest pitches of parts that come with room for a sensor: track before its devices
 SPEED_PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
@@ -83,7 +84,7 @@ def lay_out_track(
     for item in placed:
         drop = item.features.drop
         levels.append(levels[-1] - (0.0 if drop is None else drop.height * float(np.cos(item.bank))))
-    # They come apart on a steeper way.
+    # The bare track has the bowl's climb: a spacing section leads down from its own place on.
     first = [replace(slope, climb=None) for slope in staging.entry_slopes(devices, track, orientations)]
     blown = staging.place_air(placed, track, orientations)
     stage = Stage(
@@ -381,9 +382,10 @@ class PartsQueue:
         longest = max(orientation.length for orientation in self.orientations)
         turn = PART_OF_TURN * 2.0 * np.pi * self.bowl.track.radius - 2.0 * longest  # some rolls back
         room = min(1.5 * longest * self.plan.parts + 2.0 * longest, max(turn, 2.0 * longest))
+        pitch = spacing + (1.0 + 2.0 * (self.plan.gaps or 0.0)) * longest  # the greatest
         if self.plan.is_ridden and spacing > 0.0:  # parts that come with room do not push each other
-            room = min(room, PITCHES_BEFORE * (spacing + (1.0 + 2.0 * (self.plan.gaps or 0.0)) * longest))
-        return room
+            room = min(room, PITCHES_BEFORE * pitch)
+        return max(room, pitch)  # or no part ever enters
 
     @property
     def time(self) -> float:
@@ -534,7 +536,7 @@ class PartsQueue:
             return QueueOutcome.STANDS
         # Whether it is what holds the others up: nothing stands close before it.
         ahead = [reach[m][0] - front for m in reach if m != n and self.crowd.is_on[m] and reach[m][1] > front]
-        is_first = min(ahead, default=np.inf) > MEAN_GAP_SHARE
+        is_first = min(ahead, default=np.inf) > JAM_CLEARANCE
         return QueueOutcome.JAMS if stood >= JAM_SECONDS and is_first else QueueOutcome.STANDS
 
     def _count(self, n: int, outcome: QueueOutcome, place: float, reach: Reaches) -> None:
@@ -625,7 +627,8 @@ class PartsQueue:
             is_poured=self.plan.gaps is None,
             seconds=seconds,
             counted_seconds=counted_seconds,
-            delivered=counts.whole + part - counts.first_share if counted_seconds else 0.0,
+            # below 0 where the first part fell back from the outlet
+            delivered=max(counts.whole + part - counts.first_share, 0.0) if counted_seconds else 0.0,
             whole=check.frozen(counts.left.sum(axis=0)),
             left_by_entry=check.frozen(np.array(counts.left)),
             returned_by_entry=check.frozen(counts.returned_at.sum(axis=1)),

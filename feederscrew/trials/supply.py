@@ -14,7 +14,7 @@ from feederscrew.trials.part_poses import State
 
 MEAN_GAP_SHARE = 0.2  # of a part's length: mean free way between parts as they come in a row
 PARTS_IN_SHARES = 40  # parts that come in exact shares
-POURED_SPACING = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
+POURED_SPACING = 1.05  # of the part's radius: off the wall, and over the track at least, of poured parts
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,8 @@ class QueuePlan:
     gaps: float | None = MEAN_GAP_SHARE
     frames: int = 0  # poses of all parts that are noted for a film
     is_balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
-    is_ridden: bool = False  # they come as they are behind a ride: where devices need room, on a short way
+    is_ridden: bool = False  # they come as a ride up the bowl leaves them: where devices need room between
+    # parts, these do not push each other, and a short bare track does
 
 
 class NextPart(NamedTuple):
@@ -36,13 +37,13 @@ class NextPart(NamedTuple):
 
     row: int  # of its orientation
     state: State  # (13,) at the place 0
-    gap: float  # [L] free way before it
+    gap: float  # [L] free way to the part ahead of it
     rear: float  # [L] along the wall, from the place 0
     front: float
 
 
 class PartSupply:
-    """Parts without end, drawn one by one; the same seed gives the same parts.
+    """Parts without end, drawn one by one; the same seed and number of parts give the same ones.
 
     Parameters
     ----------

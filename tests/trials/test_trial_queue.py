@@ -174,6 +174,15 @@ def test_parts_wait_where_the_track_is_full_and_come_next_however_long_they_are(
     assert len(row.waiting_parts) < len(came)
 
 
+def test_a_part_enters_however_much_room_a_device_needs(monkeypatch):
+    """One block of 20 mm has 70 mm of bare track; with 0.2 m of room before it, it never came."""
+    monkeypatch.setattr(queue.stream, "needed_spacing", lambda *own: 0.2)
+    row = row_of(STILL, 1, 1.0, 0.2)
+    assert row.crowd.is_on.all() and not row.waiting_parts
+    row.ride(0)
+    assert np.isfinite(row.result().velocity)
+
+
 def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
     on = parts_on(STILL, -0.1)
     on.arrays.jet_loads[0, 0], on.arrays.jets_until[0] = 5.0, 1.0

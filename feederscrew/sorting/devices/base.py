@@ -669,7 +669,7 @@ def mapping_text(entries: Iterable[tuple[str, str]]) -> str:
 
 
 def size_of(orientation: "Orientation") -> float:
-    """Return the greatest length of an orientation in the plane of the track or across it.
+    """Return the diagonal of an orientation: root of length squared plus the greater of width and height.
 
     Parameters
     ----------

@@ -263,8 +263,8 @@ class Slope:
     """Another lean of the track, from a place on: to the end of what is tried, or to the next slope."""
 
     begin: float  # [m] x
-    climb: float | None = None  # [rad] rise along the track; None is the bowl's own
-    bank: float | None = None  # [rad] tilt towards the wall
+    climb: float | None = None  # [rad] rise along the track; None is as before
+    bank: float | None = None  # [rad] by which the free edge is higher than the wall; None is as before
     wall: float | None = None  # [rad] by which the wall leans back from upright; None is as before
 
 
