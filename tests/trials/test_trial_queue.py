@@ -284,6 +284,22 @@ def test_what_stands_at_a_blade_for_a_second_is_taken_out():
     assert free.min() > 0.0 and row.result().gap == pytest.approx(free.mean(), rel=0.01)
 
 
+@pytest.mark.parametrize(("gap", "outcome"), [
+    (0.1, queue.QueueOutcome.STANDS),  # behind a part that stands
+    (0.3, queue.QueueOutcome.JAMS),
+    (-5.0, queue.QueueOutcome.JAMS),  # the other one is behind it
+])  # fmt: skip
+def test_what_stands_close_behind_another_part_is_no_jam(gap, outcome):
+    row = row_of(slope(), 2, 3.0, 0.0)
+    begin, end = row.windows[0]
+    front = 0.5 * (begin + end)
+    reach = {0: [front + gap, front + gap + 1.0, 0.0], 1: [front - 1.0, front, 0.0]}
+    row.mark[:], row.since[:] = front, -2.0
+    assert row.crowd.is_on.all() and row.outcome_of(1, front - 0.5, reach, False) is outcome
+    row.since[:] = -0.5
+    assert row.outcome_of(1, front - 0.5, reach, False) is queue.QueueOutcome.STANDS
+
+
 def test_poured_parts_come_to_lie_and_travel():
     row = row_of(BOWL, 3, 2.0, None)
     ride(row, 60)
