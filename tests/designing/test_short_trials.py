@@ -32,7 +32,7 @@ from feederscrew.sorting.devices.pneumatics import PULSE
 from feederscrew.sorting.isolating.chain import Cut, judge_cut
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 from feederscrew.trials.course import Fate
-from feederscrew.trials.fills import LeavingPose, PoseKind
+from feederscrew.trials.fills import JammedParts, LeavingPose, PoseKind
 from feederscrew.trials.wanted import equivalent_rows, wanted_states
 
 DRAWS = 1500
@@ -268,9 +268,9 @@ def test_a_cut_at_which_what_is_wanted_stands_in_a_queue_cuts_less(rows, dropped
     # a queue that jams at it asks for the same; what else stands there is cut more
     search = SimpleNamespace()
     candidate = SimpleNamespace(proposal=proposal, trial=seen, orientations=ways)
-    mends = list(exploring.mends_of_jams(search, candidate, (("A@0", 1, before.device.kind, 2),)))
+    mends = list(exploring.mends_of_jams(search, candidate, [JammedParts("A@0", 1, before.device.kind, 2)]))
     assert [one.cuts[0].device.limit for one in mends] == [after.device.limit]
-    (more,) = exploring.mends_of_jams(search, candidate, (("A@90", 1, before.device.kind, 1),))
+    (more,) = exploring.mends_of_jams(search, candidate, [JammedParts("A@90", 1, before.device.kind, 1)])
     assert abs(more.cuts[0].device.limit - before.largest.limit) < abs(
         before.device.limit - before.largest.limit
     )
