@@ -11,8 +11,8 @@ from feederscrew_cli.options import Output, Values
 
 if TYPE_CHECKING:
     from feederscrew.bowl import Bowl
+    from feederscrew.feeding.rate import Shares
     from feederscrew.part.record import Part
-    from feederscrew.studies.rate import Shares
 
 CHAIN_OPTIONS = (
     options.aspect("Aspect on which the part must leave the bowl.", required=True),
@@ -120,14 +120,14 @@ def shares_finder(
     Returns
     -------
     callable
-        From a Bowl to ``studies.rate.Shares``; each bowl is answered once.
+        From a Bowl to ``feeding.rate.Shares``; each bowl is answered once.
 
     Raises
     ------
     ArgumentError
         If the part has no such aspect or heading.
     """
-    from feederscrew.studies import rate as study
+    from feederscrew.feeding import rate as study
 
     study.check_wanted(part, request["aspect"], request.get("heading"))
     shares_by_bowl: dict[Bowl, Shares] = {}
@@ -160,7 +160,7 @@ def shares(out: Output, part: "Part", bowl: "Bowl", share_options: Values, reque
 
 
 def share_keywords(share_options: Values) -> Values:
-    """Return the keywords of ``studies.rate.shares`` that the options name.
+    """Return the keywords of ``feeding.rate.shares`` that the options name.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def share_keywords(share_options: Values) -> Values:
 
 
 def progress_keywords(out: Output) -> Values:
-    """Return the keywords of ``studies.rate.shares`` that tell how far it is.
+    """Return the keywords of ``feeding.rate.shares`` that tell how far it is.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ unit.
 
 import lazy_loader
 
-from feederscrew.version import __version__ as __version__
+from feederscrew.base.version import __version__ as __version__
 
 _of_stub, _names_of_stub, __all__ = lazy_loader.attach_stub(__name__, __file__)
 __all__.remove("__version__")

@@ -17,10 +17,10 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import settings
 
-from feederscrew.dropping import arrival
+from feederscrew.arrivals import arrival, simulation_cache
+from feederscrew.arrivals import aspects_study as aspects
 from feederscrew.output import shading as shading_output
 from feederscrew.output import style
-from feederscrew.studies import aspects, simulation_cache
 from feederscrew_cli.main import feeder
 
 # A shell that starts the tests in the background ignores these, and so would every command they start.

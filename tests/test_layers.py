@@ -7,26 +7,26 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.bowl.devices.kinds import KINDS
 
 ROOT = Path(__file__).parent.parent
 ORDER = [
     "version", "heavy", "arrays", "errors", "check", "units", "columns", "value_forms", "signatures",
     "records", "running", "caches", "processes", "documents", "dxf", "geometry", "part", "resting",
-    "sorting.devices", "bowl", "screw", "mechanics", "conveying", "dropping", "sorting", "rates", "trials",
+    "bowl.devices", "bowl", "screw", "mechanics", "conveying", "dropping", "sorting", "rates", "trials",
     "machine", "solidbowl", "studies", "designing", "advising",
     "output", "thesis", "samples", "batch", "serving",
 ]  # fmt: skip
 DOORS = {
-    "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/documents.py"},
-    "pandas": {"feederscrew/output", "feederscrew/records.py"},
-    "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/figures.py"},
-    "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/dxf.py"},
-    "manifold3d": {"feederscrew/part", "feederscrew/sorting/solid.py", "feederscrew/solidbowl/facets.py",
-                   "feederscrew/advising/changes.py"},
-    "OCP": {"feederscrew/output/solid_files.py", "feederscrew/solidbowl/exact"},
-    "click": {"cli"}, "numba": {"feederscrew/geometry"}, "llvmlite": {"feederscrew/geometry"},
-    "werkzeug": {"feederscrew/serving", "cli/serve.py"},
+    "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/base/documents.py"},
+    "pandas": {"feederscrew/output", "feederscrew/base/records.py"},
+    "matplotlib": {"feederscrew/output", "feederscrew/base/records.py", "feederscrew/thesis/figures.py"},
+    "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/base/dxf.py"},
+    "manifold3d": {"feederscrew/part", "feederscrew/sorting/solid.py", "feederscrew/cad/facets.py",
+                   "feederscrew/designing/changes.py"},
+    "OCP": {"feederscrew/output/solid_files.py", "feederscrew/cad/exact"},
+    "click": {"cli"}, "numba": {"feederscrew/base/geometry"}, "llvmlite": {"feederscrew/base/geometry"},
+    "werkzeug": {"feederscrew/jobs/serving", "cli/serve.py"},
 }  # fmt: skip
 FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])
 

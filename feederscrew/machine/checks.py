@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import units
+from feederscrew.base import units
+from feederscrew.base.errors import FeederError
+from feederscrew.base.units import MM, MM_S, MPA
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Sizing
-from feederscrew.conveying import hop
-from feederscrew.errors import FeederError
 from feederscrew.machine.springs import fewest_leaves, greatest_amplitude
-from feederscrew.sorting.devices.trade import Action
-from feederscrew.units import MM, MM_S, MPA
+from feederscrew.motion import hop
 
 VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 

@@ -6,8 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.bowl.devices.orientation_names import nearest
 from feederscrew.bowl.record import (
     RIGHT_ANGLE_RAD,
     UNBALANCE_UNKNOWN,
@@ -18,16 +21,13 @@ from feederscrew.bowl.record import (
     Unbalance,
     shares,
 )
-from feederscrew.conveying import answer
-from feederscrew.errors import FeederError
-from feederscrew.geometry.polygons import turned
+from feederscrew.feeding import well_oriented
 from feederscrew.machine.springs import analyse_springs, gain, greatest_amplitude
-from feederscrew.mechanics.headings import headings
+from feederscrew.motion import conveying as answer
+from feederscrew.motion.headings import headings
 from feederscrew.part.record import Part
-from feederscrew.rates import well_oriented
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
-from feederscrew.sorting.devices.orientation_names import nearest
 
 STRAIGHT_TRACK = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
 MAX_SIZING_ITERATIONS = 200  # of a search that halves its error in each
@@ -139,7 +139,7 @@ def size_shape(
 
     References
     ----------
-    ``mechanics.headings``.
+    ``motion.headings``.
     """
     name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
     stood = posture(part, aspects, name)

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Points, Triangles
-from feederscrew.columns import Column
-from feederscrew.errors import FeederError, MeshError
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats, Points, Triangles
+from feederscrew.base.columns import Column
+from feederscrew.base.errors import FeederError, MeshError
+from feederscrew.base.heavy import heavy
+from feederscrew.base.records import VIEWS_MODULE, ReadableRecord
+from feederscrew.base.units import MM
 from feederscrew.part.hull import Hull
-from feederscrew.records import VIEWS_MODULE, ReadableRecord
-from feederscrew.units import MM
 
 trimesh = heavy("trimesh")
 

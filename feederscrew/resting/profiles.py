@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check, documents
-from feederscrew.arrays import Floats
-from feederscrew.columns import Column
-from feederscrew.documents import hint
-from feederscrew.errors import Faults, FeederError
+from feederscrew.base import check, documents
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Column
+from feederscrew.base.documents import hint
+from feederscrew.base.errors import Faults, FeederError
+from feederscrew.base.units import counted, quantity_text
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules.recommended import LAUNCH_NAMES
-from feederscrew.units import counted, quantity_text
 
 HEAD_LINE = re.compile(r"#\s*([A-Za-z_ -]{1,30}?)\s*:\s*(.*)")
 DIGEST = re.compile(r"(?:sha256:)?([0-9a-f]{8,64})", re.IGNORECASE)

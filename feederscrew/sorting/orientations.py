@@ -12,23 +12,23 @@ import numpy as np
 import shapely
 import shapely.affinity
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints, Points, Vector
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints, Points, Vector
+from feederscrew.base.columns import Column
+from feederscrew.base.errors import ConfigError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.polygons import convex, cross, outline, sides, turned
+from feederscrew.base.units import GRAVITY
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.columns import Column
-from feederscrew.conveying import answer
-from feederscrew.conveying.hop import Hop, hop
-from feederscrew.errors import ConfigError
-from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import convex, cross, outline, sides, turned
-from feederscrew.mechanics import sameness
-from feederscrew.mechanics.headings import Headings, headings
+from feederscrew.motion import conveying as answer
+from feederscrew.motion import sameness
+from feederscrew.motion.headings import Headings, headings
+from feederscrew.motion.hop import Hop, hop
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.sorting import footprints
 from feederscrew.sorting.footprints import Footprint, silhouette, visible_area
-from feederscrew.units import GRAVITY
 
 if TYPE_CHECKING:
     from feederscrew.sorting.kernel import Foot

@@ -9,17 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Array, Floats, Ints
+from feederscrew.arrivals import plate_test
+from feederscrew.arrivals.kernel import body
+from feederscrew.arrivals.kernel.floor_motion import Floor
+from feederscrew.arrivals.pool import in_batches
+from feederscrew.base import check
+from feederscrew.base.arrays import Array, Floats, Ints
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import on_disk, zero_rows
+from feederscrew.bowl.devices.features import Sensor
 from feederscrew.bowl.record import Bowl
-from feederscrew.dropping import plate_test
-from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.floor_motion import Floor
-from feederscrew.dropping.pool import in_batches
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import on_disk, zero_rows
 from feederscrew.sorting import sensor_views
-from feederscrew.sorting.devices.features import Sensor
 from feederscrew.trials import part_poses, staging
 from feederscrew.trials.kernel import travel, workspace
 from feederscrew.trials.kernel.plate_views import BLOCK

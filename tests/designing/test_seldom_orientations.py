@@ -13,8 +13,8 @@ from feederscrew.designing.findings import FaultKind
 from feederscrew.designing.record import DesignRequest, RiskKind
 from feederscrew.designing.search import Search
 from feederscrew.designing.short_trials import break_even, find_denials
+from feederscrew.feeding.rate import Shares
 from feederscrew.output import designs
-from feederscrew.studies.rate import Shares
 
 
 @pytest.mark.parametrize(

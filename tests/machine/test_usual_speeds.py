@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying.answer import answer
 from feederscrew.designing import calm_drive
 from feederscrew.machine import checks
 from feederscrew.machine.drive_sizing import STROKES_M
+from feederscrew.motion.conveying import answer
 
 ANGLES = np.radians((15.0, 20.0, 25.0, 30.0))
 

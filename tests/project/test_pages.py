@@ -148,7 +148,7 @@ def test_the_functions_folders_and_modules_that_the_pages_name_are_there():
 
 
 def test_a_release_knows_its_version_and_its_changes():
-    version = re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/version.py").read_text())[1]
+    version = re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/base/version.py").read_text())[1]
     assert re.search(r"^## (\S+?),", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1] == version
     _, said, fault = program("docs/release.py")
     assert f"git tag v{version}" in said and not fault

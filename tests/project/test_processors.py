@@ -28,8 +28,8 @@ convey
 SCRIPT = """
 import sys
 from click.testing import CliRunner
-from feederscrew.dropping import arrival
-from feederscrew.studies import aspects
+from feederscrew.arrivals import arrival
+from feederscrew.arrivals import aspects_study as aspects
 from feederscrew_cli.main import feeder
 aspects.MAX_DROPS, arrival.FIRST_PARTS, arrival.MAX_ARRIVALS, arrival.LONGER_TIME_PARTS = 500, 60, 60, 60
 calls, part, out = eval(sys.argv[1])
@@ -90,4 +90,4 @@ def test_no_module_hands_its_numbers_to_blas():
         if path.relative_to(package).parts[0] not in FREE
         for line, what in offences(path)
     }
-    assert found == {}, "use feederscrew.geometry.vectors"
+    assert found == {}, "use feederscrew.base.geometry.vectors"
