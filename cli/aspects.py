@@ -116,8 +116,8 @@ def inertia(part: Values, out: Output) -> None:
     input; what a card does not give stays empty. With -o: inertia.csv, or inertia.json with
     --format json, and run.json.
     """
-    from feederscrew.arrivals.aspects_study import inertia as inertia_study
     from feederscrew.output import inertia as inertia_output
+    from feederscrew.part.inertia import inertia as inertia_study
 
     solid = out.part(part)
     study = inertia_study(solid)

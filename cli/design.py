@@ -13,11 +13,11 @@ from feederscrew_cli.interrupt import exit_status, hold_interrupts, note_interru
 from feederscrew_cli.options import Output, Values
 
 if TYPE_CHECKING:
+    from feederscrew.arrivals.entry import Shares
     from feederscrew.bowl import Bowl
     from feederscrew.bowl.reading import Setting
     from feederscrew.designing.families import FamilyStudy
     from feederscrew.designing.record import DesignRequest, DesignStudy
-    from feederscrew.feeding.rate import Shares
     from feederscrew.output.folder import ResultFolder
     from feederscrew.part.record import Part
 

@@ -2,10 +2,12 @@
 
 from .arrivals.aspects_study import aspects as aspects
 from .arrivals.aspects_study import find_aspects as find_aspects
-from .arrivals.aspects_study import inertia as inertia
 from .arrivals.drop import drop as drop
 from .arrivals.drop import shake as shake
+from .arrivals.entry import Shares as Shares
+from .arrivals.entry import shares as shares
 from .arrivals.floor import floor as floor
+from .base import errors as errors
 from .base.errors import (
     ConfigError as ConfigError,
 )
@@ -26,9 +28,7 @@ from .designing.design import DesignSearch as DesignSearch
 from .designing.design import design as design
 from .feeding.compare import calibrate as calibrate
 from .feeding.compare import compare as compare
-from .feeding.rate import Shares as Shares
 from .feeding.rate import rate as rate
-from .feeding.rate import shares as shares
 from .feeding.tune import tune as tune
 from .feeding.well_oriented import Rate as Rate
 from .jobs.batch.sweep import sweep as sweep
@@ -37,6 +37,7 @@ from .motion.convey import convey as convey
 from .motion.conveying import Answer as Answer
 from .motion.slide import slide as slide
 from .output.report import report as report
+from .part.inertia import inertia as inertia
 from .part.loading import load as load
 from .part.record import Part as Part
 from .resting.aspects import Aspect as Aspect

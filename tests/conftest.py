@@ -59,11 +59,11 @@ def pytest_sessionfinish(session):
         session.config.stash[COMPILING].wait()
 
 
-EARLY = ("solidbowl", "dropping", "conveying", "resting", "screw", "part", "mechanics", "rates", "thesis")
+EARLY = ("base", "cad", "arrivals", "motion", "resting", "part", "feeding", "thesis")
 
 
 def _early(item):
-    """Whether a test runs without the trial: as one of a room before it, or of the bowl as a solid."""
+    """Whether a test runs without the trial: as one of a stage before it, or of the bowl as a solid."""
     return item.path.parent.name in EARLY and item.path.name not in ("test_on_mesh.py", "test_naming.py")
 
 

@@ -1,4 +1,4 @@
-"""The studies of ``feeder aspects`` and ``inertia``: how a part rests, how often, what tips it; its mass."""
+"""The study of ``feeder aspects``: how a part rests, how often, and what tips it."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -14,7 +14,6 @@ from feederscrew.base.running import OnCores
 from feederscrew.base.signatures import with_shown_signature
 from feederscrew.base.units import GRAVITY
 from feederscrew.bowl import arguments
-from feederscrew.part.mass import MassBalance, mass_balance
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspect, Aspects, find, require_ground
 from feederscrew.resting.exact_tumbling import Transition, transitions
@@ -295,40 +294,3 @@ def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
         answer = closed.recommended
         warnings.append(f"none of {test.drops} drops came to rest: the closed form is taken")
     return AspectsStudy(test.part, replace(closed, recommended=answer, warnings=tuple(warnings)), tally)
-
-
-@dataclass(frozen=True, eq=False)
-class InertiaStudy(ReadableRecord, view="inertia.INERTIA_VIEW"):
-    """A part, and what follows from its volume, mass and inertia."""
-
-    part: Part
-    balance: MassBalance
-
-
-INERTIA_COLUMNS: tuple[Column[InertiaStudy], ...] = (  # beside those of every part
-    Column("inertia_at_origin_g_mm2", lambda study: study.balance.inertia_at_origin, "g mm2"),
-    Column("principal_moments_g_mm2", lambda study: study.balance.moments, "g mm2"),
-    Column("principal_axes", lambda study: study.balance.axes),
-    Column("hull_volume_mm3", lambda study: study.balance.hull_volume, "mm3"),
-    Column("bounding_box_mm", lambda study: study.balance.extents, "mm"),
-    Column("bounding_box_corner_mm", lambda study: study.balance.corner, "mm"),
-)
-
-
-def inertia(part: Part) -> InertiaStudy:
-    """Return the mass properties of a part, as ``feeder inertia``.
-
-    Parameters
-    ----------
-    part : Part
-
-    Returns
-    -------
-    InertiaStudy
-
-    Raises
-    ------
-    ArgumentError
-        If it is not a Part.
-    """
-    return InertiaStudy(arguments.a_part(part), mass_balance(part))

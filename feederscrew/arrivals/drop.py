@@ -198,7 +198,7 @@ def drop(
         If the user stops it before there is anything to count; later, the result is partial.
     """
     own = {"fall": fall, "spin": spin, "speed": speed, "restitution": restitution, "friction": friction}
-    ranges, run = arguments.conditions(**own), RunSettings(seed, jobs, progress, before)
+    ranges, run = condition_texts(**own), RunSettings(seed, jobs, progress, before)
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
     launch_of_name(launch)
     _check_run(run)
@@ -412,7 +412,7 @@ def shake(
         As for ``drop``.
     """
     own = {"fall": fall, "spin": spin, "speed": speed, "restitution": restitution, "friction": friction}
-    ranges, run = arguments.conditions(**own), RunSettings(seed, jobs, progress, before)
+    ranges, run = condition_texts(**own), RunSettings(seed, jobs, progress, before)
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
     driven = arguments.some_bowls(bowls)
     launch_of_name(launch)
@@ -626,3 +626,22 @@ def follow(
     rng, runs = np.random.default_rng(seed), runs or toss_runs.DEFAULT_RUNS
     result = toss_runs.follow(part, grounded, read, surface, rng, runs=runs, jobs=jobs, progress=progress)
     return TossStudy(part, aspects, read, surface, seed, result)
+
+
+SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
+
+
+def condition_texts(**ranges: Condition) -> dict[str, str | None]:
+    """Return the conditions of a launch that are given, as typed: '20 mm:50 mm'."""
+    texts: dict[str, str | None] = {}
+    for name, value in ranges.items():
+        if value is not None:
+            dimension = launch_conditions.CONDITION_KEYS[name][0]
+            ends = value if isinstance(value, (tuple, list)) else (value,)
+            texts[name] = ":".join(
+                end
+                if isinstance(end, str)
+                else f"{arguments.amount(name, end, dimension)!r} {SI[dimension]}".strip()
+                for end in ends
+            )
+    return texts

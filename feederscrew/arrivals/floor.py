@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from feederscrew.arrivals.entry import likeliest
 from feederscrew.base.arrays import Array, Floats
 from feederscrew.base.columns import Column
 from feederscrew.base.geometry.grids import Grid, evaluate, span
@@ -13,7 +14,6 @@ from feederscrew.base.records import ReadableRecord
 from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import Quantity, former_keywords
 from feederscrew.bowl.record import Bowl
-from feederscrew.feeding.rate import likeliest
 from feederscrew.motion import floor_balance, limits, motion_maps
 from feederscrew.motion.cycle import Cycle
 from feederscrew.part.record import Part

@@ -1,17 +1,16 @@
-"""Views of a record: a short text, a table, a picture; made outside of the room it is from.
+"""Views of a record: a short text, a table, a picture; made outside of the stage it is from.
 
-Tables and pictures are views: `output.record_views` makes them, and is imported when one is asked for. No
-room but the output knows what they are made of.
+The module that ``views`` names makes tables and pictures, and is imported when one is asked for.
 """
 
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
-from importlib import import_module
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from feederscrew.base.units import printable
+from feederscrew.base.views import views
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,13 +20,12 @@ if TYPE_CHECKING:
 MAX_TEXT_LENGTH = 360  # characters of a text in all,
 MAX_FIELD_LENGTH = 44  # and of one field
 MOST_LETTERS = 500  # of a text that says an answer
-VIEWS_MODULE = "feederscrew.output.record_views"
 
 
 class ReadableRecord:
     """A record whose text is short, and that has a table and, where its command draws, pictures."""
 
-    _view_name: ClassVar[str] = ""  # of a ``RecordView``: its module in ``feederscrew.output``, and its name
+    _view_name: ClassVar[str] = ""  # of a ``RecordView``: its module among the pages, and its name
 
     def __init_subclass__(cls, view: str = "", **keywords: Any) -> None:
         """Note the view of a class; a class without one shows that of the class it is made from."""
@@ -37,7 +35,7 @@ class ReadableRecord:
         cls.__repr__ = ReadableRecord.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
 
     def __repr__(self) -> str:
-        answer = import_module(VIEWS_MODULE).answer(self)
+        answer = views().answer(self)
         if answer is None:
             return text(self)
         line = printable(answer)
@@ -157,4 +155,4 @@ def _field(value: Any) -> str:
 
 
 def _view(kind: str) -> Callable[..., Any]:
-    return getattr(import_module(VIEWS_MODULE), kind)
+    return getattr(views(), kind)

@@ -10,7 +10,6 @@ from os import PathLike
 from typing import Any, TypeAlias, TypeVar, Unpack, cast
 
 from feederscrew import bowl as bowls
-from feederscrew.arrivals import launch_conditions as condition_keys
 from feederscrew.base import check, documents
 from feederscrew.base import units as si
 from feederscrew.base.errors import ArgumentError
@@ -28,7 +27,6 @@ Path: TypeAlias = str | PathLike[str]
 Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the smaller and the larger
 Function = TypeVar("Function", bound=Callable[..., object])
 Fold: TypeAlias = Callable[[dict[str, Any], Any], None]  # puts a former keyword's value into the arguments
-SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
 EXPONENT_RANGE = -10.0, 10.0  # [1] of a surface: calibrate tries some below 0 as well
 BOWL_MEND = "give a Bowl, as read_bowl returns it"
 OVERRIDES = "overrides"
@@ -379,20 +377,6 @@ def pair(name: str, value: object, dimension: str) -> tuple[float, float]:
     if low > high:
         raise ArgumentError(name, f"is from {low:g} to {high:g}", "give the smaller and the larger")
     return low, high
-
-
-def conditions(**ranges: Condition) -> dict[str, str | None]:
-    """Return the conditions of a launch that are given, as typed: '20 mm:50 mm'."""
-    texts: dict[str, str | None] = {}
-    for name, value in ranges.items():
-        if value is not None:
-            dimension = condition_keys.CONDITION_KEYS[name][0]
-            ends = value if isinstance(value, (tuple, list)) else (value,)
-            texts[name] = ":".join(
-                end if isinstance(end, str) else f"{amount(name, end, dimension)!r} {SI[dimension]}".strip()
-                for end in ends
-            )
-    return texts
 
 
 def a_rule(rule: str, aspects: Aspects) -> str:

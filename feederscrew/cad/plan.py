@@ -15,7 +15,7 @@ from feederscrew.base.arrays import Floats, Values, Vector
 from feederscrew.base.errors import FeederError
 from feederscrew.bowl.devices.features import Blade
 from feederscrew.bowl.record import Sizing, Track
-from feederscrew.machine.sizing import MIN_WALL_ABOVE_PART_M, Size
+from feederscrew.bowl.size import MIN_WALL_ABOVE_PART_M, Size
 from feederscrew.sorting.tooled_track import TooledTrack
 
 Extents = Floats | tuple[float, ...]  # (3,) [m] of a part along its axes

@@ -12,6 +12,7 @@ from feederscrew.base.errors import FeederError
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.size import Size
 from feederscrew.cad import riding, segments
 from feederscrew.cad.closed_body import BowlSolid, body, screwed
 from feederscrew.cad.exact import exact_body, exact_file
@@ -26,7 +27,6 @@ from feederscrew.cad.plan import (
     plan,
 )
 from feederscrew.feeding import stream
-from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.orientations import hang, neck

@@ -14,6 +14,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from feederscrew.arrivals.entry import Shares, arriving
 from feederscrew.base import check
 from feederscrew.base.errors import FeederError
 from feederscrew.base.records import ReadableRecord
@@ -28,11 +29,11 @@ from feederscrew.designing import tooling_trials
 from feederscrew.designing.changes import Change, list_changes
 from feederscrew.designing.hazards import risks
 from feederscrew.designing.record import RiskKind
-from feederscrew.feeding.rate import Shares, arriving, rate
-from feederscrew.feeding.well_oriented import RECOMMENDED_RULE
+from feederscrew.feeding.rate import rate
 from feederscrew.part.loading import load
 from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.sorting.isolating.chain import Design
 from feederscrew.sorting.orientations import Orientation, name_mirror_images, orientations
 from feederscrew.sorting.tooling import ToolingSearch, ToolingStudy, tooling_without
@@ -359,7 +360,7 @@ def advise(
     part: Part,
     bowl: Bowl,
     *,
-    rule: str = RECOMMENDED_RULE,
+    rule: str = RECOMMENDED_ANSWER,
     seed: int = 1,
     seconds: Quantity = SEARCH_SECONDS,
     with_changes: bool = True,

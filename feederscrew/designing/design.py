@@ -8,6 +8,7 @@ from typing import Any, TypedDict, Unpack, overload
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import Shares, the_shares
 from feederscrew.base import check, units
 from feederscrew.base.errors import ArgumentError, FeederError
 from feederscrew.bowl import arguments, schema
@@ -26,7 +27,7 @@ from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.nearest import nearest_from_study
 from feederscrew.designing.record import DesignRequest, DesignStudy, ProofKind
-from feederscrew.feeding.rate import MIN_POSITIVE, Shares, the_shares
+from feederscrew.feeding.rate import MIN_POSITIVE
 from feederscrew.machine import checks, drive_sizing
 from feederscrew.machine import sheet as machines
 from feederscrew.machine.drive_sizing import is_two_axis, needed_angle

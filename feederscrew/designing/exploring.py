@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.arrivals.aspects_study import find_aspects
+from feederscrew.arrivals.entry import Shares, shares
 from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.base.arrays import Floats
 from feederscrew.bowl.device_list import check_written
@@ -26,7 +27,6 @@ from feederscrew.designing.record import Attempt
 from feederscrew.designing.search import BankedTrack, Candidate, ChainKey, Place, Search
 from feederscrew.designing.short_trials import find_denials, robust_run
 from feederscrew.feeding import stream
-from feederscrew.feeding.rate import Shares, shares
 from feederscrew.feeding.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.isolating.chain import OutcomeKind

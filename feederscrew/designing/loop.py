@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.arrivals.entry import Shares
 from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.base.errors import ArgumentError
 from feederscrew.base.geometry import vectors
@@ -43,7 +44,6 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.designing.short_trials import robust_run
-from feederscrew.feeding.rate import Shares
 from feederscrew.motion.hop import hop
 from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.sorting.isolating import chain as static

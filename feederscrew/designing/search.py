@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from feederscrew.arrivals.entry import Shares
 from feederscrew.base.arrays import Floats
 from feederscrew.base.running import RunSettings
 from feederscrew.bowl.devices.base import ComparedValue
@@ -19,7 +20,6 @@ from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import RATE_KEPT, Attempt, DesignRequest, RobustRun
 from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING
 from feederscrew.feeding import stream
-from feederscrew.feeding.rate import Shares
 from feederscrew.feeding.stream import Orientations
 from feederscrew.part.record import Part
 from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER

@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from feederscrew.arrivals.ensemble import wilson
+from feederscrew.arrivals.entry import Shares
 from feederscrew.base.arrays import Floats, Ints
 from feederscrew.base.errors import FeederError
 from feederscrew.base.running import RunSettings
@@ -29,7 +30,6 @@ from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import BankedTrack, Candidate, Search
 from feederscrew.designing.short_trials import SELDOM_SHARE, find_denials
 from feederscrew.feeding import stream
-from feederscrew.feeding.rate import Shares
 from feederscrew.sorting.isolating import chain as static
 from feederscrew.sorting.isolating.chain import Design, DesignConstraints, OutcomeKind
 from feederscrew.sorting.tooling import ToolingStudy

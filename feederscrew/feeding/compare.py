@@ -16,6 +16,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.aspects_study import aspects as resting
 from feederscrew.arrivals.ensemble import wilson
+from feederscrew.arrivals.entry import shares
 from feederscrew.base import check, documents
 from feederscrew.base.arrays import Bools, Floats, Vector
 from feederscrew.base.columns import Column, Frame, of_records
@@ -26,7 +27,6 @@ from feederscrew.base.signatures import with_shown_signature
 from feederscrew.bowl import arguments
 from feederscrew.bowl.record import Bowl
 from feederscrew.feeding import stream
-from feederscrew.feeding.rate import shares
 from feederscrew.motion import conveying
 from feederscrew.part import load
 from feederscrew.part.record import Part
@@ -248,7 +248,7 @@ def compare(
     as_published : bool
         Count each class once in the PMI rule, as the thesis's tables do.
     progress, before : function, optional
-        Of the parts on the moving floor, as for ``rate.shares``; a file by device needs them.
+        Of the parts on the moving floor, as for ``entry.shares``; a file by device needs them.
 
     Returns
     -------

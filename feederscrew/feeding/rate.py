@@ -1,37 +1,29 @@
 """The study of ``feeder rate``: well-oriented parts per minute of one part from one bowl."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from os import PathLike
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from feederscrew.arrivals import simulation_cache
-from feederscrew.arrivals.aspects_study import aspects as resting
-from feederscrew.arrivals.ensemble import wilson
+from feederscrew.arrivals.entry import Shares, check_wanted, shares, the_shares
 from feederscrew.base import check
 from feederscrew.base.arrays import Floats
 from feederscrew.base.columns import Column, Frame, of_arrays
-from feederscrew.base.errors import ArgumentError
 from feederscrew.base.records import ReadableRecord
-from feederscrew.base.running import OnCores
 from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import Path, Quantity, former_keywords
 from feederscrew.bowl.device_list import shank_remarks, unknown_aspects
 from feederscrew.bowl.devices.base import Device
-from feederscrew.bowl.devices.orientation_names import rows, split_name
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
 from feederscrew.feeding import stream, well_oriented
 from feederscrew.feeding.stream import orientation_columns
-from feederscrew.machine import checks
 from feederscrew.motion import hop
-from feederscrew.motion.conveying import conveying
+from feederscrew.motion.conveying import speed_remark
 from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.rules.recommended import LAUNCH, launch_of_name
 from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER as RECOMMENDED
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.sorting.device_passages import Passage, until_returned
@@ -42,185 +34,6 @@ from feederscrew.sorting.tipping import marked
 EQUAL_SHARE_RATIO = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 MIN_POSITIVE = 1e-6  # of what must be above 0
 LEAST_CARRIED_SHARE = 0.05  # [1] of the parts: a rate of fewer asks for twenty times as many at the entry
-CHOOSING = 400  # parts that show which aspect is the likeliest, where its share is well above all others
-FEED_SEED = 1  # of the parts that are fed onto the moving floor
-
-
-@dataclass(frozen=True, eq=False)
-class Shares(ReadableRecord, view="record_lines.SHARES_VIEW"):
-    """The aspects of a part with the one answer that is taken for their shares."""
-
-    aspects: Aspects  # their ``recommended`` is that answer
-    measured: profiles.CountFile | None = None  # the file it was read from, if it was
-    fed: bool = False  # whether they are what lies on the bowl's moving floor, at its own drive
-
-    @property
-    def inputs(self) -> dict[str, str]:
-        """The sha256 of the file, by its path."""
-        return {} if self.measured is None else {self.measured.source: self.measured.sha256}
-
-
-@former_keywords()
-def shares(
-    part: Part,
-    bowl: Bowl,
-    *,
-    launch: str | None = None,
-    probabilities: str | PathLike[str] | None = None,
-    rule: str = RECOMMENDED,
-    fed: int | None = None,
-    seed: int = FEED_SEED,
-    jobs: int | None = None,
-    progress: Callable[..., None] | None = None,
-    before: Callable[..., None] | None = None,
-) -> Shares:
-    """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
-
-    Without a launch, a file or a rule of its own that is what lies at the track's entry: parts fed from a
-    hopper onto the moving floor of the bowl.
-
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-        Its drive and surface move the floor.
-    launch : str, optional
-        What is done to the part, on a floor at rest.
-    probabilities : str or Path, optional
-        File of counts in place of an answer of ours, by aspect or by orientation.
-    rule : str
-        Whose probabilities will be taken: with another one than the recommended answer nothing is simulated.
-    fed : int, optional
-        Parts that are fed onto the floor; without it as many as make every share known to 2.5 %.
-    seed : int
-        Of the parts on the floor.
-    jobs : int, optional
-        Cores for that; all there are without it. Nothing else depends on it.
-    progress, before : callable, optional
-        Of drops and of parts on the floor, as for ``aspects``.
-
-    Returns
-    -------
-    Shares
-        To be handed on as ``known``: what takes long is computed once.
-
-    Raises
-    ------
-    FeederError
-        Every fault of the file; if the part has no shape to drop.
-    """
-    part, bowl = arguments.part_in_bowl(part, bowl)
-    run = OnCores(jobs, progress, before)
-    require_rule(rule)
-    seed, fed = arguments.whole("seed", seed, 0), arguments.count("fed", fed)
-    if probabilities is not None:
-        aspects = resting(part, drops=0).aspects
-        measured = profiles.read_profile(check.path("probabilities", probabilities), aspects.names)
-        return Shares(stream.counted(aspects, measured), measured)
-    if launch is not None or rule != RECOMMENDED or part.vertices is None:
-        drops = None if rule == RECOMMENDED else 0
-        reported: dict[str, Any] = {"jobs": jobs, "progress": progress, "before": before}
-        return Shares(resting(part, launch=launch_of_name(launch or LAUNCH), drops=drops, **reported).aspects)
-    aspects = resting(part, drops=0).aspects
-    if not bowl.gravity > 0.0:
-        conveying(bowl)  # says so
-    if np.count_nonzero(aspects.stable) < 2:
-        return Shares(aspects)
-    if stream.too_long(aspects, bowl):
-        return Shares(replace(aspects, warnings=(*aspects.warnings, stream.TOO_LONG)))
-    from feederscrew.arrivals import arrival as floor
-
-    def make() -> Any:
-        if run.before:
-            run.before(None)
-        return floor.arrival(part, aspects, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
-
-    decides = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
-    arrival = simulation_cache.once(
-        part,
-        aspects,
-        "arrival",
-        decides,
-        make,
-        lambda arrived: not arrived.shaken.partial,
-        floor.to_arrays,
-        lambda arrays: floor.from_arrays(part, aspects, bowl, fed, arrays),
-    )
-    arrived = stream.arrived(aspects, arrival, seed)
-    return Shares(arrived, fed=arrived.recommended is not aspects.recommended)
-
-
-def check_wanted(part: Part, aspect: str | None, heading: float | None = None) -> None:
-    """Refuse an aspect that a part does not have, or a heading without one, before anything is simulated.
-
-    Parameters
-    ----------
-    part : Part
-    aspect : str or None
-    heading : float [rad], optional
-
-    Returns
-    -------
-    None
-
-    Raises
-    ------
-    ArgumentError
-        If the part has no such aspect, or a heading is given alone.
-    """
-    check.of_an_aspect(aspect, heading)
-    if aspect is not None and part.vertices is not None:
-        name = split_name(aspect)[0]
-        rows(resting(part, drops=0).aspects.names, name, f"aspect of {part.source}", ArgumentError)
-
-
-def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
-    """Return the aspects of a part with the shares that arrive at a bowl's track as their answer.
-
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-    rule : str
-        Whose probabilities are the answer; parts are fed on the moving floor for the recommended one alone.
-
-    Returns
-    -------
-    Aspects
-    """
-    return shares(part, bowl, rule=rule).aspects
-
-
-def likeliest(part: Part, bowl: Bowl) -> Aspects:
-    """Return the aspects of a part with the shares that arrive, of few parts where few decide.
-
-    ``CHOOSING`` parts are fed first. If the 95 % interval of the most frequent aspect is above those of all
-    others, they decide; else the answer is that of ``arriving``.
-
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-
-    Returns
-    -------
-    Aspects
-
-    References
-    ----------
-    Wilson's interval, ``arrivals.ensemble.wilson``.
-    """
-    from feederscrew.arrivals import arrival
-
-    fed = min(CHOOSING, arrival.MAX_ARRIVALS)
-    sample = shares(part, bowl, fed=fed)
-    answer = sample.aspects.recommended
-    if not sample.fed or answer is None:
-        return sample.aspects
-    low, high = wilson(np.nan_to_num(answer.p) * fed, fed)  # of the sample alone
-    first = int(np.argmax(answer.p))
-    is_clear = low[first] > np.delete(high, first).max(initial=0.0)
-    return sample.aspects if is_clear else arriving(part, bowl)
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,7 +74,7 @@ class RateStudy(ReadableRecord, view="rate.RATE_VIEW"):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return a sentence for each thing that a user must not overlook: devices, aspects, velocity."""
-        odd = checks.speed_remark(self.rate.velocity.value, self.bowl.sizing)
+        odd = speed_remark(self.rate.velocity.value, self.bowl.sizing)
         other = () if self.measured is None else self.measured.warnings(self.part)
         return (
             *unknown_aspects(self.devices, self.aspects.names),
@@ -408,13 +221,6 @@ def rate(
     target = most_frequent(lying, rule, hung=hung) if target is None else target
     rates = well_oriented.rate(lying, speed, target, rule, gap=space, fill=fill)
     return RateStudy(part, bowl, aspects, chain, rule, rates, aspect_shares.measured, sigma)
-
-
-def the_shares(aspect_shares: object) -> Shares | None:
-    """Return shares as ``shares`` gave them; None stays None."""
-    if aspect_shares is None:
-        return None
-    return check.kind("aspect_shares", aspect_shares, Shares, "give what shares returned")
 
 
 def most_frequent(

@@ -20,9 +20,8 @@ from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl, Friction, Track
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.profiles import AspectProfile, CountFile, DeviceCounts
+from feederscrew.resting.profiles import CountFile, DeviceCounts, one_profile
 from feederscrew.resting.rules import registry
-from feederscrew.resting.rules.recommended import LAUNCH, Recommended, widen_for_launch
 from feederscrew.sorting import orientations as tooling
 from feederscrew.sorting.falling import clearing_time
 from feederscrew.sorting.fates import at_entry, course
@@ -30,14 +29,7 @@ from feederscrew.sorting.orientations import Orientation, travel_speed
 from feederscrew.sorting.tipping import TrackTipping, marked
 
 if TYPE_CHECKING:
-    from feederscrew.arrivals.arrival import Arrival
-
-
-TOO_LONG = (
-    "the part is too small, or the drive too quick, to be followed on the moving floor: the closed form"
-    " is taken"
-)
-NO_ARRIVALS_MESSAGE = "no part came to lie on the moving floor: the closed form is taken"
+    pass
 
 
 def on_stretch(bowl: Bowl, orientation: Orientation) -> Bowl:
@@ -572,86 +564,6 @@ def passing_ends(flow: Floats, low: Floats, high: Floats) -> tuple[Floats, ...]:
     return ends[0], ends[1]
 
 
-def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
-    """Return the aspects with what arrives at the track's entry as their recommended answer.
-
-    Parameters
-    ----------
-    aspects : Aspects
-    arrival : Arrival
-    seed : int
-        Of the launches.
-
-    Returns
-    -------
-    Aspects
-        With a warning where the shares are undecided, or no part came to lie on the floor.
-    """
-    parts = arrival.shaken.parts
-    if not np.isfinite(arrival.p).all():
-        return replace(aspects, warnings=(*aspects.warnings, NO_ARRIVALS_MESSAGE))
-    remarks = [] if arrival.settled else [f"the shares at the track's entry are undecided: {arrival.reason}"]
-    remarks += [f"the parts on the floor were stopped after {parts}"] if arrival.shaken.partial else []
-    rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
-    low, high = widen_for_launch(arrival.p, arrival.low, arrival.high, aspects.stable)
-    answer = Recommended(rule, LAUNCH, arrival.p, check.frozen(low), check.frozen(high))
-    return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *remarks))
-
-
-def too_long(aspects: Aspects, bowl: Bowl) -> bool:
-    """Return whether a part would take more steps on the floor of a bowl than one is followed for.
-
-    Parameters
-    ----------
-    aspects : Aspects
-    bowl : Bowl
-
-    Returns
-    -------
-    bool
-    """
-    from feederscrew.arrivals.arrival import MAX_ARRIVAL_STEPS, steps_needed
-
-    return aspects.ground is not None and steps_needed(aspects.ground.hull, bowl) > MAX_ARRIVAL_STEPS
-
-
-def counted(aspects: Aspects, measured: CountFile) -> Aspects:
-    """Return the aspects with measured counts as their recommended answer.
-
-    Without facets the part rolls off. The interval is Wilson's, of 95 %; shares without counts have none.
-
-    Parameters
-    ----------
-    aspects : Aspects
-    measured : CountFile
-        Of one column.
-
-    Returns
-    -------
-    Aspects
-
-    Raises
-    ------
-    FeederError
-        If there are several columns.
-    """
-    column = _only(measured)
-    p = column.fractions / column.fractions.sum()
-    low, high = wilson(column.values, column.values.sum()) if column.has_counts else (p, p)
-    total = f", {column.values.sum():.0f} parts" if column.has_counts else ""
-    rule, launch = f"{measured.source}{total}", measured.head.launch or LAUNCH
-    ends = check.frozen(np.minimum(low, p)), check.frozen(np.maximum(high, p))
-    return replace(aspects, recommended=Recommended(rule, launch, check.frozen(p), *ends))
-
-
-def _only(measured: CountFile) -> AspectProfile:
-    if len(measured.profiles) != 1:
-        names = ", ".join(profile.name for profile in measured.profiles[:5])
-        what = f"has {len(measured.profiles)} columns of shares ({names})"
-        raise FeederError(measured.source, what, "leave one of them in the file")
-    return measured.profiles[0]
-
-
 def oriented(queue: Orientations, measured: CountFile | None) -> Orientations:
     """Return the orientations with the shares that were counted for each of them.
 
@@ -678,7 +590,7 @@ def oriented(queue: Orientations, measured: CountFile | None) -> Orientations:
             row = place(queue.aspects, queue.headings, aspect, heading, measured.source, "counts")
             values[row] += count
     shares = values / values.sum()
-    low, high = wilson(values, values.sum()) if _only(measured).has_counts else (shares, shares)
+    low, high = wilson(values, values.sum()) if one_profile(measured).has_counts else (shares, shares)
     ends = np.column_stack([np.minimum(low, shares), np.maximum(high, shares)])
     rules = queue.rules | {"recommended": check.frozen(shares)}
     return replace(queue, rules=rules, interval=check.frozen(ends))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+from feederscrew.arrivals.entry import Shares, check_wanted, shares, the_shares
 from feederscrew.base import check
 from feederscrew.base.columns import Column, Frame, of_records
 from feederscrew.base.records import ReadableRecord
@@ -15,7 +16,7 @@ from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.record import Bowl
 from feederscrew.feeding import drive_settings as knobs
 from feederscrew.feeding import stream, well_oriented
-from feederscrew.feeding.rate import MIN_POSITIVE, RECOMMENDED, Shares, check_wanted, shares, the_shares
+from feederscrew.feeding.rate import MIN_POSITIVE, RECOMMENDED
 from feederscrew.motion import conveying as answer
 from feederscrew.motion.hop import hop
 from feederscrew.part.record import Part

@@ -18,9 +18,8 @@ from feederscrew.motion.headings import headings, stable_row
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
+from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.sorting.orientations import Orientation
-
-RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
 
 
 def entering(queue: Orientations, rule: str) -> tuple[Floats, float]:
@@ -320,7 +319,7 @@ def rate(
     blocked, swept = _blocked(queue, rule)
     offered = Range(*(_offered(velocity * density, blocked) for velocity in speed.all))
     # least and greatest efficiency and probability: by the rule's own interval, or over all rules
-    from_interval = rule == RECOMMENDED_RULE
+    from_interval = rule == RECOMMENDED_ANSWER
     share, fed_share = efficiency(queue, row, rule), _fed_share(queue, row)
     _, enters = entering(queue, rule)
     if not enters > 0.0:

@@ -19,8 +19,8 @@ from feederscrew.bowl import schema
 from feederscrew.bowl.reading import Setting, default
 from feederscrew.bowl.record import UNBALANCE_UNKNOWN, Bowl, Drive, Machine, Sizing, shares, vibration_angle
 from feederscrew.bowl.schema import BY_NAME
+from feederscrew.bowl.size import Size
 from feederscrew.machine import sizing, springs
-from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import (
     analyse_springs,
     gain,
@@ -336,7 +336,7 @@ class DriveSearch:
     """A bowl whose drive is sought."""
 
     bowl: Bowl  # with its track
-    size: sizing.Size  # of it
+    size: Size  # of it
     settings: tuple[Setting, ...]  # that say what the user gave
     target: float  # [1/s] counted parts
     bulk: float  # [kg/m3] of the parts' hulls

@@ -8,6 +8,7 @@ from typing import Any, cast
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import arriving, check_wanted
 from feederscrew.base import check, units
 from feederscrew.base.arrays import Floats
 from feederscrew.base.columns import Column, Frame, of_arrays, values
@@ -20,18 +21,19 @@ from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting, has_machine
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
+from feederscrew.bowl.size import Size
 from feederscrew.cad import solid as solidbowl
 from feederscrew.cad.closed_body import BowlSolid
 from feederscrew.cad.plan import SolidOptions, TrackTooLow
 from feederscrew.feeding import stream, well_oriented
-from feederscrew.feeding.rate import MIN_POSITIVE, arriving, check_wanted
-from feederscrew.feeding.well_oriented import RECOMMENDED_RULE
+from feederscrew.feeding.rate import MIN_POSITIVE
 from feederscrew.machine import checks, drive_sizing, sizing
 from feederscrew.machine import springs as leaves
 from feederscrew.motion import conveying as answer
 from feederscrew.motion.hop import hop
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.sorting.orientations import orientations
 from feederscrew.sorting.tipping import remark
 
@@ -55,7 +57,7 @@ class Order(ReadableRecord):
     answer: str  # the same in words: 'hops, launch feed'
     tipping: tuple[str, ...]  # what the drive turns over on the track, a sentence or none
     lying: sizing.Lying
-    size: sizing.Size
+    size: Size
     steepest: float  # [rad] climb up to which the part travels
     flow: sizing.Flow
     hopper: float  # [m3]
@@ -464,7 +466,7 @@ def size_bowl(
     aspect: str | None = None,
     *,
     heading: Quantity | None = None,
-    rule: str = RECOMMENDED_RULE,
+    rule: str = RECOMMENDED_ANSWER,
     gap: Quantity = 0.0,
     fill: float = 1.0,
     bowl: Bowl | None = None,

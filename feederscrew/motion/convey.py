@@ -18,7 +18,6 @@ from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import former_keywords
 from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
-from feederscrew.machine import checks
 from feederscrew.motion import conveying as answer
 from feederscrew.motion import steady
 from feederscrew.motion.conveying import Neighbours
@@ -55,7 +54,7 @@ class ConveyStudy(ReadableRecord, view="convey.CONVEY_VIEW"):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return what is odd about the velocity, a tuple of at most one sentence."""
-        return tuple(checks.speed_remark(self.answer.velocity, self.bowl.sizing))
+        return tuple(answer.speed_remark(self.answer.velocity, self.bowl.sizing))
 
     def trace(self) -> steady.CycleTrace:
         """Follow plate and part over one steady cycle, as a ``motion.steady.CycleTrace``."""

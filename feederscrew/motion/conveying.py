@@ -22,7 +22,8 @@ from feederscrew.base.columns import Column
 from feederscrew.base.errors import ConfigError
 from feederscrew.base.geometry.compiled import compiled, entry, on_disk, outlined
 from feederscrew.base.records import ReadableRecord
-from feederscrew.bowl.record import Bowl, Friction
+from feederscrew.base.units import MM_S
+from feederscrew.bowl.record import Bowl, Friction, Sizing
 from feederscrew.motion import limits, operating_point, point_motion, steady, waves
 from feederscrew.motion.limits import Regime
 from feederscrew.motion.operating_point import PHASES, OperatingPoint
@@ -792,3 +793,31 @@ def with_phase(bowl: Bowl, phase: Values) -> Bowl:
     Bowl
     """
     return replace(bowl, drive=replace(bowl.drive, phase=phase))
+
+
+def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
+    """Return what is odd about a conveying velocity: a line, or none.
+
+    Parameters
+    ----------
+    velocity : float [m/s]
+        NaN where there is no steady one.
+    rules : Sizing or None
+        The slowest and the fastest usual speed; a bowl made by hand has no rules.
+
+    Returns
+    -------
+    list of str
+        Empty where the speed is usual, not known or without rules.
+
+    References
+    ----------
+    Trade; the keys ``sizing.slowest`` and ``sizing.fastest``.
+    """
+    if rules is None or np.isnan(velocity) or rules.slowest <= velocity <= rules.fastest:
+        return []
+    between = f"{rules.slowest / MM_S:.4g} to {rules.fastest / MM_S:.4g} mm/s"
+    side = "slower" if velocity < rules.slowest else "faster"
+    return [
+        f"{velocity / MM_S:.3g} mm/s is {side} than bowls run ({between}): check stroke, angle and friction"
+    ]

@@ -18,7 +18,6 @@ from feederscrew.output.offers import RecordView
 from feederscrew.part.record import Part
 
 if TYPE_CHECKING:
-    from feederscrew.arrivals.aspects_study import InertiaStudy
     from feederscrew.arrivals.drop import PlateStudy
     from feederscrew.arrivals.floor import FloorStudy
     from feederscrew.designing.families import FamilyStudy
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from feederscrew.machine.sheet import MachineSheet
     from feederscrew.motion.conveying import Answer
     from feederscrew.motion.slide import SlideStudy
+    from feederscrew.part.inertia import InertiaStudy
     from feederscrew.resting.aspects import Aspects
     from feederscrew.sorting.headings import HeadingsStudy
     from feederscrew.sorting.orientations import Orientation

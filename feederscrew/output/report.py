@@ -8,7 +8,9 @@ from functools import cached_property
 from os import PathLike
 
 from feederscrew import bowl as bowls
-from feederscrew.arrivals.aspects_study import AspectsStudy, InertiaStudy, inertia
+from feederscrew.arrivals import entry
+from feederscrew.arrivals.aspects_study import AspectsStudy
+from feederscrew.arrivals.entry import Shares
 from feederscrew.arrivals.floor import FloorStudy, floor
 from feederscrew.base import check
 from feederscrew.base.records import ReadableRecord
@@ -19,12 +21,13 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.cad import solid as solidbowl
 from feederscrew.cad.closed_body import BowlSolid
 from feederscrew.feeding import rate as rates
-from feederscrew.feeding.rate import MIN_POSITIVE, Shares
+from feederscrew.feeding.rate import MIN_POSITIVE
 from feederscrew.machine import sheet as machines
 from feederscrew.machine.sheet import MachineSheet
 from feederscrew.motion import convey
 from feederscrew.motion.convey import ConveyMap, ConveyStudy
 from feederscrew.motion.slide import SlideStudy, slide
+from feederscrew.part.inertia import InertiaStudy, inertia
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import posture
 from feederscrew.sorting.headings import HeadingsStudy, headings
@@ -231,8 +234,8 @@ def report(
     space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     wanted = None if target is None else arguments.amount("target", target, "rate")
-    rates.check_wanted(part, aspect, angle)
-    aspect_shares = rates.shares(
+    entry.check_wanted(part, aspect, angle)
+    aspect_shares = entry.shares(
         part,
         chosen,
         rule=rule,

@@ -572,3 +572,15 @@ def device_counts(table: CountSheet, where: str, sha256: str) -> DeviceCounts:
     counts = np.array([[float(cell) for cell in row[1:]] for _, row in table.rows])
     passed, rejected = (check.frozen(counts[:, columns.index(name)]) for name in (PASSED, REJECTED))
     return DeviceCounts(where, sha256, tuple(lines.values()), tuple(lines), passed, rejected, table.head)
+
+
+def one_profile(measured: CountFile) -> AspectProfile:
+    """Return the only column of counts of a file.
+
+    Raises FeederError where it has several.
+    """
+    if len(measured.profiles) != 1:
+        names = ", ".join(profile.name for profile in measured.profiles[:5])
+        what = f"has {len(measured.profiles)} columns of shares ({names})"
+        raise FeederError(measured.source, what, "leave one of them in the file")
+    return measured.profiles[0]

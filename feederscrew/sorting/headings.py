@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew.arrivals.entry import arriving
 from feederscrew.base.arrays import Floats, Ints
 from feederscrew.base.columns import Column, Frame, of_pieces
 from feederscrew.base.records import ReadableRecord
@@ -13,7 +14,6 @@ from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import former_keywords
 from feederscrew.bowl.devices.orientation_names import split_name
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.feeding.rate import arriving
 from feederscrew.motion import headings as wall
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects

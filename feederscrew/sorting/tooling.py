@@ -9,6 +9,7 @@ from typing import Any, TypeAlias, cast
 
 import numpy as np
 
+from feederscrew.arrivals.entry import Shares, arriving, the_shares
 from feederscrew.base import check
 from feederscrew.base.arrays import Floats
 from feederscrew.base.documents import hint, nearest
@@ -32,10 +33,9 @@ from feederscrew.bowl.devices.orientation_names import rows
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.bowl.verified import HANGING
-from feederscrew.feeding.rate import Shares, arriving, the_shares
-from feederscrew.feeding.well_oriented import RECOMMENDED_RULE
 from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.sorting.fates import at_entry
 from feederscrew.sorting.isolating import design as designing
 from feederscrew.sorting.isolating.chain import (
@@ -256,7 +256,7 @@ class ToolingStudy(ReadableRecord, view="tooling.TOOLING_VIEW"):
 class ToolingSearch:
     """Limits of the search for cuts: what a workshop can make, and how long the search may take."""
 
-    rule: str = RECOMMENDED_RULE  # whose probabilities are taken
+    rule: str = RECOMMENDED_ANSWER  # whose probabilities are taken
     turn: bool = DesignConstraints.turn  # devices that turn parts over may be used
     vary: bool = DesignConstraints.vary  # other banks, grooves and widths of the track are tried
     step: Quantity = DesignConstraints.step  # [m] values of cuts are whole multiples of it

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import likeliest
 from feederscrew.base.arrays import Array, Floats
 from feederscrew.base.columns import Column
 from feederscrew.base.geometry import grids
@@ -16,7 +17,6 @@ from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import Quantity, former_keywords
 from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
-from feederscrew.feeding.rate import likeliest
 from feederscrew.motion import limits, motion_maps, track_balance, track_contacts
 from feederscrew.motion.cycle import Cycle
 from feederscrew.motion.floor_balance import HOP, SLIDE, STICK, TIP

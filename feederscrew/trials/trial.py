@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.arrivals.entry import Shares, check_wanted, the_shares
+from feederscrew.arrivals.entry import shares as arriving
 from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.base import check
 from feederscrew.base.arrays import Floats
@@ -20,14 +22,12 @@ from feederscrew.bowl.device_list import shank_remarks, unknown_aspects
 from feederscrew.bowl.devices.orientation_names import place, rows, split_name
 from feederscrew.bowl.record import Bowl
 from feederscrew.feeding import stream
-from feederscrew.feeding.rate import Shares, check_wanted, the_shares
-from feederscrew.feeding.rate import shares as arriving
-from feederscrew.feeding.well_oriented import RECOMMENDED_RULE
 from feederscrew.motion import conveying as answer
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import LAUNCH
+from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
 from feederscrew.sorting.tooling import listed
 from feederscrew.trials import course, result
 from feederscrew.trials.fills import FedRow, FillLevel
@@ -73,13 +73,13 @@ class TrialStudy(ReadableRecord, view="trial.tables.TRIAL_VIEW"):
     def answer(self) -> str:
         """Say whose shares parts arrive in: 'hops, launch feed', 'csa'."""
         recommended = self.aspects.recommended
-        return recommended.rule if self.rule == RECOMMENDED_RULE and recommended is not None else self.rule
+        return recommended.rule if self.rule == RECOMMENDED_ANSWER and recommended is not None else self.rule
 
     @property
     def launch(self) -> str | None:
         """Return what is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
         recommended = self.aspects.recommended
-        return recommended.launch if self.rule == RECOMMENDED_RULE and recommended is not None else None
+        return recommended.launch if self.rule == RECOMMENDED_ANSWER and recommended is not None else None
 
     def outlet(self, run: TrialRun) -> Outlet | None:
         """Return what left one run's queue by aspect, an Outlet; None without a queue."""
@@ -139,7 +139,7 @@ def trial(
     poured: bool = False,
     seconds: Quantity = QUEUE_SECONDS,
     frames: int = 0,
-    rule: str = RECOMMENDED_RULE,
+    rule: str = RECOMMENDED_ANSWER,
     aspect_shares: Shares | None = None,
     measured: profiles.CountFile | None = None,
     seed: int = 1,

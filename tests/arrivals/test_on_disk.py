@@ -15,8 +15,8 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals import arrival, simulation_cache
+from feederscrew.arrivals.entry import shares
 from feederscrew.base import caches
-from feederscrew.feeding.rate import shares
 
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.read(None, ())

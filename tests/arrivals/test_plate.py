@@ -9,13 +9,12 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.arrivals import arrival, plate_test
+from feederscrew.arrivals import arrival, entry, plate_test
+from feederscrew.arrivals.entry import shares
 from feederscrew.arrivals.kernel import falling, floor_motion
 from feederscrew.arrivals.launch_conditions import PRESETS, sample
 from feederscrew.arrivals.plate_test import lasting, limit_of, occupancy, ride
 from feederscrew.base.errors import FeederError
-from feederscrew.feeding import stream
-from feederscrew.feeding.rate import shares
 from feederscrew.resting.aspects import find
 
 BOX, _ = drop_bodies.box((1.0, 1.3, 1.7))
@@ -222,7 +221,7 @@ def test_a_part_too_small_to_be_followed_on_its_floor_ends_at_once():
     answer = shares(part, own)
     assert not answer.fed
     assert answer.aspects.recommended.rule == answer.aspects.closed.rule
-    assert answer.aspects.warnings[-1] == stream.TOO_LONG
+    assert answer.aspects.warnings[-1] == entry.TOO_LONG
     with pytest.raises(FeederError, match=r"a part so small takes .* steps at this drive for so long"):
         plate_test.test(part, answer.aspects, [own], "feed", {})
 

@@ -11,11 +11,11 @@ from scipy.spatial import cKDTree
 from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.bowl.reading import effective, record
 from feederscrew.bowl.record import Track
+from feederscrew.bowl.size import Size
 from feederscrew.cad import facets
 from feederscrew.cad.closed_body import body
 from feederscrew.cad.measuring import ways_down
 from feederscrew.cad.plan import SolidOptions, material, plan
-from feederscrew.machine.sizing import Size
 from feederscrew.sorting.tooled_track import lay_out
 
 RULES = record(effective({})).sizing

@@ -7,6 +7,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import shares
 from feederscrew.base import units
 from feederscrew.cad import solid as solidbowl
 from feederscrew.cad.plan import ARC_CHORD_M, STEEL_NAME, TrackTooLow
@@ -14,7 +15,6 @@ from feederscrew.designing import calm_drive, exploring, proposals
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import Search
-from feederscrew.feeding.rate import shares
 from feederscrew.machine import sheet as machines
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.isolating.chain import Cut

@@ -9,12 +9,12 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.ensemble import wilson
+from feederscrew.arrivals.entry import Shares
 from feederscrew.base.errors import FeederError
 from feederscrew.base.running import RunSettings
 from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.designing.short_trials import robust_run
-from feederscrew.feeding.rate import Shares
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
 from feederscrew.trials import fills, long_ride

@@ -8,12 +8,12 @@ import shapes
 from design_counts import design_study, queue, short_trial
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import Shares
 from feederscrew.designing import exploring, hazards, short_trials
 from feederscrew.designing.findings import FaultKind
 from feederscrew.designing.record import DesignRequest, RiskKind
 from feederscrew.designing.search import Search
 from feederscrew.designing.short_trials import break_even, find_denials
-from feederscrew.feeding.rate import Shares
 from feederscrew.output import designs
 
 

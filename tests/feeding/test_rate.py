@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals import arrival as floor
+from feederscrew.arrivals import entry
 from feederscrew.base import units
 from feederscrew.base.errors import FeederError
 from feederscrew.bowl.devices.kinds import make_device
@@ -392,7 +393,7 @@ def test_counts_are_the_answer_with_wilsons_interval_and_orientations_stand_as_i
         return str(tmp_path / "c.csv")
 
     path = counts("# launch: roll\naspect,tray\nA,60\nB,30\nC,10\n")
-    known = study.shares(part, plain, probabilities=path)
+    known = entry.shares(part, plain, probabilities=path)
     answer = known.aspects.recommended
     assert answer.p.tolist() == pytest.approx([0.6, 0.3, 0.1]) and answer.launch == "roll"
     assert answer.rule == f"{path}, 100 parts" and list(known.inputs) == [path]
@@ -406,7 +407,7 @@ def test_counts_are_the_answer_with_wilsons_interval_and_orientations_stand_as_i
     a, b = (next(one.name for one in known.lying if one.aspect == name) for name in "AB")
 
     def counted(text):
-        shares = study.shares(part, plain, probabilities=counts(f"orientation,track\n{text}C@0,0\n"))
+        shares = entry.shares(part, plain, probabilities=counts(f"orientation,track\n{text}C@0,0\n"))
         return study.rate(part, plain, aspect_shares=shares).rate.orientations
 
     found = counted(f"{a},30\n{b},10\n")
@@ -418,7 +419,7 @@ def test_counts_are_the_answer_with_wilsons_interval_and_orientations_stand_as_i
     with pytest.raises(FeederError, match=r"counts orientation A@47, which the part does not have - known"):
         counted(f"A@47,30\n{b},10\n")
     with pytest.raises(FeederError, match=r"has 2 columns of shares \(x, y\) - leave one of them in the fi"):
-        study.shares(part, plain, probabilities=counts("aspect,x,y\nA,60,1\nB,30,1\nC,10,1\n"))
+        entry.shares(part, plain, probabilities=counts("aspect,x,y\nA,60,1\nB,30,1\nC,10,1\n"))
 
 
 def arrival(**values):
@@ -429,16 +430,16 @@ def arrival(**values):
 
 def test_what_arrives_is_named_and_what_is_undecided_is_said(part):
     aspects = find(part)
-    found = stream.arrived(aspects, arrival(), 1)
+    found = entry.arrived(aspects, arrival(), 1)
     assert found.recommended.rule == "fed onto the moving floor, 80 parts, seed 1"
     assert found.recommended.p.tolist() == [0.7, 0.2, 0.1] and found.warnings == aspects.warnings
-    doubtful = stream.arrived(aspects, arrival(settled=False, reason="they change - wait"), 1)
+    doubtful = entry.arrived(aspects, arrival(settled=False, reason="they change - wait"), 1)
     assert doubtful.warnings[-1] == "the shares at the track's entry are undecided: they change - wait"
     stopped = arrival()
     stopped.shaken.partial = True
-    assert stream.arrived(aspects, stopped, 1).warnings[-1] == "the parts on the floor were stopped after 80"
-    nothing = stream.arrived(aspects, arrival(p=np.full(3, np.nan)), 1)
-    assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == stream.NO_ARRIVALS_MESSAGE
+    assert entry.arrived(aspects, stopped, 1).warnings[-1] == "the parts on the floor were stopped after 80"
+    nothing = entry.arrived(aspects, arrival(p=np.full(3, np.nan)), 1)
+    assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == entry.NO_ARRIVALS_MESSAGE
     sheet = profiles.parse_count_sheet("aspect,x\nA,0.5\nB,0.25\nC,0.25\n", "c")
     made = profiles.parse_profiles(sheet, "c.csv", "", "ABC")
     answer = stream.counted(aspects, made).recommended
@@ -448,7 +449,7 @@ def test_what_arrives_is_named_and_what_is_undecided_is_said(part):
 def test_a_bowl_of_its_own_feeds_its_floor_and_a_stop_keeps_the_shorter_spell(part, plain, monkeypatch):
     """Of a floor that hardly moves; the interval of an orientation is its share of that of its aspect."""
     bowl = replace(plain, drive=replace(plain.drive, amplitude=0.02e-3))
-    aspects = study.shares(part, bowl, fed=100).aspects
+    aspects = entry.shares(part, bowl, fed=100).aspects
     answer = aspects.recommended
     assert answer.rule.startswith("fed onto the moving floor, 100 parts")
     assert answer.p.sum() == pytest.approx(1.0) and (answer.low <= answer.p).all()

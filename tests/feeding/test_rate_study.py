@@ -10,14 +10,15 @@ from command_lines import BRACKET
 
 from feederscrew import bowl as bowls
 from feederscrew import load, read_bowl
+from feederscrew.arrivals import entry
+from feederscrew.arrivals.entry import Shares, shares
 from feederscrew.base.errors import ArgumentError, FeederError
 from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.designing.loop import design
 from feederscrew.designing.proposals import promising_rows
 from feederscrew.designing.record import DesignRequest
 from feederscrew.feeding import drive_settings, stream
-from feederscrew.feeding import rate as rates
-from feederscrew.feeding.rate import Shares, most_frequent, rate, shares
+from feederscrew.feeding.rate import most_frequent, rate
 from feederscrew.feeding.tune import tune
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.tooling import ToolingSearch, tooling
@@ -59,11 +60,11 @@ def test_few_parts_show_the_likeliest_aspect_where_its_share_is_clear(monkeypatc
 
     def counted(part, bowl, *, fed=None, **_):
         counts.append(fed)
-        return rates.Shares(answer, fed=True)
+        return entry.Shares(answer, fed=True)
 
-    monkeypatch.setattr(rates, "shares", counted)
+    monkeypatch.setattr(entry, "shares", counted)
     monkeypatch.setattr("feederscrew.arrivals.arrival.MAX_ARRIVALS", 4000)  # tests feed fewer
-    assert rates.likeliest(part, read_bowl()).likeliest == at_rest.names[0]
+    assert entry.likeliest(part, read_bowl()).likeliest == at_rest.names[0]
     assert counts == fed
 
 

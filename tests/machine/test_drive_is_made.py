@@ -21,10 +21,11 @@ from feederscrew.base.errors import ArgumentError, FeederError
 from feederscrew.bowl import reading
 from feederscrew.bowl.reading import settings_of_text
 from feederscrew.bowl.record import shares, vibration_angle
+from feederscrew.bowl.size import Size
 from feederscrew.bowl.verified import Status
 from feederscrew.designing import calm_drive, design
 from feederscrew.designing.record import Alternative
-from feederscrew.machine import drive_sizing, sizing, springs
+from feederscrew.machine import drive_sizing, springs
 from feederscrew.machine import sheet as machines
 from feederscrew.machine.drive_sizing import can_make
 from feederscrew.machine.springs import analyse_springs, greatest_amplitude, leaf_stress, stroke
@@ -106,7 +107,7 @@ NEAR = 0.02  # relative; the rate of a bowl left alone hangs on hops, and on the
 
 def sized(bowl):
     rise = np.pi * 0.3 * np.tan(bowl.track.climb)
-    return sizing.Size(0.3, {}, 0.014, 1e-3, 1e-3, bowl.track.climb, 0.09, 0.09 / rise, rise)
+    return Size(0.3, {}, 0.014, 1e-3, 1e-3, bowl.track.climb, 0.09, 0.09 / rise, rise)
 
 
 def at_track(machine):

@@ -16,8 +16,8 @@ from scipy.spatial.transform import Rotation
 import feederscrew as fs
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.aspects_study import AspectsStudy
+from feederscrew.arrivals.entry import Shares
 from feederscrew.base.columns import ColumnHead, Frame, share_head
-from feederscrew.feeding.rate import Shares
 from feederscrew.output import DPI, style
 from feederscrew.output import report_page as report_output
 from feederscrew.output.page import as_html, blocks

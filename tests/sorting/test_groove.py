@@ -9,10 +9,11 @@ import pytest
 import trimesh
 from on_track import WIDE, block, coming, device, load, named, read, slanted
 
+from feederscrew.arrivals.entry import shares
 from feederscrew.base.errors import Faults
 from feederscrew.cad import section as printed
 from feederscrew.feeding import stream
-from feederscrew.feeding.rate import rate, shares
+from feederscrew.feeding.rate import rate
 from feederscrew.feeding.well_oriented import velocity
 from feederscrew.output import tooling_figures
 from feederscrew.output.rate import remarks

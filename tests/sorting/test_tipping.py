@@ -12,11 +12,12 @@ import trimesh
 from scipy.optimize import brentq
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import Shares
 from feederscrew.base.errors import FeederError
 from feederscrew.bowl.devices.base import UNSURE
 from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.feeding import drive_settings as knobs
-from feederscrew.feeding.rate import Shares, passages, rate
+from feederscrew.feeding.rate import passages, rate
 from feederscrew.feeding.stream import follow_orientations
 from feederscrew.feeding.tune import tune
 from feederscrew.machine.sheet import size_machine as sized

@@ -35,7 +35,7 @@ UNREACHED = (
     *("numba_do_raise", "numba_gil_ensure", "numba_gil_release", "numba_unpickle"),
     *("numba_runtime_build_excinfo_struct", "NRT_Free", "NRT_MemInfo_call_dtor"),
 )
-# by the room of an entry: the sources that are compiled into it
+# by the stage of an entry: the sources that are compiled into it
 SOURCES = {
     "motion": (
         *("motion/conveying.py", "motion/hop.py", "motion/operating_point.py", "motion/point_motion.py"),
@@ -43,8 +43,8 @@ SOURCES = {
     ),
     "resting": ("resting/landscape.py", "resting/half_edges.py", "resting/walks.py"),
     "arrivals": ("arrivals/kernel/*.py", "resting/half_edges.py", "resting/walks.py"),
-    "tooling": ("sorting/kernel.py",),
-    "trial": ("trials/kernel/*.py", "arrivals/kernel/*.py"),
+    "sorting": ("sorting/kernel.py",),
+    "trials": ("trials/kernel/*.py", "arrivals/kernel/*.py"),
 }
 
 
@@ -379,7 +379,7 @@ def _write(path: Path, identity: str, code: bytes, pattern: str) -> None:
 
 
 def _register() -> None:
-    """Tell numba of the functions marked since, whichever room was imported first."""
+    """Tell numba of the functions marked since, whichever stage was imported first."""
     from feederscrew.base.geometry.kernel_compiler import register
 
     while PENDING:
@@ -389,8 +389,8 @@ def _register() -> None:
 @functools.cache
 def _fingerprint(module: str) -> str:
     """Digest of the sources compiled into a module's entries: a changed one finds nothing of an older one."""
-    room = module.split(".")[1] if module.startswith("feederscrew.") else ""
-    patterns = SOURCES.get(room, tuple(pattern for own in SOURCES.values() for pattern in own))
+    stage = module.split(".")[1] if module.startswith("feederscrew.") else ""
+    patterns = SOURCES.get(stage, tuple(pattern for own in SOURCES.values() for pattern in own))
     sources = sorted(path for pattern in patterns for path in LIBRARY.glob(pattern))
     digest = hashlib.sha256()
     for path in (Path(__file__), Path(__file__).with_name("kernel_compiler.py"), *sources):

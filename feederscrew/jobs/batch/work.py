@@ -10,10 +10,11 @@ import numpy as np
 
 from feederscrew.arrivals.aspects_study import AspectsStudy, with_drops
 from feederscrew.arrivals.drop import drop
+from feederscrew.arrivals.entry import Shares, shares
 from feederscrew.base.errors import FeederError
 from feederscrew.base.units import GRAM
 from feederscrew.feeding import well_oriented
-from feederscrew.feeding.rate import Shares, rate, shares
+from feederscrew.feeding.rate import rate
 from feederscrew.jobs.batch.task import DONE, THUMBNAIL, Conditions, Outcome, Task
 from feederscrew.motion.convey import convey
 from feederscrew.output import aspects, batch, offers, part_facts, proof, tables
