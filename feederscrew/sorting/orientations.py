@@ -6,7 +6,7 @@ Source, where no other is named: own; docs/tooling.md, "1. The method".
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 import shapely
@@ -83,6 +83,21 @@ class Orientation:
     def name(self) -> str:
         """Return 'D@179': aspect and heading in whole degrees, from 0 to 359."""
         return f"{self.aspect}@{round(np.degrees(self.heading)) % 360}"
+
+    def on_track(self, track: Track, **changes: Any) -> Self:
+        """Return it on another stretch of track, with changes of its own fields.
+
+        Parameters
+        ----------
+        track : Track
+        **changes : any
+            Of fields: ``groove=0.0``.
+
+        Returns
+        -------
+        Orientation
+        """
+        return replace(self, track=track, **changes)
 
     @property
     def solid(self) -> Part:

@@ -17,6 +17,7 @@ from feederscrew.base.arrays import Floats, Points, Vector
 from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.compiled import fitting
 from feederscrew.base.geometry.polygons import barrier, cross, outline
+from feederscrew.bowl.devices.asked import PlaceShares
 from feederscrew.bowl.devices.base import GRIP, UNSURE, Device, Verdict, share
 from feederscrew.bowl.devices.ledges import below_ledge
 from feederscrew.motion import headings as wall
@@ -180,7 +181,6 @@ def _force_to_shift(orientation: Orientation, wide: float) -> float:
 
 
 Frame = tuple[Vector, Vector, Vector]  # [1] in the file's axes: to the side, along the turn's axis, down
-PlaceShares = tuple[tuple[int, float], ...]  # places of orientations, and the share [1] of each
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ With it what a sensor along the track sees of a part that comes by, and the puls
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from feederscrew.base.geometry.compiled import on_disk, zero_rows
 from feederscrew.bowl.devices.features import Sensor
 from feederscrew.bowl.record import Bowl
 from feederscrew.sorting import sensor_views
+from feederscrew.sorting.orientations import Orientation
 from feederscrew.trials import part_poses, staging
 from feederscrew.trials.kernel import travel, workspace
 from feederscrew.trials.kernel.plate_views import BLOCK
@@ -516,7 +517,7 @@ def blows_off(sensor: Sensor, part_in_bowl: BowlOfPart, states: States, level: f
         return all(abs(top - view.height) > sensor.play for view in sensor.wanted)
     faces = np.concatenate([solid.triangles + k * len(solid.vertices) for k in range(len(states))])
     spots = np.concatenate(parts) - [0.0, 0.0, level]
-    for view in sensor.wanted:
+    for view in cast(tuple[Orientation, ...], sensor.wanted):
         area = sensor_views.visible_area(spots, faces, sensor.sees, fine, view.distance)
         wanted = sensor_views.outline(view, sensor.sees, view.distance)
         if sensor.sees == "outline":

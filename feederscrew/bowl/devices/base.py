@@ -20,14 +20,13 @@ from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
 from feederscrew.base.units import MM
 from feederscrew.bowl.devices import orientation_names, values
+from feederscrew.bowl.devices.asked import Encounter, Lying, LyingPart
 from feederscrew.bowl.devices.features import Blade, Features, TrackOpening
 from feederscrew.bowl.devices.trade import Action, Trade, ValueSearch
 from feederscrew.bowl.devices.values import Corner
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
-    from feederscrew.sorting.orientations import Orientation
-    from feederscrew.sorting.verdicts import DeviceEncounter
 
 GATE_FRAME_M = 5e-3  # [m] of a gate above its opening
 GRIP = 0.6  # [1] friction of a dry steel track
@@ -265,12 +264,12 @@ class Device:
     # -- as a design tries it
 
     @classmethod
-    def needed(cls, orientation: "Orientation") -> float:
+    def needed(cls, orientation: LyingPart) -> float:
         """Return the value of a device of this kind that an orientation just passes.
 
         Parameters
         ----------
-        orientation : Orientation
+        orientation : LyingPart
 
         Returns
         -------
@@ -303,12 +302,12 @@ class Device:
         return cls(where, limit=limit)
 
     @classmethod
-    def relieving(cls, wanted: "Sequence[Orientation]", margin: float, where: str) -> "Device | None":
+    def relieving(cls, wanted: Sequence[LyingPart], margin: float, where: str) -> "Device | None":
         """Return the device before the tooling at which orientations leave where they back up.
 
         Parameters
         ----------
-        wanted : sequence of Orientation
+        wanted : sequence of LyingPart
         margin : float [m]
             By which it carries them.
         where : str
@@ -323,14 +322,14 @@ class Device:
 
     # -- as it stands on the track
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         """Return all that it cuts out of the track, sets on it and changes of its way.
 
         Parameters
         ----------
         track : Track
             Its width and radius count.
-        orientations : sequence of Orientation
+        orientations : sequence of LyingPart
             Of the part: the longest sets how long a device is that goes on along the track, the tallest how
             high a gate stands, and an opening or a sensor may name one.
 
@@ -353,12 +352,12 @@ class Device:
 
     # -- what it does with parts
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         """Return what it does with an orientation, by what statics knows of it.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
 
         Returns
         -------
@@ -366,12 +365,12 @@ class Device:
         """
         return encounter.passing()
 
-    def fate(self, encounter: "DeviceEncounter") -> str:
+    def fate(self, encounter: Encounter) -> str:
         """Return what becomes of an orientation that it does not let pass.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
 
         Returns
         -------
@@ -388,20 +387,20 @@ class Device:
             return STOPPED  # it hangs in the slot up to its end
         return RETURNED if encounter.falls_through(opening.ring) else STOPPED
 
-    def onward(self, orientation: "Orientation") -> "Orientation":
+    def onward(self, orientation: Lying) -> Lying:
         """Return an orientation that it lets pass as it goes on behind it.
 
         Parameters
         ----------
-        orientation : Orientation
+        orientation : LyingPart
 
         Returns
         -------
-        Orientation
+        LyingPart
         """
         return orientation
 
-    def hop_blur(self, orientation: "Orientation") -> float:
+    def hop_blur(self, orientation: LyingPart) -> float:
         """Return what the hop of an orientation takes of its margin.
 
         Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
@@ -409,7 +408,7 @@ class Device:
 
         Parameters
         ----------
-        orientation : Orientation
+        orientation : LyingPart
 
         Returns
         -------
@@ -417,12 +416,12 @@ class Device:
         """
         return orientation.hop
 
-    def gap(self, orientation: "Orientation", speed: float) -> float:
+    def gap(self, orientation: LyingPart, speed: float) -> float:
         """Return the free way that it needs between parts.
 
         Parameters
         ----------
-        orientation : Orientation
+        orientation : LyingPart
         speed : float [m/s]
             At which they come.
 
@@ -445,12 +444,12 @@ class Device:
         """
         return True
 
-    def more(self, encounter: "DeviceEncounter") -> float:
+    def more(self, encounter: Encounter) -> float:
         """Return by how much more an orientation that travels passes it than one that is placed.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
 
         Returns
         -------
@@ -459,13 +458,13 @@ class Device:
         return 0.0
 
 
-def opening_at(device: Device, orientation: "Orientation") -> TrackOpening | None:
+def opening_at(device: Device, orientation: LyingPart) -> TrackOpening | None:
     """Return the opening that a device cuts below an orientation, or None.
 
     Parameters
     ----------
     device : Device
-    orientation : Orientation
+    orientation : LyingPart
 
     Returns
     -------
@@ -486,7 +485,7 @@ def opening_at(device: Device, orientation: "Orientation") -> TrackOpening | Non
 
 
 def gate_features(
-    opening: shapely.Geometry, orientations: "Sequence[Orientation]", width: float, *, is_gate: bool
+    opening: shapely.Geometry, orientations: Sequence[LyingPart], width: float, *, is_gate: bool
 ) -> Features:
     """Return a plate square across the track, with an opening.
 
@@ -494,7 +493,7 @@ def gate_features(
     ----------
     opening : shapely geometry [m]
         Distances from the wall, and heights.
-    orientations : sequence of Orientation
+    orientations : sequence of LyingPart
         Of the part: the plate goes up over the tallest.
     width : float [m]
         Of the track.
@@ -510,12 +509,12 @@ def gate_features(
     return Features(0.5 * room, blades=(Blade(plate, foot=(0.5 * room, 0.0), is_gate=is_gate),))
 
 
-def tall_of(orientations: "Sequence[Orientation]", least: float) -> float:
+def tall_of(orientations: Sequence[LyingPart], least: float) -> float:
     """Return how tall a gate is made: twice the tallest part, or the least height, and its frame.
 
     Parameters
     ----------
-    orientations : sequence of Orientation
+    orientations : sequence of LyingPart
     least : float [m]
 
     Returns
@@ -668,12 +667,12 @@ def mapping_text(entries: Iterable[tuple[str, str]]) -> str:
     return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
 
-def size_of(orientation: "Orientation") -> float:
+def size_of(orientation: LyingPart) -> float:
     """Return the diagonal of an orientation: root of length squared plus the greater of width and height.
 
     Parameters
     ----------
-    orientation : Orientation
+    orientation : LyingPart
 
     Returns
     -------
@@ -682,12 +681,12 @@ def size_of(orientation: "Orientation") -> float:
     return float(np.hypot(orientation.length, max(orientation.width, orientation.height)))
 
 
-def room_of(orientations: "Sequence[Orientation]") -> float:
+def room_of(orientations: Sequence[LyingPart]) -> float:
     """Return the length of track that a device has to itself, by the longest orientation.
 
     Parameters
     ----------
-    orientations : sequence of Orientation
+    orientations : sequence of LyingPart
 
     Returns
     -------
@@ -766,6 +765,6 @@ class Yield(Device):
     def value_words(self) -> str:
         return "passes " + ", ".join(f"{100.0 * share:.4g} % of {name}" for name, share in self.shares)
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         shares = {name.casefold(): share for name, share in self.shares}
         return Verdict(shares.get(encounter.orientation.aspect.casefold(), 1.0), math.nan)

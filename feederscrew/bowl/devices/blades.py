@@ -12,6 +12,7 @@ import shapely
 from feederscrew.base import value_forms as forms
 from feederscrew.base.errors import ConfigError
 from feederscrew.bowl.devices import orientation_names, values
+from feederscrew.bowl.devices.asked import Encounter, LyingPart
 from feederscrew.bowl.devices.base import (
     RETURNED,
     Device,
@@ -32,8 +33,6 @@ from feederscrew.bowl.devices.values import Corner
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
-    from feederscrew.sorting.orientations import Orientation
-    from feederscrew.sorting.verdicts import DeviceEncounter
 
 SQUARE_FACE_RAD = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
 PROPOSED_SWEEP_RAD = math.radians(30.0)  # [rad] that a design tries: 20 to 35 deg clear fastest
@@ -55,7 +54,7 @@ class Overhead(Device):
     action: ClassVar[Action] = Action.OVERHEAD
     search: ClassVar[ValueSearch] = ValueSearch(bound=Bound.UPPER, limited_by="height")
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         free = shapely.box(0.0, 0.0, track.extent, self.limit)
         return gate_features(free, orientations, track.extent, is_gate=False)
 
@@ -63,7 +62,7 @@ class Overhead(Device):
     def value_words(self) -> str:
         return f"{length_words(self.limit)} over the track"
 
-    def judged(self, encounter: "DeviceEncounter", sweep: float = 0.0) -> Verdict:
+    def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
         margin = self.limit - encounter.orientation.height
         return encounter.verdict(encounter.unless_laid_over(margin, self.limit, sweep))
 
@@ -140,17 +139,17 @@ class Wiper(Overhead):
         friction = grip if self.friction is None else self.friction
         return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
 
-    def fate(self, encounter: "DeviceEncounter") -> str:
+    def fate(self, encounter: Encounter) -> str:
         clears = self.clear_of(encounter.grip) and not encounter.hanging  # rails hold what hangs
         return RETURNED if clears else super().fate(encounter)
 
-    def judged(self, encounter: "DeviceEncounter", sweep: float = 0.0) -> Verdict:
+    def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
         if not self.contour:
             return super().judged(encounter, self.sweep if self.face else 0.0)
         free = shapely.Polygon([(0.0, 0.0), *self._edge(BEYOND_TRACK_M), (BEYOND_TRACK_M, 0.0)])
         return encounter.verdict(encounter.through(free))
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         room, lean = room_of(orientations), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
         tall = tall_of(orientations, edge[:, 1].max())
@@ -220,18 +219,18 @@ class Profile(Device):
         aspect, heading, play = self.like
         return mapping_text((("of", orientation_names.written(aspect, heading)), ("play", length_text(play))))
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         free = self.free(orientations)
         if self.like:
             free = free.intersection(shapely.box(0.0, 0.0, track.extent, MAX_OPENING_HEIGHT_M))
         return gate_features(free, orientations, track.extent, is_gate=True)
 
-    def free(self, orientations: "Sequence[Orientation]") -> shapely.Geometry:
+    def free(self, orientations: Sequence[LyingPart]) -> shapely.Geometry:
         """Return the opening however wide the track is, in distances from the wall and heights.
 
         Parameters
         ----------
-        orientations : sequence of Orientation
+        orientations : sequence of LyingPart
             Of the part: the opening may name one.
 
         Returns
@@ -252,5 +251,5 @@ class Profile(Device):
         parts = [part for part in shapely.get_parts(outline) if part.geom_type == "Polygon"]
         return shapely.union_all([shapely.Polygon(part.exterior) for part in parts])
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         return encounter.verdict(encounter.through(self.free(encounter.orientations)))

@@ -8,15 +8,12 @@ bowl's solid are made of them, and verdicts read the same openings; none of thes
 import enum
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from feederscrew.base.arrays import Points
-
-if TYPE_CHECKING:
-    from feederscrew.sorting.orientations import Orientation
+from feederscrew.bowl.devices.asked import LyingPart
 
 BLADE = 1.5e-3  # [m] thickness of a blade
 BEYOND_BLADES_M = 10.0  # [m] beyond any blade
@@ -298,7 +295,7 @@ class Sensor:
 
     at: float  # [m] x
     sees: str  # 'outline' from above, 'side' from the bowl's axis, 'height' or 'relief'
-    wanted: "tuple[Orientation, ...]"  # what is like any of them passes
+    wanted: tuple[LyingPart, ...]  # what is like any of them passes
     play: float  # [m] what is seen to differ by less passes
     resolution: float  # [m] to which it sees
 

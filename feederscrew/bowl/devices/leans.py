@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from feederscrew.base import value_forms as forms
 from feederscrew.base.documents import Entry
 from feederscrew.bowl.devices import values
+from feederscrew.bowl.devices.asked import Encounter, Lying, LyingPart
 from feederscrew.bowl.devices.base import (
     Device,
     Verdict,
@@ -21,8 +22,6 @@ from feederscrew.bowl.devices.trade import IS_ANGLE, Action, Trade
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
-    from feederscrew.sorting.orientations import Orientation
-    from feederscrew.sorting.verdicts import DeviceEncounter
 
 MAX_BANK_RAD = math.radians(45.0)
 # [deg] of a bank that holds what rolls: the least, the greatest, and beyond the angle that just holds
@@ -74,12 +73,12 @@ class Lean(Device):
         return cls(where, angle=math.radians(degrees)).rewritten()
 
     @classmethod
-    def holding(cls, orientation: "Orientation", wall_friction: float, where: str) -> "tuple[Lean, ...]":
+    def holding(cls, orientation: LyingPart, wall_friction: float, where: str) -> "tuple[Lean, ...]":
         """Return the devices, in order, that hold what rolls on the level.
 
         Parameters
         ----------
-        orientation : Orientation
+        orientation : LyingPart
         wall_friction : float [1]
         where : str
             What asks for them.
@@ -92,12 +91,12 @@ class Lean(Device):
         return ()
 
     @classmethod
-    def leanings(cls, orientation: "Orientation", where: str) -> "list[tuple[Lean, ...]]":
+    def leanings(cls, orientation: LyingPart, where: str) -> "list[tuple[Lean, ...]]":
         """Return other ways to lean the track for an orientation.
 
         Parameters
         ----------
-        orientation : Orientation
+        orientation : LyingPart
         where : str
             What asks for them.
 
@@ -153,23 +152,23 @@ class Groove(Lean):
         return f"both faces rise at {degrees_words(self.angle)}"
 
     @classmethod
-    def holding(cls, orientation: "Orientation", wall_friction: float, where: str) -> "tuple[Lean, ...]":
+    def holding(cls, orientation: LyingPart, wall_friction: float, where: str) -> "tuple[Lean, ...]":
         return (cls.of(HOLDS, where), Bank.of(LEAST, where)) if orientation.rolls_along else ()
 
     @classmethod
-    def leanings(cls, orientation: "Orientation", where: str) -> "list[tuple[Lean, ...]]":
+    def leanings(cls, orientation: LyingPart, where: str) -> "list[tuple[Lean, ...]]":
         along = orientation.kind == "rolling" and orientation.rolls_along
         return [(cls.of(angle, where), Bank.of(LEAST, where)) for angle in ANGLES] if along else []
 
-    def onward(self, orientation: "Orientation") -> "Orientation":
+    def onward(self, orientation: Lying) -> Lying:
         track = replace(orientation.track, bank=self.angle)
         rolls = orientation.may_roll_back and not orientation.rolls_along
-        return replace(orientation, track=track, groove=self.angle, may_roll_back=rolls)
+        return orientation.on_track(track, groove=self.angle, may_roll_back=rolls)
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         return encounter.laid_in_groove(self.angle)
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
         length = GROOVE_ROOMS * room_of(orientations)
         return Features(length, slopes=(slope,))
@@ -195,22 +194,22 @@ class Bank(Lean):
         return f"{degrees_words(self.angle)} towards the wall"
 
     @classmethod
-    def holding(cls, orientation: "Orientation", wall_friction: float, where: str) -> "tuple[Lean, ...]":
+    def holding(cls, orientation: LyingPart, wall_friction: float, where: str) -> "tuple[Lean, ...]":
         steep = math.degrees(math.atan2(math.tan(max(orientation.track.climb, 0.0)), max(wall_friction, 0.0)))
         bank = max(LEAST, math.ceil(steep + MORE))
         return (cls.of(bank, where),) if wall_friction > 0.0 and bank <= MOST else ()
 
     @classmethod
-    def leanings(cls, orientation: "Orientation", where: str) -> "list[tuple[Lean, ...]]":
+    def leanings(cls, orientation: LyingPart, where: str) -> "list[tuple[Lean, ...]]":
         return [(cls.of(bank, where),) for bank in PROPOSED_BANKS_DEG]
 
-    def onward(self, orientation: "Orientation") -> "Orientation":
+    def onward(self, orientation: Lying) -> Lying:
         track = replace(orientation.track, bank=self.angle)
         held = math.tan(track.climb) <= orientation.wall_grip * math.tan(self.angle)
         rolls = orientation.may_roll_back and not held
-        return replace(orientation, track=track, groove=0.0, may_roll_back=rolls)
+        return orientation.on_track(track, groove=0.0, may_roll_back=rolls)
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         return Features(0.5 * room_of(orientations), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
 
 
@@ -242,8 +241,8 @@ class Separation(Lean):
         """Return what it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
-    def onward(self, orientation: "Orientation") -> "Orientation":
-        return replace(orientation, track=replace(orientation.track, climb=self.angle))
+    def onward(self, orientation: Lying) -> Lying:
+        return orientation.on_track(replace(orientation.track, climb=self.angle))
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         return Features(room_of(orientations), slopes=(Slope(0.0, climb=self.angle),))

@@ -12,6 +12,7 @@ from feederscrew.base.arrays import Points
 from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
 from feederscrew.bowl.devices import values
+from feederscrew.bowl.devices.asked import Encounter, HangingPart, LyingPart
 from feederscrew.bowl.devices.base import (
     MM,
     UNSURE,
@@ -29,8 +30,6 @@ from feederscrew.bowl.devices.trade import Action, Bound, ProposedBy, Trade, Val
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
-    from feederscrew.sorting.orientations import Hanging, Orientation
-    from feederscrew.sorting.verdicts import DeviceEncounter
 
 LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
 LEDGE_RAMP_RAD = math.radians(15.0)  # [rad] slope on which a ledge comes down to the track beside it
@@ -43,7 +42,7 @@ RAIL_SPAN_FORMS = {"from_": forms.LENGTH_FORM, "to": forms.LENGTH_FORM}
 LEAD_IN_FORMS = {"length": forms.LENGTH_FORM, "taper": forms.LENGTH_FORM}
 
 
-def _reach(orientations: "Sequence[Orientation]") -> float:
+def _reach(orientations: Sequence[LyingPart]) -> float:
     """How far [m] a lower track goes on for a verdict."""
     return LOWER_TRACK_LENGTHS * max(size_of(one) for one in orientations)
 
@@ -59,19 +58,19 @@ class Step(Device):
     )
     action = Action.PITCH
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         return Features(drop=Drop(self.limit, reach=_reach(orientations)), settles=SETTLES)
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         return encounter.turning(*encounter.pitched_over(self.limit))
 
     @classmethod
-    def changes(cls, often: "Sequence[DeviceEncounter]") -> list[float]:
+    def changes(cls, often: Sequence[Encounter]) -> list[float]:
         """Return the values at which it changes what it does with some orientation.
 
         Parameters
         ----------
-        often : sequence of DeviceEncounter
+        often : sequence of Encounter
 
         Returns
         -------
@@ -83,7 +82,7 @@ class Step(Device):
 
 
 class _Ledge(Device):
-    def ledge_margin(self, encounter: "DeviceEncounter") -> float:
+    def ledge_margin(self, encounter: Encounter) -> float:
         needed = encounter.orientation.balcony
         return self.limit - needed if math.isfinite(needed) else -encounter.orientation.axial_foot.reach
 
@@ -101,12 +100,12 @@ class Tip(_Ledge):
     )
     action = Action.ROLL
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         length, lower = room_of(orientations), below_ledge(orientations)
         drop = Drop(lower, self.limit, _reach(orientations), length, LEDGE_RAMP_RAD)
         return Features(length + drop.ramp_length(track.radius), drop=drop, settles=SETTLES)
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         margin = self.ledge_margin(encounter)
         beyond = 1.0 - encounter.share(margin)
         turned: tuple[tuple[int, float], ...] = ()
@@ -117,12 +116,12 @@ class Tip(_Ledge):
         return encounter.turning(turned, margin)
 
     @classmethod
-    def changes(cls, often: "Sequence[DeviceEncounter]") -> list[float]:
+    def changes(cls, often: Sequence[Encounter]) -> list[float]:
         """Return the values at which it changes what it does with some orientation.
 
         Parameters
         ----------
-        often : sequence of DeviceEncounter
+        often : sequence of Encounter
 
         Returns
         -------
@@ -132,18 +131,18 @@ class Tip(_Ledge):
         return sorted({x for x in (one.orientation.balcony for one in often) if np.isfinite(x)})
 
 
-def _along(span: tuple[float, float], orientations: "Sequence[Orientation]") -> Features:
+def _along(span: tuple[float, float], orientations: Sequence[LyingPart]) -> Features:
     """An opening between two distances [m] from the wall, all along the device."""
     room = room_of(orientations)
     return Features(room, openings=(TrackOpening(box_ring(0.0, room, *span), span),))
 
 
-def below_ledge(orientations: "Sequence[Orientation]") -> float:
+def below_ledge(orientations: Sequence[LyingPart]) -> float:
     """Return how far below a ledge the second track lies: half the part's greatest length.
 
     Parameters
     ----------
-    orientations : sequence of Orientation
+    orientations : sequence of LyingPart
 
     Returns
     -------
@@ -159,12 +158,12 @@ def below_ledge(orientations: "Sequence[Orientation]") -> float:
 class _Balcony(_Ledge):
     search: ClassVar[ValueSearch] = ValueSearch(bound=Bound.UPPER, limited_by="balcony")
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         if self.limit >= track.extent:
             return Features(room_of(orientations))
         return _along((self.limit, track.extent), orientations)
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         return encounter.verdict(self.ledge_margin(encounter))
 
 
@@ -201,12 +200,12 @@ class PressureBreak(_Balcony):
     action = Action.RELIEVE
 
     @classmethod
-    def relieving(cls, wanted: "Sequence[Orientation]", margin: float, where: str) -> Device | None:
+    def relieving(cls, wanted: Sequence[LyingPart], margin: float, where: str) -> Device | None:
         """Return the break that carries some orientations by a margin, beside what their hop takes of it.
 
         Parameters
         ----------
-        wanted : sequence of Orientation
+        wanted : sequence of LyingPart
         margin : float [m]
         where : str
             What asks for it.
@@ -237,13 +236,13 @@ class Canyon(Device):
     def misfits(self, width: float) -> list[ConfigError]:
         return self.hole_faults(width, 0.0, self.limit)
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         return _along((0.0, self.limit), orientations)
 
-    def more(self, encounter: "DeviceEncounter") -> float:
+    def more(self, encounter: Encounter) -> float:
         return encounter.leans(self.limit)
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         margin = encounter.orientation.canyon - self.limit
         return encounter.verdict(carried(margin, -margin, self.more(encounter) if margin < 0.0 else 0.0))
 
@@ -269,11 +268,11 @@ class Slot(Device):
     def misfits(self, width: float) -> list[ConfigError]:
         return self.hole_faults(width, *self.span)
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         near, far = self.span
         return _along((near, far), orientations)
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         return encounter.verdict(encounter.over_slot(self.span))
 
 
@@ -319,7 +318,7 @@ class Rails(Device):
         """The rails as parts meet them first: as wide as the lead-in, without one."""
         return replace(self, span=self.lead[:2], lead=()) if self.lead else self
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         size = max(size_of(orientation) for orientation in orientations)
         length = room_of(orientations) + sum(self.lead[2:])
         near, far = self.span
@@ -361,12 +360,12 @@ class Rails(Device):
             lead = (min(lead[0], span[0]), max(lead[1], span[1]), *lead[2:])
         return replace(self, span=tuple(span), lead=tuple(lead)).rewritten()
 
-    def hop_blur(self, orientation: "Orientation") -> float:
+    def hop_blur(self, orientation: LyingPart) -> float:
         """Return 0: its margins are widths of head, shank and slot, which a hop does not change.
 
         Parameters
         ----------
-        orientation : Orientation
+        orientation : LyingPart
 
         Returns
         -------
@@ -374,9 +373,9 @@ class Rails(Device):
         """
         return 0.0
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         if encounter.hanging:
-            return encounter.verdict(cast("Hanging", encounter.orientation).over(self.span))
+            return encounter.verdict(cast(HangingPart, encounter.orientation).over(self.span))
         first = self.entry.span
         over = encounter.over_slot(first)
         stem = encounter.held_by_shoulders(self.span) if over < -UNSURE else -np.inf

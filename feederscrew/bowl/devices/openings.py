@@ -13,6 +13,7 @@ from feederscrew.base.arrays import Points
 from feederscrew.base.errors import ConfigError
 from feederscrew.base.geometry.compiled import frozen_rows, record_type
 from feederscrew.bowl.devices import values
+from feederscrew.bowl.devices.asked import Encounter, LyingPart
 from feederscrew.bowl.devices.base import UNSURE, Device, Verdict, carried, corners_text
 from feederscrew.bowl.devices.features import Features, TrackOpening
 from feederscrew.bowl.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
@@ -20,8 +21,6 @@ from feederscrew.bowl.devices.values import Corner
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
-    from feederscrew.sorting.orientations import Orientation
-    from feederscrew.sorting.verdicts import DeviceEncounter
 
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
 FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
@@ -189,7 +188,7 @@ class Across(Device):
 
     action: ClassVar[Action] = Action.CUT
 
-    def hop_blur(self, orientation: "Orientation") -> float:
+    def hop_blur(self, orientation: LyingPart) -> float:
         """Return its flight [m]: over an edge across the track it lands so much further."""
         return orientation.flight
 
@@ -205,7 +204,7 @@ class Gap(Across):
     )
     search = ValueSearch(ProposedBy.VALUE, Bound.LOWER, "gap", rank=2)
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         radius, width = track.radius, track.extent
         off = np.linspace(width, 0.0, GAP_EDGE_POINTS)
         left, met = (
@@ -215,10 +214,10 @@ class Gap(Across):
         ring = np.vstack([[[left[0], width], [left[-1], 0.0]], np.column_stack([met, off])[::-1]])
         return Features(float(ring[:, 0].max()), openings=(TrackOpening(ring, gap=self.limit),))
 
-    def more(self, encounter: "DeviceEncounter") -> float:
+    def more(self, encounter: Encounter) -> float:
         return encounter.orientation.carry_ahead
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         needed, carry = encounter.orientation.gap, encounter.orientation.carry_ahead
         return encounter.verdict(carried(needed - self.limit, self.limit - needed, carry))
 
@@ -245,20 +244,20 @@ class CutOut(Across):
         across = [y for _, y in self.corners]
         return self.hole_faults(width, min(across), max(across), endless=False)
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         ring = np.array(self.corners)
         return Features(float(ring[:, 0].max()), openings=(TrackOpening(ring),))
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         return judge_hole(encounter, np.array(self.corners))
 
 
-def judge_hole(encounter: "DeviceEncounter", ring: Points) -> Verdict:
+def judge_hole(encounter: Encounter, ring: Points) -> Verdict:
     """Return what a hole of an outline does with an orientation: that of one that travels needs time to tip.
 
     Parameters
     ----------
-    encounter : DeviceEncounter
+    encounter : Encounter
     ring : (K, 2) float [m]
         The outline: along the wall, and from it.
 

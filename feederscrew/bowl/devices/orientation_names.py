@@ -2,16 +2,13 @@
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feederscrew.base import units
 from feederscrew.base.arrays import Floats, Values
 from feederscrew.base.errors import ConfigError, FeederError
-
-if TYPE_CHECKING:
-    from feederscrew.sorting.orientations import Orientation
+from feederscrew.bowl.devices.asked import LyingPart
 
 HEADING_TOLERANCE_RAD = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
 NAMED = re.compile(r"(?P<aspect>[^@\s]+)@(?P<degrees>\d{1,3}(\.\d+)?)(?P<hangs> +hanging( \d+)?)?")
@@ -90,7 +87,7 @@ def place(
 
 
 def place_of(
-    orientations: "Sequence[Orientation]",
+    orientations: Sequence[LyingPart],
     aspect: str,
     heading: float,
     where: str,
@@ -101,7 +98,7 @@ def place_of(
 
     Parameters
     ----------
-    orientations : sequence of Orientation
+    orientations : sequence of LyingPart
     aspect : str
     heading : float [rad]
     where : str

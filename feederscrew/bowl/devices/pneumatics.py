@@ -18,6 +18,7 @@ from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.polygons import turned
 from feederscrew.base.heavy import heavy
 from feederscrew.bowl.devices import orientation_names, values
+from feederscrew.bowl.devices.asked import Encounter, LyingPart
 from feederscrew.bowl.devices.base import (
     GRIP,
     MM,
@@ -37,8 +38,6 @@ from feederscrew.bowl.devices.trade import Action, ProposedBy, Trade, ValueSearc
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
     from feederscrew.resting.posture import Posture
-    from feederscrew.sorting.orientations import Orientation
-    from feederscrew.sorting.verdicts import DeviceEncounter
 
 optimize = heavy("scipy.optimize")
 shapely = heavy("shapely")
@@ -130,7 +129,7 @@ class Nozzles:
     def thrust(self) -> float:
         return thrust(self.diameter, self.pressure)
 
-    def heights(self, orientations: "Sequence[Orientation]") -> Floats:
+    def heights(self, orientations: Sequence[LyingPart]) -> Floats:
         """Return their heights over the track, upwards.
 
         Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
@@ -139,7 +138,7 @@ class Nozzles:
 
         Parameters
         ----------
-        orientations : sequence of Orientation
+        orientations : sequence of LyingPart
 
         Returns
         -------
@@ -147,12 +146,12 @@ class Nozzles:
         """
         return np.array(_heights(self, tuple(orientations)))
 
-    def moves(self, orientation: "Orientation", heights: Sequence[float]) -> float:
+    def moves(self, orientation: LyingPart, heights: Sequence[float]) -> float:
         """Return the force outwards, less the friction of that down, over the thrust of a nozzle.
 
         Parameters
         ----------
-        orientation : Orientation
+        orientation : LyingPart
         heights : sequence of float [m]
             Of the nozzles.
 
@@ -164,14 +163,14 @@ class Nozzles:
         return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
 
     def push(
-        self, orientation: "Orientation", orientations: "Sequence[Orientation]", ahead: float = 0.0
+        self, orientation: LyingPart, orientations: Sequence[LyingPart], ahead: float = 0.0
     ) -> tuple[float, float]:
         """Return the forces on an orientation.
 
         Parameters
         ----------
-        orientation : Orientation
-        orientations : sequence of Orientation
+        orientation : LyingPart
+        orientations : sequence of LyingPart
             All of the part: they set the heights.
         ahead : float [m], optional
             By which the weight is ahead of the nozzles.
@@ -186,7 +185,7 @@ class Nozzles:
         return out, down
 
     def jets(
-        self, place: float, orientations: "Sequence[Orientation]", seconds: float = math.inf
+        self, place: float, orientations: Sequence[LyingPart], seconds: float = math.inf
     ) -> tuple[Jet, ...]:
         return tuple(
             Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, JET_REACH_M, seconds)
@@ -195,7 +194,7 @@ class Nozzles:
 
 
 @functools.lru_cache(maxsize=256)
-def _heights(nozzles: Nozzles, orientations: "Sequence[Orientation]") -> tuple[float, ...]:
+def _heights(nozzles: Nozzles, orientations: Sequence[LyingPart]) -> tuple[float, ...]:
     low, count = nozzles.height, nozzles.count
     top = max(orientation.height for orientation in orientations)
     if low is None and count > 1:
@@ -229,9 +228,7 @@ def _heights(nozzles: Nozzles, orientations: "Sequence[Orientation]") -> tuple[f
     return tuple(np.linspace(low, high, count) if high > low else np.full(count, low))
 
 
-def _share(
-    orientation: "Orientation", diameter: float, height: float, ahead: float = 0.0
-) -> tuple[float, float]:
+def _share(orientation: LyingPart, diameter: float, height: float, ahead: float = 0.0) -> tuple[float, float]:
     """Return the share of a jet's thrust that an orientation takes [1]: outwards from the wall, and down."""
     return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
 
@@ -334,16 +331,16 @@ class Sorter(Device):
     @classmethod
     def around(
         cls,
-        encounter: "DeviceEncounter",
+        encounter: Encounter,
         margin: float,
         where: str,
-        unlike: "Callable[[str], Sequence[Orientation]]" = lambda view: (),
+        unlike: Callable[[str], Sequence[LyingPart]] = lambda view: (),
     ) -> list["Sorter"]:
         """Return the sorters of an orientation, one for each view.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
             With the orientation that passes.
         margin : float [m]
             By which what passes may differ, beside resolution, skew and hop.
@@ -439,12 +436,12 @@ class Sorter(Device):
             "thrust_N": self.jet.thrust,
         }
 
-    def differs(self, encounter: "DeviceEncounter") -> float:
+    def differs(self, encounter: Encounter) -> float:
         """Return by how much an orientation is seen to differ from the nearest of the wanted ones.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
 
         Returns
         -------
@@ -456,7 +453,7 @@ class Sorter(Device):
             return encounter.askew(self.sees)
         return min(encounter.differs(other, self.sees) for other in wanted)
 
-    def wanted(self, orientations: "Sequence[Orientation]") -> "tuple[Orientation, ...]":
+    def wanted(self, orientations: Sequence[LyingPart]) -> tuple[LyingPart, ...]:
         source = self.where, f"{self.kind} names"
         places = (orientation_names.place_of(orientations, *named, *source) for named in self.names)
         return tuple(orientations[k] for k in places)
@@ -465,7 +462,7 @@ class Sorter(Device):
     def jet(self) -> Nozzles:
         return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         room = room_of(orientations)
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(orientations), self.like[2], self.blur)
@@ -473,7 +470,7 @@ class Sorter(Device):
         jets, mounts = self.jet.jets(nozzles, orientations, self.time), self._mounts(middle, orientations)
         return Features(room + SENSOR_TO_NOZZLE_M, jets=jets, mounts=mounts, sensor=sensor)
 
-    def _mounts(self, middle: float, orientations: "Sequence[Orientation]") -> tuple[Bore, ...]:
+    def _mounts(self, middle: float, orientations: Sequence[LyingPart]) -> tuple[Bore, ...]:
         """Holes for the valve block, beside the nozzles over the tallest part, and for the trigger's fibre.
 
         The fibre is where the front of the wanted part is as its middle comes to the sensor, ``middle`` [m];
@@ -491,14 +488,14 @@ class Sorter(Device):
             Bore(TRIGGER, trigger, 0.5 * wanted.height, FIBRE_HOLE_M),
         )
 
-    def hop_blur(self, orientation: "Orientation") -> float:
+    def hop_blur(self, orientation: LyingPart) -> float:
         return 0.0 if self.sees == "outline" else orientation.hop
 
-    def gap(self, orientation: "Orientation", speed: float) -> float:
+    def gap(self, orientation: LyingPart, speed: float) -> float:
         beam = self.nozzle + 2.0 * SPREAD * orientation.width
         return max(beam + speed * (REACTION + self.time), self.blur)
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         margin = self.like[2] - self.differs(encounter)
         margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
         if margin < 0.0:
@@ -537,9 +534,9 @@ class SteadyJet(Device):
     @classmethod
     def proposals(
         cls,
-        wanted: "Sequence[DeviceEncounter]",
-        competitors: "Sequence[DeviceEncounter]",
-        orientations: "Sequence[Orientation]",
+        wanted: Sequence[Encounter],
+        competitors: Sequence[Encounter],
+        orientations: Sequence[LyingPart],
         where: str,
     ) -> "list[SteadyJet]":
         """Return the jets that blow surely off some orientations and surely leave others, one a height.
@@ -549,9 +546,9 @@ class SteadyJet(Device):
 
         Parameters
         ----------
-        wanted, competitors : sequence of DeviceEncounter
+        wanted, competitors : sequence of Encounter
             Those that it leaves, and those that it blows off.
-        orientations : sequence of Orientation
+        orientations : sequence of LyingPart
             All of the part.
         where : str
             What asks for them.
@@ -603,12 +600,12 @@ class SteadyJet(Device):
     def jet(self) -> Nozzles:
         return Nozzles(self.nozzle, self.pressure, self.height)
 
-    def factor(self, encounter: "DeviceEncounter") -> float:
+    def factor(self, encounter: Encounter) -> float:
         """Return its mean force on an orientation that passes, over the one that just moves it off.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
 
         Returns
         -------
@@ -616,12 +613,12 @@ class SteadyJet(Device):
         """
         return float(np.mean(self._factors(encounter)))
 
-    def most(self, encounter: "DeviceEncounter") -> float:
+    def most(self, encounter: Encounter) -> float:
         """Return the greatest such factor at any place along an orientation.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
 
         Returns
         -------
@@ -629,7 +626,7 @@ class SteadyJet(Device):
         """
         return float(self._factors(encounter).max())
 
-    def _factors(self, encounter: "DeviceEncounter") -> Floats:
+    def _factors(self, encounter: Encounter) -> Floats:
         """The same (JET_POSITIONS,) along its length: it may offer more ahead or behind than amid."""
         orientation = encounter.orientation
         lying = encounter.orientations or (orientation,)
@@ -640,7 +637,7 @@ class SteadyJet(Device):
         force = encounter.force_to_clear(wide, self.height)
         return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         if encounter.hanging:
             return encounter.verdict(0.0)
         factor, most = self.factor(encounter), self.most(encounter)
@@ -650,6 +647,6 @@ class SteadyJet(Device):
             margin = 0.0 if factor < 1.0 else -UNSURE
         return encounter.verdict(max(margin, -distance))
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         room = room_of(orientations)
         return Features(room, jets=self.jet.jets(0.5 * room, orientations))

@@ -14,6 +14,7 @@ from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
 from feederscrew.base.units import MM
 from feederscrew.bowl.devices import values
+from feederscrew.bowl.devices.asked import Encounter, LyingPart
 from feederscrew.bowl.devices.base import (
     UNSURE,
     Verdict,
@@ -28,8 +29,6 @@ from feederscrew.bowl.devices.trade import ProposedBy, Trade, ValueSearch
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
-    from feederscrew.sorting.orientations import Orientation
-    from feederscrew.sorting.verdicts import DeviceEncounter
 
 DISH_CHORD_M = 1e-5  # [m] by which the arc of a dish may be seen too flat
 MAX_DISH_RADIUS_M = 1.0  # [m] of a dish
@@ -66,11 +65,11 @@ class _Bay(Across):
         """
         raise NotImplementedError
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         ring = self.ring(track.extent)
         return Features(float(ring[:, 0].max()), openings=(TrackOpening(ring),))
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         return judge_hole(encounter, self.ring(encounter.orientation.track.extent))
 
 
@@ -185,12 +184,12 @@ class CapSelector(_Bay):
             ]
         )  # fmt: skip
 
-    def judged(self, encounter: "DeviceEncounter") -> Verdict:
+    def judged(self, encounter: Encounter) -> Verdict:
         """Return what it does with an orientation; not sure of one that rolls: it may ride from edge to edge.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
 
         Returns
         -------
@@ -204,18 +203,18 @@ class CapSelector(_Bay):
     @classmethod
     def proposals(
         cls,
-        wanted: "Sequence[DeviceEncounter]",
-        competitors: "Sequence[DeviceEncounter]",
-        orientations: "Sequence[Orientation]",
+        wanted: Sequence[Encounter],
+        competitors: Sequence[Encounter],
+        orientations: Sequence[LyingPart],
         where: str,
     ) -> "list[CapSelector]":
         """Return the surest selector for parts with a mouth, that of the least margin and free way.
 
         Parameters
         ----------
-        wanted, competitors : sequence of DeviceEncounter
+        wanted, competitors : sequence of Encounter
             Those that pass, and those that fall.
-        orientations : sequence of Orientation
+        orientations : sequence of LyingPart
             All of the part.
         where : str
             What asks for them.

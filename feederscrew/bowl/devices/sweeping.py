@@ -12,6 +12,7 @@ from feederscrew.base import value_forms as forms
 from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
 from feederscrew.bowl.devices import values
+from feederscrew.bowl.devices.asked import Encounter, LyingPart
 from feederscrew.bowl.devices.base import (
     RETURNED,
     Verdict,
@@ -28,8 +29,6 @@ from feederscrew.bowl.devices.trade import IS_ANGLE, Trade
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
-    from feederscrew.sorting.orientations import Orientation
-    from feederscrew.sorting.verdicts import DeviceEncounter
 
 DEFLECTOR_BEGIN_RAD = math.radians(12.0)  # [rad] at the wall, as tried
 DEFLECTOR_END_RAD = math.radians(50.0)  # [rad] at the free edge, as tried
@@ -90,12 +89,12 @@ class CurvedDeflector(Overhead):
         """The sweep [rad] of its last piece, at which parts are slowest, and no friction of its own."""
         return self.headings[-1], None
 
-    def fate(self, encounter: "DeviceEncounter") -> str:
+    def fate(self, encounter: Encounter) -> str:
         """Return what becomes of what it holds up: RETURNED where its last piece still sweeps it on.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
 
         Returns
         -------
@@ -104,12 +103,12 @@ class CurvedDeflector(Overhead):
         clears = self.headings[-1] < SQUARE_FACE_RAD - math.atan(encounter.grip)
         return RETURNED if clears and not encounter.hanging else super().fate(encounter)
 
-    def judged(self, encounter: "DeviceEncounter", sweep: float = 0.0) -> Verdict:
+    def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
         """Return the verdict of its height; not sure where one of its pieces may lay the part over.
 
         Parameters
         ----------
-        encounter : DeviceEncounter
+        encounter : Encounter
         sweep : float, optional
             Not used: it has many.
 
@@ -120,7 +119,7 @@ class CurvedDeflector(Overhead):
         verdicts = [super(CurvedDeflector, self).judged(encounter, sweep) for sweep in self.headings]
         return max(verdicts, key=lambda outcome: outcome.margin)
 
-    def features(self, track: "Track", orientations: "Sequence[Orientation]") -> Features:
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         room, tall = room_of(orientations), tall_of(orientations, self.limit)
         # pieces of an arc are alike: so long that the last one ends at the free edge
         size = optimize.brentq(
