@@ -23,7 +23,7 @@ from feederscrew.bowl.record import (
     Sizing,
     Track,
 )
-from feederscrew.bowl.verified import HELD, NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
+from feederscrew.bowl.verified import NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
 from feederscrew.columns import ColumnHead, Frame, heads, of_records, values
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import HOP_COLUMNS, hop
@@ -434,9 +434,9 @@ def summary(study: DesignStudy) -> Frame:
         rows.append((f"with {kind}", "; ".join(words)))
     rows.append(("trials, parts", f"{len(study.attempts)}, {d['trial_parts']}"))
     wrapped = [line for row in rows for line in wrap_row(*row)]
-    labels = next_tries.CALMER if d["status"] in HELD else next_tries.LABELS
-    for label, entry in zip(labels, d["next"], strict=False):
-        wrapped += [(label, entry["command"]), *wrap_row("", entry["why"])]  # a command stands in one line
+    for entry in d["next"]:
+        # a command stands in one line
+        wrapped += [(entry["label"], entry["command"]), *wrap_row("", entry["why"])]
     return tables.quantities(wrapped)
 
 
