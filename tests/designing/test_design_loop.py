@@ -10,10 +10,12 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.ensemble import wilson
 from feederscrew.arrivals.entry import Shares
+from feederscrew.base.columns import values
 from feederscrew.base.errors import FeederError
 from feederscrew.base.running import RunSettings
 from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
-from feederscrew.designing.record import DesignRequest, RobustRun
+from feederscrew.designing.proof import RobustRun
+from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import robust_run
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
@@ -43,12 +45,12 @@ def ridden(entering, wanted, *changes):
 def test_each_orientation_says_how_many_stay_turn_and_leave():
     rows = ridden([0.5, 0.3, 0.2], (0,), (1, 0, 2), (2, LEFT, 10)).rows()
     low, high = (float(end[0]) for end in wilson([8], 10))
-    assert rows[1] == {
+    assert values(long_ride.LONG_RIDE_COLUMNS, rows[1]) == {
         "orientation": "A@180", "parts": 10, "stays": 8, "stays_low": low, "stays_high": high,
         "becomes": {"A@0": 2}, "left": 0, "share_entering": 0.3,
         "share_arriving": pytest.approx(0.24 / 0.8),
     }  # fmt: skip
-    assert (rows[2]["stays"], rows[2]["left"], rows[2]["becomes"]) == (0, 10, {})
+    assert (rows[2].stays, rows[2].left, rows[2].becomes) == (0, 10, {})
     table = designs.long_ride(rows)
     assert list(table["becomes"]) == ["-", "A@0: 2", "-"] and list(table["left"]) == [0, 0, 10]
     assert list(table["arriving [%]"]) == [70.0, 30.0, 0.0]
@@ -113,7 +115,7 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
     monkeypatch.setattr(queues, "follow_fills", filled)
     request = DesignRequest(0.5, draws=1, rule="csa")
     found = loop.design(CUBE, bowls.default(), frozenset(), request, shares=SHARES, with_nearest=False)
-    ride = found.long_ride
+    ride = found.proof.long_ride
     for apart, touching in seen:
         assert np.array_equal(apart, ride.arriving) and np.array_equal(touching, ride.entering)
     assert seen and drawn == [pytest.approx(0.5 * (ride.arriving + ride.entering))] * len(drawn) != []
@@ -209,7 +211,7 @@ def test_a_trial_at_one_fill_is_the_queue_of_the_design(monkeypatch):
     request = replace(REQUEST, up=("A",))
     found = loop.design(CUBE, bowls.default(), frozenset(), request, shares=SHARES, with_nearest=False)
     level = fills.FillLevel.HIGH
-    proved = next(queue for queue in found.queues if queue.fill == level)
+    proved = next(queue for queue in found.proof.queues if queue.fill == level)
     own = {"aspect_shares": SHARES, "rule": "csa", "parts": 1, "seconds": proved.seconds}
     again = TrialQueue("high", wanted=found.wanted, up=request.up)
     run = trial(CUBE, found.bowl, queue=again, **own).runs[0]
