@@ -5,7 +5,7 @@ import re
 import browser
 import numpy as np
 import pytest
-from command_lines import BRACKET, CARD
+from command_lines import BRACKET, CARD, NUT
 
 from feederscrew import bowl as bowls
 from feederscrew.output import poses
@@ -66,6 +66,27 @@ def test_a_name_has_its_picture_once_and_what_is_no_pose_stays_text(text):
     pictures = re.findall(r'\.pose-(\d+) \{ --pose: url\("data:image/png;base64,([^"]+)"\)', text)
     assert [number for number, _ in pictures] == ["0", "1", "2"] and len({data for _, data in pictures}) == 3
     assert "<td>none</td>" in text and "Z@1 do not" in text
+
+
+def test_names_of_several_parts_show_the_pose_of_their_own_part(part, aspects):
+    nut = load(str(NUT))
+    finders = {
+        each.name: poses.pose_finder(each, resting) for each, resting in ((part, aspects), (nut, find(nut)))
+    }
+    told = [poses.name_part("sees A@90, not A@0", name) for name in finders] + [
+        poses.name_part("A", nut.name)
+    ]
+    assert told[0] == f"sees A@90 of {part.name}, not A@0 of {part.name}" and told[2] == f"A of {nut.name}"
+    table = Table(Frame.of({"a": told, "b": ["A", f"A@90 of {part.name}_2", "A@90 of all"]}))
+    written = html(Page("two", "", (Chapter((table,)),), pose_of=finders))
+    marked = re.findall(r'<span class="pose pose-(\d+)[^>]*>([^<]*)<', written)
+    assert [name for _, name in marked] == [
+        f"A@90 of {part.name}", f"A@0 of {part.name}", f"A@90 of {nut.name}", f"A@0 of {nut.name}",
+        f"A of {nut.name}",
+    ]  # fmt: skip
+    pictures = dict(re.findall(r'\.pose-(\d+) \{ --pose: url\("data:image/png;base64,([^"]+)"\)', written))
+    assert len(set(pictures.values())) == 5
+    assert "A@90 of all" in re.sub("<[^>]*>", "", written)
 
 
 def test_a_part_card_has_no_poses(aspects):
