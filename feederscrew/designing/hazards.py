@@ -28,7 +28,7 @@ from feederscrew.trials import part_poses, queue, runs, staging
 from feederscrew.trials.fills import FilledQueue
 from feederscrew.trials.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
 from feederscrew.trials.shape import solid_of
-from feederscrew.units import counted
+from feederscrew.units import MM, counted
 
 LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin
 CUBE_DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
@@ -156,7 +156,7 @@ def risks(
             continue
         text = (
             f"{other.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction "
-            f"holds it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
+            f"holds it between walls {between[0] / MM:.3g} mm to {between[1] / MM:.3g} mm apart"
         )
         c, s = math.cos(strut(other, width)), math.sin(strut(other, width))
         x, y, z = other.axes

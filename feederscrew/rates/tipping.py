@@ -13,7 +13,7 @@ from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
-from feederscrew.errors import ConfigError
+from feederscrew.errors import ConfigError, Detail
 from feederscrew.geometry.polygons import convex, cross, inset, sides
 from feederscrew.mechanics import limits, track_balance
 from feederscrew.mechanics.cycle import phases
@@ -314,7 +314,7 @@ def remark(orientations: Sequence[Orientation]) -> tuple[str, ...]:
     if hop > 0.0:
         lead = f"at this drive parts hop {hop / MM:.2g} mm high and fly {flight / MM:.2g} mm along the track"
         less = "margins at edges across the track are less that way, all others less that height"
-        remarks.append(f"{lead}: {less}")
+        remarks.append(Detail(f"{lead}: {less}"))
     if turning:
         lead = f"{listed(turning)}: a landing may tip it over, or the wall turn it"
         remarks.append(f"{lead}, so no verdict on it is sure - see feeder trial")

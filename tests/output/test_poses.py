@@ -30,7 +30,7 @@ def aspects(part):
 
 @pytest.fixture(scope="module")
 def text(part, aspects):
-    lines = Text("A@90 leaves; A@90 and Z@1 do not, nor does b@2 <A@0>.")
+    lines = Text("A@90 leaves; A@90 and Z@1 do not, nor does b@2 <A@0>. A part is B up.")
     table = Table(Frame.of({"aspect": ["A", "none"], "share": [0.5, 0.5]}))
     chapter = Chapter((lines, table), warnings=("A@90 rocks",), title="X", anchor="x")
     named = [("A@90", "leaves"), ("hanging", "is unknown here")]
@@ -60,11 +60,13 @@ def test_the_track_is_under_a_part_and_the_wall_beside_it_the_arrow_ahead(part, 
 
 def test_a_name_has_its_picture_once_and_what_is_no_pose_stays_text(text):
     marked = re.findall(r'<span class="pose pose-(\d+)( first)?"[^>]*data-words="([^"]*)">([^<]*)<', text)
-    assert [name for *_, name in marked] == ["A@90", "A@90", "A@90", "A@90", "A@0", "A"]
-    assert [bool(first) for _, first, _, _ in marked] == [True, False, True, False, True, True]
+    assert [name for *_, name in marked] == ["A@90", "A@90", "A@90", "A@90", "A@0", "B", "A"]
+    assert [bool(first) for _, first, _, _ in marked] == [True, False, True, False, True, True, True]
     assert "turned 90 deg" in marked[0][2]
     pictures = re.findall(r'\.pose-(\d+) \{ --pose: url\("data:image/png;base64,([^"]+)"\)', text)
-    assert [number for number, _ in pictures] == ["0", "1", "2"] and len({data for _, data in pictures}) == 3
+    assert [number for number, _ in pictures] == ["0", "1", "2", "3"] and len(
+        {data for _, data in pictures}
+    ) == 4
     assert "<td>none</td>" in text and "Z@1 do not" in text
 
 

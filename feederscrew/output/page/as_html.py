@@ -51,13 +51,14 @@ CARD_LETTERS = 110  # of a cell that takes more than four lines of that column
 NOTHING = "–"  # in an empty cell
 WHERE_WORDS = "The glossary of feeder, docs/glossary.md, explains the words with pictures."
 DETAILS = "Details for those who compare the rules"  # over remarks that call for no step
-# In HTML, apart from scripts and tags: names of a part that is told, 'A of nut', orientations 'A@188', and
-# cells with nothing but 'A'.
+# In HTML, apart from scripts and tags: names of a part that is told, 'A of nut', orientations 'A@188',
+# aspects that are 'A up' or 'A, at any heading', and what has nothing but 'A' in it.
 NAMES = (
     r'<script.*?</script>|<table class="sheet".*?</table>'  # cells to copy stay as they are
-    r'|(?P<td><td(?: data-head="[^"]*")?>)(?P<cell>[^<>@\s]{1,12})</td>|<[^>]*>'
+    r'|(?P<td><(?P<tag>td|strong|small)(?: data-head="[^"]*")?>)(?P<cell>[^<>@\s]{1,12})</(?P=tag)>|<[^>]*>'
     r"|(?<![\w@])(?P<own>[^\W\d_][\w-]{0,11}(?:@\d{1,3})?) of (?P<part>{parts})(?!\w)"
     r"|(?P<name>[^\W\d_][\w-]{0,11}@\d{1,3})(?![\w@])"
+    r"|(?<![\w@])(?P<aspect>[A-Z]{1,2})(?= up\b|, at any heading|, \d+ trials?:)"
 )
 NO_PART = r"(?!)"  # matches nothing
 FOLLOWING = (  # what the script shows: its name, what a reader calls it
@@ -160,7 +161,7 @@ class PoseNames:
         met: set[str] = set()
 
         def mark(match: re.Match[str]) -> str:
-            name, find = match["name"] or match["cell"], self.find
+            name, find = match["name"] or match["cell"] or match["aspect"], self.find
             if match["own"]:
                 name, find = match[0], lambda _: self.find_of[match["part"]](match["own"])
             pose = find(unescape(name)) if name else None
@@ -171,7 +172,7 @@ class PoseNames:
             met.add(name)
             first = ' first" tabindex="0' if is_first else ""
             text = f'<span class="pose pose-{place}{first}" data-words="{escape(pose.words)}">{name}</span>'
-            return f"{match['td']}{text}</td>" if match["cell"] else text
+            return f"{match['td']}{text}</{match['tag']}>" if match["cell"] else text
 
         return self.pattern.sub(mark, body)
 
@@ -370,7 +371,7 @@ def _table(frame: Frame) -> str:
             if number and count < most and "e" not in cell and cell != NOTHING:
                 pad[place] = f' data-pad="{"" if count else "."}{"0" * (most - count)}"'
     # a text of several lines leaves the cells beside it white: on a phone each row of such a table is a card
-    is_cards = any(len(cell) > CARD_LETTERS for column in columns for cell in column)
+    is_cards = len(columns) > 2 and any(len(cell) > CARD_LETTERS for column in columns for cell in column)
     titles = [f' data-head="{escape(" ".join(names).strip())}"' * is_cards for names in heads]
     lines = []
     for own, row in zip(zip(*pads), zip(*columns)):
