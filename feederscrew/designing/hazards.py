@@ -486,7 +486,7 @@ class PullTest:
             staging.BARE_TRACK, *staging.build_track([], track, length, (-length, length)), begin=-length,
             exit=np.inf, air=staging.STILL_AIR, size=length, width=track.width,
         )  # fmt: skip
-        nowhere = queue.CrowdedTrack(stage, -length, np.zeros((0, 2)), np.zeros(1), length)
+        nowhere = queue.CrowdedTrack(stage, -length, np.zeros((0, 2)), np.zeros(1), np.zeros(0), length)
         self.pair = queue.PartsOnTrack(self.setting, nowhere, 2)
 
     def pull_all(self, turn: Floats, place: Floats, most: float) -> tuple[int, int]:
