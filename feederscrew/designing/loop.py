@@ -15,7 +15,7 @@ from feederscrew.base.geometry import vectors
 from feederscrew.bowl.devices.kinds import cost_class as cost_class_of
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import HELD, Status
+from feederscrew.bowl.verified import DRAWS_HELD, HELD, RATE_KEPT, Status
 from feederscrew.designing import (
     calm_drive,
     exploring,
@@ -31,16 +31,14 @@ from feederscrew.designing import (
 from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind
 from feederscrew.designing.progress import Progress, SearchProgress, SearchStage, TrialBudget
+from feederscrew.designing.proof import Proof, RobustRun
 from feederscrew.designing.record import (
-    DRAWS_HELD,
-    RATE_KEPT,
     Alternative,
     Attempt,
     DesignRequest,
     DesignStudy,
     NearestDesign,
     ProofKind,
-    RobustRun,
 )
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.designing.short_trials import robust_run
@@ -125,7 +123,7 @@ def design(
             for candidate in exploring.candidates(search, cost_class):
                 _prove(search, candidate, proofs)
                 own, last = proofs[first:], proofs[-1][0]
-                queued = sum(bool(study.queues) for study, _ in own)
+                queued = sum(bool(study.proof.queues) for study, _ in own)
                 enough = queued >= policy.queued_designs or len(own) >= policy.drawn_designs
                 if last.status in HELD or last.partial or enough:
                     break
@@ -139,7 +137,7 @@ def design(
             if proofs:
                 study, candidate = max(proofs, key=lambda proof: merit(proof[0]))
                 if not nearest.whole(study):
-                    _prove_whole(search, proofs, candidate, study.robust)
+                    _prove_whole(search, proofs, candidate, study.proof.robust)
             elif (likeliest := _likeliest(search)) is not None:
                 _prove_whole(search, proofs, likeliest, None)
     except KeyboardInterrupt:
@@ -158,7 +156,7 @@ def design(
 def _list_alternatives(search: Search, proofs: Proofs, classes: list[int], best: DesignStudy) -> DesignStudy:
     """The design with every short trial, and beside the best of each cost class."""
     state = search.state
-    studies = [study for study, _ in proofs] + ([best] if best.queues else [])
+    studies = [study for study, _ in proofs] + ([best] if best.proof.queues else [])
     rows = alternatives(studies, state.attempts, classes)
     return replace(best, attempts=tuple(state.attempts), alternatives=rows)
 
@@ -173,7 +171,7 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
     slow = [proof for proof in proofs if nearest.only_slow(proof[0]) and not nearest.whole(proof[0])]
     if slow:  # its queue ended as soon as it was too slow
         study, candidate = max(slow, key=lambda proof: merit(proof[0]))
-        _prove_whole(search, proofs, candidate, study.robust)
+        _prove_whole(search, proofs, candidate, study.proof.robust)
         if proofs[-1][0].partial:
             return None, None
 
@@ -277,9 +275,9 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
     """
     state, policy = search.state, search.policy
     proposal, lying = candidate.proposal, candidate.orientations.lying
-    if study.jams:
+    if study.proof.jams:
         # what stood there, and where, says what to change
-        jammed = tuple(row for queue in study.queues for row in queue.jammed)
+        jammed = tuple(row for queue in study.proof.queues for row in queue.jammed)
         mends = exploring.mends_of_jams(search, candidate, jammed)
         for mended in itertools.islice(mends, policy.jam_mends):
             tried = exploring.try_again(search, candidate, mended, candidate.bowl)
@@ -291,11 +289,11 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
             return lively
         changed = proposals.add_pressure_break(candidate)
     elif nearest.only_slow(study):
-        lacking = policy.slow_reserve * search.request.target / study.delivered[0]
+        lacking = policy.slow_reserve * search.request.target / study.proof.delivered[0]
         state.reserve *= min(lacking, policy.slow_reserve_limit)
         return _faster(search, candidate)
-    elif study.robust.share < DRAWS_HELD:
-        worst = study.robust.worst
+    elif study.proof.robust.share < DRAWS_HELD:
+        worst = study.proof.robust.worst
         if worst is not None and worst.kind is FaultKind.LOST and worst.is_stopped:
             # what is wanted gets stuck: a drive may be too slow
             state.min_speed = policy.faster * calm_drive.speed(candidate.bowl)
@@ -314,7 +312,7 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
         # what a full track lets past a sensor meets a second one; past steel, parts come apart
         changed = (
             proposals.add_second_sensor(candidate)
-            or proposals.purify(candidate, study.left_instead)
+            or proposals.purify(candidate, study.proof.left_instead)
             or proposals.spread_apart(candidate, search.request.without)
         )
     return None if changed is None else exploring.try_again(search, candidate, changed, candidate.bowl)
@@ -323,7 +321,7 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
 def _leaves_over_slot(study: DesignStudy, candidate: Candidate) -> bool:
     """Tell whether what leaves lying, most of it, is an orientation of which parts hang in the trial."""
     rows = {candidate.orientations.lying[k].name for k in candidate.shown or ()}
-    named = [pose for pose, _ in study.left_instead if pose.kind is PoseKind.ORIENTATION]
+    named = [pose for pose, _ in study.proof.left_instead if pose.kind is PoseKind.ORIENTATION]
     return bool(named) and named[0].name in rows
 
 
@@ -379,7 +377,7 @@ def prove_design(
     wanted = candidate.trial.wanted
     ride = long_ride(search.part, candidate.bowl, oriented.lying, candidate.weights, wanted, request.run)
     candidate = replace(candidate, weights=ride.arriving)
-    study = replace(_study_of(search, candidate, shares), long_ride=ride)
+    study = _study_of(search, candidate, shares).proved_by(long_ride=ride)
     # draws; unless whole, while it may hold
     if robust is None or robust.draws < request.draws:
         search.begin_proof(f"draws: {name}, {request.draws} of part, friction, drive and cuts")
@@ -398,7 +396,7 @@ def prove_design(
             shown=candidate.shown,
             max_failures=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
         )
-    study = replace(study, robust=robust, partial=robust.partial)
+    study = replace(study.proved_by(robust=robust), partial=robust.partial)
     if robust.partial or not (whole or robust.share >= DRAWS_HELD):
         return study
     # queues; parts that touch on their way come as they enter the track
@@ -412,7 +410,7 @@ def prove_design(
         proposal.any_heading,
         ride.entering,
     )
-    study = replace(study, row=row)
+    study = study.proved_by(row=row)
     line = queues.FollowedRow(
         *(getattr(row, each.name) for each in fields(row)),
         seed=request.seed,
@@ -433,9 +431,9 @@ def prove_design(
     frequent = [oriented.lying[k] for k in short_trials.frequent_rows(candidate.weights)]
     wanted_orientation = oriented.lying[proposal.row]
     risks = hazards.risks(
-        wanted_orientation, candidate.bowl, study.queues, orientations=frequent, seed=request.seed
+        wanted_orientation, candidate.bowl, study.proof.queues, orientations=frequent, seed=request.seed
     )
-    seldom = hazards.seldom_risks(candidate.trial, search.highest_shares(oriented), study.queues)
+    seldom = hazards.seldom_risks(candidate.trial, search.highest_shares(oriented), study.proof.queues)
     return replace(study, risks=(*risks, *seldom))
 
 
@@ -461,20 +459,20 @@ def prove_long(study: DesignStudy, said: SearchProgress) -> DesignStudy:
         If a process ends over a run.
     """
     request = study.request
-    if request.proof is not ProofKind.LONG or study.row is None:
+    if request.proof is not ProofKind.LONG or study.proof.row is None:
         return study
     budget = TrialBudget([*study.attempts], request.budget, request.draws)
     run = said.watch(request.run, SearchStage.LONG_PROOF, budget)
     plan = long_proof.LongPlan.to_show(request.agreed_jams)
     try:
-        fills = long_proof.follow_long(study.row, plan, request.agreed_jams, run, said.tell)
+        fills = long_proof.follow_long(study.proof.row, plan, request.agreed_jams, run, said.tell)
     except KeyboardInterrupt:
         return replace(study, partial=True)
     return _with_queues(study, fills)
 
 
 def _with_queues(study: DesignStudy, fills: tuple[FilledQueue, ...]) -> DesignStudy:
-    return replace(study, queues=fills, partial=any(queue.partial for queue in fills))
+    return replace(study.proved_by(queues=fills), partial=any(queue.partial for queue in fills))
 
 
 def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStudy:
@@ -520,7 +518,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         arrivals=search.aspect_shares,
         source=shares.aspects.source(request.rule),
         static_rate=calm_drive.speed(bowl) * gain / float((weights * oriented.lengths).sum()),
-        slowed=calm_drive.velocity_kept(bowl),
+        proof=Proof(slowed=calm_drive.velocity_kept(bowl)),
         trials=tuple(
             TrialRun(bowl, throw_number(bowl), oriented, weights, course)
             for course in candidate.trial.courses
@@ -540,7 +538,7 @@ def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
     -------
     (bool, bool, float [1], float [1/s])
     """
-    return study.status in HELD, study.jams == 0, study.robust.share, study.delivered[1]
+    return study.status in HELD, study.proof.jams == 0, study.proof.robust.share, study.proof.delivered[1]
 
 
 def alternatives(
@@ -568,15 +566,15 @@ def alternatives(
         tried = [attempt for attempt in attempts if attempt.cost_class == number]
         if own:
             study = max(own, key=merit)
-            purity, share = study.purity[0], study.efficiency
-            counts = bool(study.queues) and not study.partial  # what was stopped is no evidence
+            purity, share = study.proof.purity[0], study.proof.efficiency
+            counts = bool(study.proof.queues) and not study.partial  # what was stopped is no evidence
             sensors: list[Any] = [device for device in study.devices if device.action is Action.SENSE]
             words = tuple(f"{device.full_name}: {device.value_words}" for device in study.devices)
             best_of.append(
                 Alternative(
                     cost_class=number,
                     status=study.status,
-                    delivered=study.delivered if counts else None,
+                    delivered=study.proof.delivered if counts else None,
                     purity=None if np.isnan(purity) or not counts else purity,
                     efficiency=None if np.isnan(share) or not counts else share,
                     chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),

@@ -9,17 +9,11 @@ import numpy as np
 
 from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.verified import HELD
+from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT
 from feederscrew.designing import calm_drive, exploring, proposals, queues, texts
 from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind, MoveKind
-from feederscrew.designing.record import (
-    DRAWS_HELD,
-    PURE,
-    RATE_KEPT,
-    DesignStudy,
-    NearestDesign,
-)
+from feederscrew.designing.record import DesignStudy, NearestDesign
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.motion.hop import hop
 from feederscrew.sorting.isolating.chain import OutcomeKind
@@ -54,8 +48,13 @@ def only_slow(study: DesignStudy) -> bool:
     -------
     bool
     """
-    low, (purity, _) = study.delivered[1], study.purity
-    sorts = study.robust.share >= DRAWS_HELD and purity >= PURE and not study.jams and not study.partial
+    low, (purity, _) = study.proof.delivered[1], study.proof.purity
+    sorts = (
+        study.proof.robust.share >= DRAWS_HELD
+        and purity >= PURE
+        and not study.proof.jams
+        and not study.partial
+    )
     return sorts and 0.0 < low < RATE_KEPT * study.request.target
 
 
@@ -70,8 +69,8 @@ def whole(study: DesignStudy) -> bool:
     -------
     bool
     """
-    return study.robust.draws >= study.request.draws and queues.is_complete(
-        study.queues, longest_time(study.request.target)
+    return study.proof.robust.draws >= study.request.draws and queues.is_complete(
+        study.proof.queues, longest_time(study.request.target)
     )
 
 
@@ -90,9 +89,9 @@ def rate_that_holds(study: DesignStudy) -> float:
     float [1/s]
         0 where it holds at none.
     """
-    if study.partial or not study.queues:
+    if study.partial or not study.proof.queues:
         return 0.0
-    rate = min(_rounded_down(MINUTE * study.delivered[1] / RATE_KEPT) / MINUTE, study.request.target)
+    rate = min(_rounded_down(MINUTE * study.proof.delivered[1] / RATE_KEPT) / MINUTE, study.request.target)
     slower = replace(study, request=replace(study.request, target=rate))
     return rate if rate > 0.0 and slower.status in HELD else 0.0
 
@@ -226,11 +225,11 @@ def nearest_from_study(
         throw_number=None if bowl is None else float(throw_number(bowl)),
         trials=trials,
         proofs=proofs,
-        draws=study.robust.draws,
-        draws_held=study.robust.held,
-        queue_seconds=study.queue_seconds,
-        parts_right=sum(queue.right for queue in study.queues),
-        parts_left=sum(queue.left for queue in study.queues),
+        draws=study.proof.robust.draws,
+        draws_held=study.proof.robust.held,
+        queue_seconds=study.proof.queue_seconds,
+        parts_right=sum(queue.right for queue in study.proof.queues),
+        parts_left=sum(queue.left for queue in study.proof.queues),
     )
 
 
@@ -280,9 +279,9 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
         yield Variant(change, candidate, search)
     yield from _any_heading(search, proofs)
     for study, candidate in proofs:
-        if budget and study.queues and not study.purity[0] >= PURE:
+        if budget and study.proof.queues and not study.proof.purity[0] >= PURE:
             # a drop before the chain for what left a queue instead of what is wanted
-            names = {pose.aspect for pose, _ in study.left_instead}
+            names = {pose.aspect for pose, _ in study.proof.left_instead}
             lying = candidate.orientations.lying
             wanted = candidate.trial.wanted
             rows = [k for k, one in enumerate(lying) if one.aspect in names and k not in wanted]
@@ -303,10 +302,10 @@ def _fastest_first(candidates: Iterable[Candidate]) -> list[Candidate]:
 
 def _by_motion(study: DesignStudy) -> bool:
     """Tell whether a calmer drive may mend it: it jams, is impure, or draws lose or let through what hops."""
-    impure = bool(study.queues) and (bool(study.jams) or not study.purity[0] >= PURE)
+    impure = bool(study.proof.queues) and (bool(study.proof.jams) or not study.proof.purity[0] >= PURE)
     hops = study.bowl is not None and hop(study.bowl).height > 0.0
-    denied = study.robust.share < DRAWS_HELD and hops
-    worst = study.robust.worst
+    denied = study.proof.robust.share < DRAWS_HELD and hops
+    worst = study.proof.robust.worst
     return impure or denied or (worst is not None and worst.kind is FaultKind.LOST)
 
 
@@ -346,7 +345,7 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
         return
     for study, candidate in proofs:
         aspect = study.wanted_aspect
-        if aspect not in study.aspects_heading_off or aspect in candidate.proposal.any_heading:
+        if aspect not in study.proof.aspects_heading_off or aspect in candidate.proposal.any_heading:
             continue
         request = replace(search.request, aspect=None, up=tuple(dict.fromkeys((*search.request.up, aspect))))
         lying, row = candidate.orientations.lying, candidate.proposal.row
@@ -418,5 +417,5 @@ def _helps(search: Search, study: DesignStudy, chosen: Candidate | None) -> Iter
             rate = MINUTE * candidate.attempt.rate
             yield f"{candidate.attempt.wanted} got through its short trial at {rate:.3g}/min"
     own = study.wanted_aspect
-    if own in study.aspects_heading_off and own not in search.request.up:
+    if own in study.proof.aspects_heading_off and own not in search.request.up:
         yield f"--up {own} counts {own} at any heading"

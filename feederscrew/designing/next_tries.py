@@ -89,7 +89,7 @@ def next_tries(study: DesignStudy) -> tuple[NextTry, ...]:
 
 def _calmer_drive(study: DesignStudy) -> Iterator[NextTry]:
     """The same with a smaller amplitude, where the bowl brings far more than was asked."""
-    rate, target, bowl = study.delivered[0], study.request.target, study.bowl
+    rate, target, bowl = study.proof.delivered[0], study.request.target, study.bowl
     keeps_stroke = any(key in word for word in study.call for key in STROKES)
     if bowl is None or keeps_stroke or is_two_axis(bowl.drive) or rate < FAR_MORE * target:
         return
@@ -119,7 +119,7 @@ def _ways(study: DesignStudy) -> Iterator[NextTry]:
     if request.without:
         yield NextTry(TryKind.MORE_DEVICES, replace(request, without=()))
     own = study.wanted_aspect
-    if own and (request.heading is not None or own in study.aspects_heading_off):
+    if own and (request.heading is not None or own in study.proof.aspects_heading_off):
         yield NextTry(TryKind.ANY_HEADING, _with_aspect(request, own), aspect=own)
     if request.outcome is not OutcomeKind.ANY:
         yield NextTry(TryKind.ANY_OUTCOME, replace(request, outcome=OutcomeKind.ANY))

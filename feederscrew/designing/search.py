@@ -12,12 +12,14 @@ from feederscrew.base.arrays import Floats
 from feederscrew.base.running import RunSettings
 from feederscrew.bowl.devices.base import ComparedValue
 from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.verified import RATE_KEPT
 from feederscrew.designing import calm_drive, proposals, short_trials
 from feederscrew.designing.findings import Fault
 from feederscrew.designing.policy import USUAL_POLICY, SearchPolicy
 from feederscrew.designing.progress import SearchProgress, SearchStage, TrialBudget
+from feederscrew.designing.proof import RobustRun
 from feederscrew.designing.proposals import Proposal
-from feederscrew.designing.record import RATE_KEPT, Attempt, DesignRequest, RobustRun
+from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING
 from feederscrew.feeding import stream
 from feederscrew.feeding.stream import Orientations

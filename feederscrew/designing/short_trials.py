@@ -25,7 +25,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import PURE
 from feederscrew.designing import calm_drive
 from feederscrew.designing.findings import End, Fault, FaultKind
-from feederscrew.designing.record import RobustRun
+from feederscrew.designing.proof import RobustRun
 from feederscrew.feeding import stream
 from feederscrew.motion.conveying import RESTITUTION_DOUBT
 from feederscrew.part.hull import convex_hull

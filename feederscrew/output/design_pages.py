@@ -23,7 +23,7 @@ from feederscrew.bowl.verified import (
     Status,
     Verified,
 )
-from feederscrew.designing import texts
+from feederscrew.designing import texts, verdict_texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.next_tries import next_tries
@@ -160,22 +160,22 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
         lead = Text("Parts of the short trial at the device that decides.")
         views = Views(scene, played, "trial-views", "Orientation", plays=True, printed=True)
         chapters.append(Chapter((lead, views), anchor="trial", title="The trial"))
-    if study.queues:
+    if study.proof.queues:
         lead = Text(
             "A queue of parts that push each other, at three fills, and draws of part, friction, drive and "
             "cuts, each tried with parts of its own. The worst fill counts: each was followed until it held "
             "or was refused."
         )
         proof: list[Block] = [lead]
-        if d["long_ride"] and study.long_ride is not None:
+        if d["long_ride"] and study.proof.long_ride is not None:
             ridden = Text(
                 "A few parts of each orientation that comes often travel on bare track, up to the tooling. "
-                f"They begin a little off and travel {1e3 * study.long_ride.distance:.3g} mm. What turns, "
-                "leaves the track or rolls back changes the mix that arrives."
+                f"They begin a little off and travel {1e3 * study.proof.long_ride.distance:.3g} mm. "
+                "What turns, leaves the track or rolls back changes the mix that arrives."
             )
             proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
-        worst = f"; most often: {study.robust.worst_text}" if study.robust.worst else ""
-        draws = Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")
+        worst = f"; most often: {study.proof.robust.worst_text}" if study.proof.robust.worst else ""
+        draws = Text(f"{study.proof.robust.held} of {study.proof.robust.draws} draws sort{worst}.")
         proof.append(Table(queues_table(d["queues"])))
         if d["differences"]:
             proof.append(Notes(tuple(item["text"] for item in d["differences"]), loud=True))
@@ -239,7 +239,7 @@ def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
     arrives = None if tooling is None or tooling.wanted is None else tooling.orientations[tooling.wanted].name
     if study.delivers:
         words = "leaves correctly oriented"
-        instead = texts.leaving_texts(study.left_instead)
+        instead = texts.leaving_texts(study.proof.left_instead)
         others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
         seen = [(name, f"left in its place: {instead[name]}") for name in others[:1]]
         if wanted == HANGING and arrives:  # no pose on a face
@@ -290,7 +290,8 @@ def _answer(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
         is_quick = study.request.quick
         yield Heading("What this answer is" if is_quick else "Why it does not hold")
         yield Text(f"Status: {study.status}.")
-        yield Notes((QUICK_WORDS, *study.proved_so_far) if is_quick else study.reason_lines, loud=is_quick)
+        quick_lines = (QUICK_WORDS, *verdict_texts.proved_so_far(study))
+        yield Notes(quick_lines if is_quick else verdict_texts.reason_lines(study), loud=is_quick)
         if study.nearest is not None:
             yield Text(f"The nearest that holds: {study.nearest.sentence}.")
     if d["machine"]:
@@ -506,7 +507,7 @@ def family_summary(study: FamilyStudy) -> Frame:
     """
     rows = [("status", study.status), ("one bowl for all", "yes" if study.shared else "no")]
     for member in study.members:
-        rate, low, _ = (value / units.PER_MINUTE for value in member.delivered)
+        rate, low, _ = (value / units.PER_MINUTE for value in member.proof.delivered)
         text = f"{member.status}, {member.wanted or '-'}"
         text += "" if member.partial else f", {rate:.4g} a minute (95 % interval from {low:.4g})"
         rows.append((member.part.name, text + (f": {member.why}" if member.why else "")))

@@ -34,7 +34,7 @@ from feederscrew.bowl.record import (
     Track,
 )
 from feederscrew.bowl.verified import NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
-from feederscrew.designing import acceptance_sheet, texts
+from feederscrew.designing import acceptance_sheet, texts, verdict_texts
 from feederscrew.designing.acceptance_sheet import SheetLine
 from feederscrew.designing.fill_verdicts import DIFFERENCE_COLUMNS
 from feederscrew.designing.findings import HOOKING_COLUMNS, SELDOM_COLUMNS
@@ -120,9 +120,9 @@ def document(study: DesignStudy) -> dict[str, Any]:
     """
     is_proved, proof = study.status != Status.NOT_PROVED, dict.fromkeys(PROOF)
     if is_proved:  # the figures that its queues have shown
-        (purity, purity_low), high = study.purity, study.jams_per_hour_high
-        rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
-        figures = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
+        (purity, purity_low), high = study.proof.purity, study.proof.jams_per_hour_high
+        rates = (end / PER_MINUTE for end in (*study.proof.delivered, study.proof.worst))
+        figures = (*rates, None if np.isnan(purity) else purity, purity_low, study.proof.jams)
         proof = dict(zip(PROOF, (*figures, high if np.isfinite(high) else None), strict=True))
     facts = machine_facts(study)
     findings = []  # of two parts how the second lies to the first, in the axes of the file
@@ -162,7 +162,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "nearest": nearest(study),
         "next": next_tries.entries(study),
         "quick": _quick(study),
-        "left_instead": texts.leaving_texts(study.left_instead),
+        "left_instead": texts.leaving_texts(study.proof.left_instead),
         "differences": [
             {**values(DIFFERENCE_COLUMNS, item), "text": texts.difference_text(item)}
             for item in study.differences
@@ -170,12 +170,14 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "risks": [item.text for item in study.risks],
         "findings": findings,
         **values(DESIGN_RUN_COLUMNS, study),
-        "proved_so_far": [] if is_proved else list(study.proved_so_far),
+        "proved_so_far": [] if is_proved else list(verdict_texts.proved_so_far(study)),
         "machine": facts,
         "bowl": bowl,
-        "long_ride": [] if study.long_ride is None else study.long_ride.rows(),
-        "worst_fill": None if study.worst_fill is None or not is_proved else study.worst_fill.fill,
-        "queues": [filled_entry(filled) for filled in study.queues],
+        "long_ride": [] if study.proof.long_ride is None else study.proof.long_ride.rows(),
+        "worst_fill": None
+        if study.proof.worst_fill is None or not is_proved
+        else study.proof.worst_fill.fill,
+        "queues": [filled_entry(filled) for filled in study.proof.queues],
         "attempts": attempts(study).rows(),
     }
 
@@ -199,12 +201,12 @@ def _quick_rows(quick: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def _condition(study: DesignStudy) -> dict[str, Any] | None:
     """Return the condition under which a design holds as a dict; None of one that holds without."""
-    if not study.condition or study.hooking is None:
+    if not study.condition or study.verdict.hooking is None:
         return None
     return {
-        **values(HOOKING_COLUMNS, study.hooking),
+        **values(HOOKING_COLUMNS, study.verdict.hooking),
         "separate_by": list(texts.SEPARATORS),
-        "change_the_part": texts.change_text(study.hooking),
+        "change_the_part": texts.change_text(study.verdict.hooking),
         "text": study.condition,
     }
 
@@ -421,7 +423,7 @@ def summary(study: DesignStudy) -> Frame:
     """
     d = document(study)
     first, *rest = outcome(d, study.devices)
-    lines = study.reason_lines or ([d["why"]] if d["why"] else [])
+    lines = verdict_texts.reason_lines(study) or ([d["why"]] if d["why"] else [])
     rows = [first, *(("why" if place == 0 else "and", line) for place, line in enumerate(lines))]
     if study.nearest is not None:
         rows.append(("nearest that holds", study.nearest.sentence))
@@ -550,9 +552,9 @@ def acceptance(study: DesignStudy) -> Frame:
     """
     request = study.request
     lines: list[SheetLine] = []
-    for filled in study.queues:
+    for filled in study.proof.queues:
         lines += acceptance_sheet.lines_of_fill(filled, request.target, request.agreed_jams)
-    if study.hooking is not None:  # else the feeder is judged by parts that hang together
+    if study.verdict.hooking is not None:  # else the feeder is judged by parts that hang together
         lines = [replace(line, plan=f"parts that arrive single: {line.plan}") for line in lines]
     if study.bowl is not None:
         facts: Any = machine_facts(study)
@@ -703,7 +705,7 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
     elif (tried := trial_of(study)) is None:
         lines += ["# Nothing is verified: no part has left a queue."]
     else:
-        value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
+        value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.proof.delivered)
         verified = {
             "status": tried.status,
             "condition": f'"{study.condition}"' if study.condition else None,
@@ -715,8 +717,8 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
             "delivered": value,
             "delivered_low": low,
             "delivered_high": high,
-            "purity": NOTHING_LEFT if np.isnan(study.purity[0]) else f"{study.purity[0]:.4g}",
-            "purity_low": f"{study.purity[1]:.4g}",
+            "purity": NOTHING_LEFT if np.isnan(study.proof.purity[0]) else f"{study.proof.purity[0]:.4g}",
+            "purity_low": f"{study.proof.purity[1]:.4g}",
             "jams": tried.jams,
             "queue_seconds": f"{tried.queue_seconds:.6g} s",
             "trial_parts": study.trial_parts or None,
@@ -746,31 +748,31 @@ def trial_of(study: DesignStudy) -> Verified | None:
     Verified or None
         None where nothing has left a queue, or nothing was proved.
     """
-    has_left = study.status != Status.NOT_PROVED and any(filled.left for filled in study.queues)
+    has_left = study.status != Status.NOT_PROVED and any(filled.left for filled in study.proof.queues)
     if study.bowl is None or study.wanted is None or not has_left:
         return None
-    value, low, high = study.delivered
+    value, low, high = study.proof.delivered
     return Verified(
-        study.tooling_status,  # what was tried: a machine that cannot be made denies no trial
+        study.verdict.tooling_status,  # what was tried: a machine that cannot be made denies no trial
         study.wanted,
         study.request.target,
         value,
         low,
         high,
-        study.purity[0],
-        study.jams,
-        study.queue_seconds,
-        study.robust.draws,
-        study.robust.held,
+        study.proof.purity[0],
+        study.proof.jams,
+        study.proof.queue_seconds,
+        study.proof.robust.draws,
+        study.proof.robust.held,
         __version__,
         study.part.sha256[:16],
         fingerprint(study.bowl),
         ", ".join(study.request.up),
         body_fingerprint(study.part),
         study.outcome,
-        "" if study.worst_fill is None else study.worst_fill.fill,
+        "" if study.proof.worst_fill is None else study.proof.worst_fill.fill,
         study.condition,
-        study.purity[1],
+        study.proof.purity[1],
     )
 
 

@@ -210,7 +210,7 @@ def design_text(study: "DesignStudy") -> str:
     """Return status, what is fed, parts a minute, devices and reason of a design."""
     if study.bowl is None:
         return f"{study.part.name}: {study.status} - {study.why:.300}"
-    value, low, high = (figure(rate * MINUTE) for rate in study.delivered)
+    value, low, high = (figure(rate * MINUTE) for rate in study.proof.delivered)
     return (
         f"{study.part.name}: {study.status}, {study.wanted} at {value} parts/min ({low} to {high}) through "
         f"{', '.join(device.kind for device in study.devices) or 'no device'}"

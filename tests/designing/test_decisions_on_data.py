@@ -18,7 +18,8 @@ from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing import exploring, loop, nearest, proposals, queues, short_trials, texts
 from feederscrew.designing.findings import End, Fault, FaultKind
-from feederscrew.designing.record import DesignRequest, RobustRun
+from feederscrew.designing.proof import RobustRun
+from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import Search
 from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind

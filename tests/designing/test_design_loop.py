@@ -13,7 +13,8 @@ from feederscrew.arrivals.entry import Shares
 from feederscrew.base.errors import FeederError
 from feederscrew.base.running import RunSettings
 from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
-from feederscrew.designing.record import DesignRequest, RobustRun
+from feederscrew.designing.proof import RobustRun
+from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import robust_run
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
@@ -113,7 +114,7 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
     monkeypatch.setattr(queues, "follow_fills", filled)
     request = DesignRequest(0.5, draws=1, rule="csa")
     found = loop.design(CUBE, bowls.default(), frozenset(), request, shares=SHARES, with_nearest=False)
-    ride = found.long_ride
+    ride = found.proof.long_ride
     for apart, touching in seen:
         assert np.array_equal(apart, ride.arriving) and np.array_equal(touching, ride.entering)
     assert seen and drawn == [pytest.approx(0.5 * (ride.arriving + ride.entering))] * len(drawn) != []
@@ -209,7 +210,7 @@ def test_a_trial_at_one_fill_is_the_queue_of_the_design(monkeypatch):
     request = replace(REQUEST, up=("A",))
     found = loop.design(CUBE, bowls.default(), frozenset(), request, shares=SHARES, with_nearest=False)
     level = fills.FillLevel.HIGH
-    proved = next(queue for queue in found.queues if queue.fill == level)
+    proved = next(queue for queue in found.proof.queues if queue.fill == level)
     own = {"aspect_shares": SHARES, "rule": "csa", "parts": 1, "seconds": proved.seconds}
     again = TrialQueue("high", wanted=found.wanted, up=request.up)
     run = trial(CUBE, found.bowl, queue=again, **own).runs[0]

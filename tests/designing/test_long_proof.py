@@ -203,7 +203,7 @@ def test_a_fill_ends_where_its_jams_refuse_what_was_agreed(row, monkeypatch):
 def long_study(**more):
     own = design_study(PART, **more)
     request = replace(own.request, proof="long", agreed_jams=AGREED)
-    return replace(own, request=request, row="a row of parts")
+    return replace(own, request=request).proved_by(row="a row of parts")
 
 
 def filled(fill, jams=0):
@@ -223,8 +223,8 @@ def test_a_design_holds_by_its_long_proof_and_the_sheet_says_what_was_shown(monk
     made = loop.prove_long(long_study(), SearchProgress(report=lambda *values: told.append(values)))
     assert asked == [("a row of parts", LongPlan.to_show(AGREED), AGREED, 1)]
     assert told[0][:3] == (SearchStage.LONG_PROOF, 1, 1)
-    assert made.status == status and len(made.queues) == 3
-    sheet = [acceptance_sheet.lines_of_fill(filled, 0.5, AGREED)[-1] for filled in made.queues]
+    assert made.status == status and len(made.proof.queues) == 3
+    sheet = [acceptance_sheet.lines_of_fill(filled, 0.5, AGREED)[-1] for filled in made.proof.queues]
     assert [line.computed for line in sheet] == pytest.approx([0.0, 0.0, jams / 3.0])
     # 3.00 and 4.74 of the mean are the bounds of no event and of one
     assert [line.computed_high for line in sheet] == pytest.approx(

@@ -23,12 +23,13 @@ from design_counts import (
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.bowl.devices.kinds import make_device
-from feederscrew.designing import calm_drive, exploring, loop, nearest, proposals, queues
+from feederscrew.designing import calm_drive, exploring, loop, nearest, proposals, queues, verdict_texts
 from feederscrew.designing.findings import Cause, Move, MoveKind
 from feederscrew.designing.loop import alternatives
 from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.progress import SearchProgress, SearchStage
-from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, RobustRun
+from feederscrew.designing.proof import RobustRun
+from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
 from feederscrew.designing.search import BankedTrack, Candidate, Search
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
@@ -212,23 +213,23 @@ def test_one_of_four_causes_is_said(cause, more):
 
 def test_what_left_instead_and_what_would_hold_are_said():
     made = study(40.0, queues=fills(right=0, left=11, instead=((heading_off("A"), 11),)))
-    assert made.left_instead == ((heading_off("A"), 33),)
+    assert made.proof.left_instead == ((heading_off("A"), 33),)
     assert "A, heading off: 11 of 11" in made.why and "--up A" in made.why
     assert designs.document(made)["queues"][0]["left_instead"] == "A, heading off: 11 of 11"
     other = study(40.0, queues=fills(right=0, left=11, instead=((orientation("B@0"), 11),)))
     assert "B@0: 11 of 11" in other.why and "--up" not in other.why
     # of 50 parts a minute a fifth leaves: 10/min, and for 40/min four fifths have to
     made = study_with(GAP, right=40, returned=160)
-    low = 60.0 * made.delivered[1] / 0.9
+    low = 60.0 * made.proof.delivered[1] / 0.9
     assert made.cause == "arrival"
     assert f"{low:.2g}/min would hold" in made.why and "80 % come so" in made.why
     cut = Cut(GAP, 1e-3, 1e-3, GAP, GAP, ("B@0",))
     found = study_with(GAP, right=160, left=180, cuts=(cut,))
-    low, normal, high = found.queues
+    low, normal, high = found.proof.queues
     other = orientation("B@0")
     rows = (low, replace(normal, left_instead=((other, 2),)), replace(high, left_instead=((other, 9),)))
-    assert "B@0: 9 of 180 (through the gap)" in replace(found, queues=rows).why
-    assert "B@0: 9 of 180; " in replace(found, queues=rows, cuts=()).why
+    assert "B@0: 9 of 180 (through the gap)" in found.proved_by(queues=rows).why
+    assert "B@0: 9 of 180; " in replace(found.proved_by(queues=rows), cuts=()).why
 
 
 def test_a_queue_names_what_left_by_aspect_and_heading(block):
@@ -366,7 +367,7 @@ def test_the_cause_is_of_what_was_asked_for_and_of_nothing_that_holds():
         PART, DesignRequest(1.0, aspect="a"), None, None, None,
         attempts=(back, back, attempt(9.0, (lost("B@0", TURNED_ON_TRACK),), Cause.DRIVE, wanted="B@0")),
     )  # fmt: skip
-    assert made.cause == "device" and "B@0" not in made.reasons
+    assert made.cause == "device" and "B@0" not in verdict_texts.reasons_text(made)
     assert made.shortfalls == ("A@0, 2 trials: lost (returned at gap)",)
     assert study(10.0).cause == study(400.0, partial=True).cause == ""
     document = designs.document(study(10.0))

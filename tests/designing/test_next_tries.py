@@ -116,11 +116,11 @@ def test_a_call_keeps_what_was_typed_and_changes_the_rest():
 def test_what_brings_far_more_than_was_asked_names_a_calmer_drive():
     """Asked for 40 a minute a washer came at 190, and nothing was said of it."""
     fills = [queue(fill=fill) for fill in ("low", "normal", "high")]
-    rate = 60.0 * design_study(PART, *fills).delivered[0]
+    rate = 60.0 * design_study(PART, *fills).proof.delivered[0]
     study = design_study(PART, *fills, target=rate / 4.75, call=TYPED)
     assert study.status is Status.HOLDS
     robust, step = next_tries(study)
-    assert study.request.target < step.rate < robust.rate < study.delivered[0]
+    assert study.request.target < step.rate < robust.rate < study.proof.delivered[0]
     kept = calm_drive.with_amplitude(study.bowl, float(robust.settings[0][1].split()[0]) * 1e-3)
     asked = 1.25 * 60.0 * study.request.target / rate * calm_drive.speed(study.bowl)
     assert calm_drive.slowest(kept) >= 0.6 * asked, "at the worst friction the first one conveys too"
@@ -141,7 +141,7 @@ def test_what_brings_far_more_than_was_asked_names_a_calmer_drive():
 
 def test_what_holds_has_nothing_to_try():
     held = design_study(PART, *(queue(fill=fill) for fill in ("low", "normal", "high")))
-    held = replace(held, request=replace(held.request, target=held.delivered[0] / 1.2))
+    held = replace(held, request=replace(held.request, target=held.proof.delivered[0] / 1.2))
     assert held.status is Status.HOLDS and next_tries(held) == ()
     assert designs.document(held)["next"] == []
 

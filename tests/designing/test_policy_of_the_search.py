@@ -12,7 +12,8 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import exploring, policy, proposals
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.policy import USUAL_POLICY, SearchPolicy
-from feederscrew.designing.record import DesignRequest, RobustRun
+from feederscrew.designing.proof import RobustRun
+from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import BankedTrack, Search
 
 DESIGNS = Path(__file__).parents[2] / "docs" / "designs.csv"

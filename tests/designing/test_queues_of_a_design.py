@@ -33,8 +33,9 @@ from feederscrew.designing.fill_verdicts import (
 )
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.policy import USUAL_POLICY
+from feederscrew.designing.proof import RobustRun
 from feederscrew.designing.proposals import Proposal
-from feederscrew.designing.record import DesignRequest, DesignStudy, RobustRun
+from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.designing.search import Search
 from feederscrew.feeding import stream
 from feederscrew.output import design_pages, designs
@@ -63,16 +64,16 @@ def test_the_rate_counts_what_is_wanted_of_the_worst_fill():
     low, high = (end / found.rate * 40.0 / 50.0 for end in found.ends)
     for end, tail in ((low, 1.0 - binom.cdf(39, 50, low)), (high, binom.cdf(40, 50, high))):
         assert 0.01 < tail < 0.05, end  # a two-sided interval of 95 %, as near as Wilson's is
-    assert study().jams_per_hour_high == pytest.approx(-np.log(0.05) / 200.0 * 3600.0)
+    assert study().proof.jams_per_hour_high == pytest.approx(-np.log(0.05) / 200.0 * 3600.0)
     none = DesignStudy(PART, DesignRequest(1.0), None, None, None)
-    assert none.status == "none" and none.why and np.isinf(none.jams_per_hour_high)
+    assert none.status == "none" and none.why and np.isinf(none.proof.jams_per_hour_high)
     low, high = (
         queue(n, n, 225 - n, fill=fill, seconds=60.0, counted=60.0) for n, fill in ((45, "low"), (15, "high"))
     )
     some = study(low, high)
-    assert 60.0 * some.delivered[0] == pytest.approx(15.0)
-    assert 60.0 * some.delivered[1] == pytest.approx(225.0 * 0.0408, rel=1e-2)  # Wilson, 15 of 225
-    assert replace(some, slowed=0.7).worst == pytest.approx(0.7 * some.delivered[0])
+    assert 60.0 * some.proof.delivered[0] == pytest.approx(15.0)
+    assert 60.0 * some.proof.delivered[1] == pytest.approx(225.0 * 0.0408, rel=1e-2)  # Wilson, 15 of 225
+    assert some.proved_by(slowed=0.7).proof.worst == pytest.approx(0.7 * some.proof.delivered[0])
     assert some.status == "falls short" and "at high fill 15/min are delivered" in some.why
 
 
@@ -214,13 +215,13 @@ def test_a_cleaner_fill_improves_no_figure():
     )  # fmt: skip
     alone, beside = study(high), study(low, normal, high)
     for name in ("delivered", "purity", "efficiency"):
-        assert getattr(alone, name) == getattr(beside, name), name
-    assert beside.worst_fill is high and beside.status == "falls short"
-    assert min(one.rate for one in beside.queues) >= beside.delivered[1]
+        assert getattr(alone.proof, name) == getattr(beside.proof, name), name
+    assert beside.proof.worst_fill is high and beside.status == "falls short"
+    assert min(one.rate for one in beside.proof.queues) >= beside.proof.delivered[1]
     # the least of each: one fill is slow, another one impure
     slow = queue(200, 200, 0, 0, FillLevel.LOW, counted=300.0)
     both = study(slow, queue(390, 400, 0, 0, FillLevel.HIGH))
-    assert both.delivered[0] == slow.rate and both.purity[0] == 0.975
+    assert both.proof.delivered[0] == slow.rate and both.proof.purity[0] == 0.975
 
 
 def test_a_fill_that_differs_is_named_with_what_leaves_wrong_there_and_at_which_device():
@@ -309,11 +310,11 @@ def test_what_draws_carry_through_or_jams_is_tried_with_another_value_drive_or_b
     monkeypatch.setattr(loop.proposals, "add_pressure_break", lambda candidate: "with a pressure break")
     studies, tried = prove(first, second, {calm: jammed, second.bowl: jammed})
     changes = USUAL_POLICY.proof_changes
-    assert [one.jams for one in studies] == [1] * (changes + 1)
+    assert [one.proof.jams for one in studies] == [1] * (changes + 1)
     assert [one[1] for one in tried] == [second.bowl] * (changes + 1)
     assert [one[0] for one in tried[1:]] == ["with a pressure break"] * changes
     studies, tried = prove(first, second, {calm: jammed, second.bowl: study()})
-    assert [one.jams for one in studies] == [1, 0] and len(tried) == 1
+    assert [one.proof.jams for one in studies] == [1, 0] and len(tried) == 1
 
 
 @pytest.mark.parametrize(("fault", "count"), [(stays("B", stopped_at("wiper")), 1), (carried("B"), 0)])

@@ -237,7 +237,7 @@ def test_a_design_whose_drawn_springs_do_not_make_its_angle_holds_but_for_its_ma
     row = Alternative(1, one.status, chain=("gap: 9 mm",))
     found = design.with_machine(replace(one, alternatives=(row,)), design.Built(machines.machine(settings)))
     assert found.status is Status.NO_MACHINE and "the springs make it" in found.why
-    assert found.tooling_status is Status.HOLDS  # what was tried is not denied
+    assert found.verdict.tooling_status is Status.HOLDS  # what was tried is not denied
     assert found.alternatives[0].status is Status.NO_MACHINE and found.alternatives[0].reasons
     assert found.cause == "drive" and found.nearest.rate == one.request.target
     assert "springs that stand at" in found.nearest.change and found.nearest.draws_held == 20

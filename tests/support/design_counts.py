@@ -1,13 +1,14 @@
 """Designs of which nothing was simulated: queues, draws and short trials made of counts."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import short_trials
 from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, MoveKind
-from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, RobustRun
+from feederscrew.designing.proof import Proof, RobustRun
+from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
 from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
 
@@ -60,10 +61,10 @@ def queue(right=200, left=None, returned=0, jams=0, fill="normal", gaps=0.2, **m
 def design_study(part, *queues, target=40.0, held=20, bowl=None, **more):
     """A design for so many a minute that holds where its queues and 20 draws do."""
     worst = None if held == 20 else lost("A@0", TURNED_ON_TRACK).counted_in_draws(20 - held, 20)
-    own = {"queues": queues or (queue(),), "robust": RobustRun(20, held, worst)} | more
-    return DesignStudy(
-        part, DesignRequest(target / 60.0), bowl or bowls.default(), "A@0", 0, **{"wanted_aspect": "A"} | own
-    )
+    own = {"queues": queues or (queue(),), "robust": RobustRun(20, held, worst), "wanted_aspect": "A"} | more
+    proof = Proof(**{field.name: own.pop(field.name) for field in fields(Proof) if field.name in own})
+    request = DesignRequest(target / 60.0)
+    return DesignStudy(part, request, bowl or bowls.default(), "A@0", 0, proof=proof, **own)
 
 
 def proved(part, bowl, **more):

@@ -1,0 +1,217 @@
+"""Verdict on a design: whether it holds, where it falls short, and what the cause is; all of it as data.
+
+No sentence is made here, and none is read: ``verdict_texts`` says in words what this module decides.
+"""
+
+import enum
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT, Status
+from feederscrew.designing.fill_verdicts import FillState, judge_fill, longest_time, shows_purity
+from feederscrew.designing.findings import Cause, FaultKind, Hooking
+from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
+
+if TYPE_CHECKING:
+    from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, WantedTrials
+
+
+class Shortage(enum.Enum):
+    """In which way a design does not do what was asked."""
+
+    LOST_IN_TRIALS = enum.auto()  # no chain brought an orientation through
+    RATE = enum.auto()  # of a fill
+    PURITY = enum.auto()  # of a fill
+    PURITY_NOT_SHOWN = enum.auto()  # by the parts of a fill
+    FOLLOWED_BRIEFLY = enum.auto()  # a fill
+    NO_QUEUE = enum.auto()
+    JAMS_OF_FILL = enum.auto()  # in a long proof
+    JAMS = enum.auto()
+    DRAWS = enum.auto()
+    MACHINE = enum.auto()  # below the bowl
+
+
+@dataclass(frozen=True, eq=False)
+class Shortfall:
+    """One thing in which a design does not do what was asked."""
+
+    kind: Shortage
+    queue: FilledQueue | None = None  # of the fill, where it is of one
+    trials: "WantedTrials | None" = None  # in which an orientation was lost
+    machine: str = ""  # what the machine lacks, as its sheet says it
+
+
+class BlameGround(enum.Enum):
+    """Finding from which the cause follows."""
+
+    NO_MACHINE = enum.auto()
+    NOT_TOLD_APART = enum.auto()  # no device tells what is wanted from the rest
+    FAULTS_OF_TRIAL = enum.auto()
+    TOO_SELDOM = enum.auto()
+    JAMS = enum.auto()
+    NOTHING_ARRIVES = enum.auto()  # at the outlet
+    HEADINGS_TURN = enum.auto()
+    OTHERS_PASS = enum.auto()
+    NO_DEVICE = enum.auto()
+    FAULT_OF_DRAWS = enum.auto()
+    LITTLE_LEAVES = enum.auto()
+    FEW_PARTS = enum.auto()  # to show that it is pure
+    SLOW = enum.auto()
+
+
+@dataclass(frozen=True, eq=False)
+class Blame:
+    """Cause why a design does not hold, and the finding from which it follows."""
+
+    cause: Cause = Cause.UNKNOWN
+    ground: BlameGround | None = None
+    attempt: "Attempt | None" = None  # the best short trial, where it decides
+
+
+@dataclass(frozen=True, eq=False)
+class DesignVerdict:
+    """Verdict on a design."""
+
+    status: Status
+    tooling_status: Status  # on track and devices, whatever machine can be made below them
+    tooling_shortfalls: tuple[Shortfall, ...]
+    shortfalls: tuple[Shortfall, ...]  # those of the tooling, then of the machine
+    blame: Blame
+    hooking: Hooking | None  # how two of its parts hook; None of parts that come apart by themselves
+
+    @property
+    def conditional(self) -> Hooking | None:
+        """The hooking under whose condition it holds; None of one that holds without, or does not."""
+        return self.hooking if self.tooling_status == Status.HOLDS_SINGLE else None
+
+
+def judge_design(study: "DesignStudy") -> DesignVerdict:
+    """Return the verdict on a design.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    DesignVerdict
+    """
+    hooking = next((risk.hooking for risk in study.risks if risk.hooking is not None), None)
+    lacks = _tooling_shortfalls(study)
+    tooling = _tooling_status(study, bool(lacks), hooking)
+    status = Status.NO_MACHINE if tooling in HELD and study.machine_lacks else tooling
+    machine = study.machine_lacks if study.bowl is not None else ()
+    both = (*lacks, *(Shortfall(Shortage.MACHINE, machine=text) for text in machine))
+    return DesignVerdict(status, tooling, lacks, both, _blame(study, status), hooking)
+
+
+def _tooling_status(study: "DesignStudy", falls_short: bool, hooking: Hooking | None) -> Status:
+    """The verdict of draws and queues; what was stopped, or not run, is no evidence either way."""
+    if study.partial or study.request.quick:
+        return Status.NOT_PROVED
+    if study.bowl is None or not study.proof.delivered[0] > 0.0:
+        return Status.FALLS_SHORT if study.bowl is not None and study.proof.queues else Status.NONE
+    if falls_short:
+        return Status.FALLS_SHORT
+    return Status.HOLDS if hooking is None else Status.HOLDS_SINGLE
+
+
+def fills_of(
+    queues: tuple[FilledQueue, ...], request: "DesignRequest", state: FillState
+) -> list[FilledQueue]:
+    """Return the queues of the fills of one state, for the rate that is asked for.
+
+    Parameters
+    ----------
+    queues : tuple of FilledQueue
+        One a fill.
+    request : DesignRequest
+    state : FillState
+
+    Returns
+    -------
+    list of FilledQueue
+    """
+    least, longest = RATE_KEPT * request.target, longest_time(request.target)
+    return [queue for queue in queues if judge_fill(queue, least, longest) is state]
+
+
+def _tooling_shortfalls(study: "DesignStudy") -> tuple[Shortfall, ...]:
+    """Where draws and queues do not do what was asked."""
+    if study.bowl is None:
+        return tuple(Shortfall(Shortage.LOST_IN_TRIALS, trials=one) for one in study.wanted_trials[:3])
+    proof, lacks = study.proof, list[Shortfall]()
+    refused = fills_of(proof.queues, study.request, FillState.REFUSED)
+    for queue in refused or fills_of(proof.queues, study.request, FillState.OPEN):
+        lacks += _lacks_of_fill(queue, study.request.target)
+    if not proof.queues and proof.robust.share >= DRAWS_HELD:  # draws that fail end a proof
+        lacks.append(Shortfall(Shortage.NO_QUEUE))
+    if study.request.is_long:
+        lacks += [Shortfall(Shortage.JAMS_OF_FILL, queue) for queue in proof.queues if queue.jams]
+    elif proof.jams:
+        lacks.append(Shortfall(Shortage.JAMS))
+    if proof.robust.share < DRAWS_HELD:
+        lacks.append(Shortfall(Shortage.DRAWS))
+    return tuple(lacks)
+
+
+def _lacks_of_fill(queue: FilledQueue, target: float) -> list[Shortfall]:
+    """What a fill lacks; its jams are counted with those of the others."""
+    lacks = []
+    if queue.ends[0] < RATE_KEPT * target:
+        lacks.append(Shortfall(Shortage.RATE, queue))
+    if queue.left and queue.right < PURE * queue.left:
+        lacks.append(Shortfall(Shortage.PURITY, queue))
+    elif not shows_purity(queue):
+        lacks.append(Shortfall(Shortage.PURITY_NOT_SHOWN, queue))
+    if not (lacks or queue.jams):
+        lacks.append(Shortfall(Shortage.FOLLOWED_BRIEFLY, queue))
+    return lacks
+
+
+def _blame(study: "DesignStudy", status: Status) -> Blame:
+    """The cause why a design does not hold; unknown of one that holds or was stopped."""
+    if status in (*HELD, Status.NOT_PROVED):
+        return Blame()
+    if status is Status.NO_MACHINE:
+        return Blame(Cause.DRIVE, BlameGround.NO_MACHINE)
+    proof = study.proof
+    if not proof.queues:
+        return _blame_of_trials(study)
+    if proof.jams:
+        return Blame(Cause.DEVICE, BlameGround.JAMS)
+    if not proof.delivered[0] > 0.0 and not any(queue.left for queue in proof.queues):
+        return Blame(Cause.DRIVE, BlameGround.NOTHING_ARRIVES)
+    if not proof.purity[0] >= PURE:
+        off = sum(count for pose, count in proof.left_instead if _is_heading_off(pose, study.wanted_aspect))
+        if 2 * off >= sum(count for _, count in proof.left_instead) > 0:
+            return Blame(Cause.DRIVE, BlameGround.HEADINGS_TURN)
+        if study.devices:
+            return Blame(Cause.DEVICE, BlameGround.OTHERS_PASS)
+        return Blame(Cause.PART, BlameGround.NO_DEVICE)
+    fault = proof.robust.worst
+    if proof.robust.share < DRAWS_HELD and fault is not None:
+        if fault.is_at_device or (fault.kind is FaultKind.CARRIED and study.devices):
+            return Blame(Cause.DEVICE, BlameGround.FAULT_OF_DRAWS)
+        return Blame(
+            Cause.PART if fault.kind is FaultKind.CARRIED else Cause.DRIVE, BlameGround.FAULT_OF_DRAWS
+        )
+    queue = proof.worst_fill
+    if queue is None or not queue.right:
+        return Blame(Cause.ARRIVAL, BlameGround.LITTLE_LEAVES)
+    is_fast = proof.delivered[1] >= RATE_KEPT * study.request.target
+    return Blame(Cause.ARRIVAL, BlameGround.FEW_PARTS if is_fast else BlameGround.SLOW)
+
+
+def _blame_of_trials(study: "DesignStudy") -> Blame:
+    """What the short trials say, of the best of them."""
+    if not study.attempts:
+        return Blame(Cause.PART, BlameGround.NOT_TOLD_APART)
+    best = max(study.attempts_asked_for, key=lambda attempt: (attempt.efficiency, attempt.rate))
+    if best.faults:
+        return Blame(best.cause or Cause.PART, BlameGround.FAULTS_OF_TRIAL, best)
+    return Blame(Cause.ARRIVAL, BlameGround.TOO_SELDOM, best)
+
+
+def _is_heading_off(pose: LeavingPose, aspect: str) -> bool:
+    return pose.kind is PoseKind.HEADING_OFF and pose.aspect == aspect
