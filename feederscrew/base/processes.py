@@ -1,4 +1,4 @@
-"""Processes that work beside this one, each with a line to it: those of a batch, and the one that draws.
+"""Processes that work beside this one, each with a line to it: of batches, sweeps, long proofs, pictures.
 
 `concurrent.futures` is not taken. There one process that dies takes all tasks at work with it and names no
 culprit. Processes that are replaced after some tasks may hang (Python 3.11 to 3.13). Those of a program that
@@ -9,13 +9,22 @@ import contextlib
 import gc
 import multiprocessing
 import signal
-from collections.abc import Callable, Sequence
-from multiprocessing import forkserver, resource_tracker
-from typing import Any
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Generator, Iterable, Sequence
+from multiprocessing import connection, forkserver, resource_tracker
+from typing import Any, TypeVar
+
+Task = TypeVar("Task")
 
 
 class ProcessEnded(Exception):
     """A process that ended before its task was done."""
+
+    def __init__(self, task: Any = None) -> None:
+        super().__init__(task)
+        self.task = task
 
 
 class Process:
@@ -74,6 +83,83 @@ class Process:
         self._process.kill()
         self._process.join()
         self.line.close()
+
+
+def work_on(
+    tasks: Iterable[Task], begin: Callable[[], Process], count: int
+) -> Generator[tuple[Task, Any], None, None]:
+    """Yield each task with its outcome as it is done, by some processes beside each other.
+
+    A task is taken only when a process is free for it. All processes end with the generator.
+
+    Parameters
+    ----------
+    tasks : iterable of object
+    begin : callable
+        Starts a process.
+    count : int
+        Processes at most.
+
+    Yields
+    ------
+    object
+        The task.
+    object
+        Its outcome.
+
+    Raises
+    ------
+    ProcessEnded
+        If a process ended over a task, with that task.
+    """
+    left = iter(tasks)
+    at_work: dict[Any, tuple[Process, Task]] = {}
+    idle: list[Process] = []
+    try:
+        while True:
+            while len(at_work) < count:
+                try:
+                    following = next(left)
+                except StopIteration:
+                    break
+                process = idle.pop() if idle else begin()
+                process.give(following)
+                at_work[process.line] = process, following
+            if not at_work:
+                return
+            for line in connection.wait(list(at_work)):
+                process, done = at_work[line]
+                try:
+                    outcome = process.take()
+                except ProcessEnded:
+                    raise ProcessEnded(done) from None
+                del at_work[line]
+                idle.append(process)
+                yield done, outcome
+    finally:
+        for process in (*idle, *(process for process, _ in at_work.values())):
+            process.stop()
+
+
+def forked_process(job: Callable[[Any], Any]) -> Process:
+    """Return a process that knows all that this one knows, and needs no guard in the caller's script.
+
+    Parameters
+    ----------
+    job : callable
+
+    Returns
+    -------
+    Process
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of threads that BLAS keeps, and that sleep
+        return Process(multiprocessing.get_context("fork"), job)
+
+
+def can_fork() -> bool:
+    """Tell whether this process may be forked: on Linux, while no thread of Python runs beside it."""
+    return sys.platform.startswith("linux") and threading.active_count() == 1
 
 
 def server_context(preload: Sequence[str]) -> Any:

@@ -9,23 +9,17 @@ import contextlib
 import functools
 import hashlib
 import math
-import multiprocessing
 import os
 import sys
-import threading
-import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
-from multiprocessing.connection import wait
-from typing import Any
 
 import numpy as np
 
 from feederscrew.arrivals import simulation_cache
-from feederscrew.base import check, units
+from feederscrew.base import check, processes, units
 from feederscrew.base.arrays import Array, Ints
 from feederscrew.base.errors import FeederError
-from feederscrew.base.processes import Process, ProcessEnded, server_context
 from feederscrew.base.running import RunSettings
 from feederscrew.designing import evidence
 from feederscrew.designing.queues import FILLS
@@ -347,40 +341,20 @@ def _follow_all(row: FedRow, runs: Iterable[Run], jobs: int) -> Generator[tuple[
         for each in runs:
             yield each, _follow(row, each)
         return
-    runs, job = iter(runs), functools.partial(_follow_beside, row)
-    at_work: dict[Any, tuple[Process, Run]] = {}
-    idle: list[Process] = []
+    job = functools.partial(_follow_beside, row)
     try:
-        while True:
-            while len(at_work) < jobs and (following := next(runs, None)) is not None:
-                process = idle.pop() if idle else _begin_process(job)
-                process.give(following)
-                at_work[process.line] = process, following
-            if not at_work:
-                return
-            for line in wait(list(at_work)):
-                process, done = at_work[line]
-                try:
-                    made = process.take()
-                except ProcessEnded:
-                    what = f"a process ended over a run at {done.fill} fill, perhaps for lack of memory"
-                    mend = "start the same design again, with fewer --jobs: the runs that are done are kept"
-                    raise FeederError("long proof", what, mend) from None
-                del at_work[line]
-                idle.append(process)
-                yield done, made
-    finally:
-        for process in (*idle, *(process for process, _ in at_work.values())):
-            process.stop()
+        yield from processes.work_on(runs, lambda: _begin_process(job), jobs)
+    except processes.ProcessEnded as ended:
+        what = f"a process ended over a run at {ended.task.fill} fill, perhaps for lack of memory"
+        mend = "start the same design again, with fewer --jobs: the runs that are done are kept"
+        raise FeederError("long proof", what, mend) from None
 
 
-def _begin_process(job: Callable[[Run], RunCounts]) -> Process:
+def _begin_process(job: Callable[[Run], RunCounts]) -> processes.Process:
     """A process for runs. A forked one needs no guard in the caller's script; with threads none is forked."""
-    if not sys.platform.startswith("linux") or threading.active_count() > 1:
-        return Process(server_context([__name__]), job)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # of threads that BLAS keeps, and that sleep
-        return Process(multiprocessing.get_context("fork"), job)
+    if processes.can_fork():
+        return processes.forked_process(job)
+    return processes.Process(processes.server_context([__name__]), job)
 
 
 def _follow(row: FedRow, run: Run, tell: Callable[[int, int], None] | None = None) -> RunCounts:

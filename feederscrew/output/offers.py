@@ -3,7 +3,6 @@
 import contextlib
 import sys
 import threading
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -14,7 +13,6 @@ from feederscrew.base.heavy import heavy
 from feederscrew.output import tables
 
 futures = heavy("concurrent.futures")
-multiprocessing = heavy("multiprocessing")
 style = heavy("feederscrew.output.style")
 
 
@@ -200,9 +198,7 @@ def _make_in_parallel(files: Sequence[Offer]) -> Iterator[Callable[[Offer], str 
         return
     from feederscrew.base import processes  # and all of multiprocessing with it
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # of threads that BLAS keeps, and that sleep
-        process = processes.Process(multiprocessing.get_context("fork"), lambda k: _made(files[k]))
+    process = processes.forked_process(lambda k: _made(files[k]))
 
     def ask(k: int) -> str | bytes | None:
         process.give(k)

@@ -1,19 +1,15 @@
 """A study over ranges of values of a bowl, or of its own keywords, as one table."""
 
+import contextlib
 import inspect
 import itertools
-import multiprocessing
-import sys
-import threading
-import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 
-from feederscrew.base import units
-from feederscrew.base.errors import ArgumentError
+from feederscrew.base import processes, units
+from feederscrew.base.errors import ArgumentError, FeederError
 from feederscrew.base.records import ReadableRecord
 from feederscrew.base.running import OnCores
 from feederscrew.base.signatures import with_shown_signature
@@ -131,9 +127,6 @@ def _call(
 
 
 Call: TypeAlias = tuple[list[Any], dict[str, Any]]
-_WORK: list[
-    tuple[Callable[..., ReadableRecord], str | None, Sequence[Call]]
-] = []  # what forked processes begin with
 
 
 def _rows(function: Callable[..., ReadableRecord], table: str | None, call: Call) -> "DataFrame":
@@ -143,31 +136,37 @@ def _rows(function: Callable[..., ReadableRecord], table: str | None, call: Call
     return record_views.row(record) if table is None else record.to_frame(table)
 
 
-def _forked_rows(place: int) -> "DataFrame":
-    function, table, calls = _WORK[-1]
-    return _rows(function, table, calls[place])
-
-
 def _on_cores(
     function: Callable[..., ReadableRecord], table: str | None, calls: Sequence[Call], cores: int
 ) -> Iterator["DataFrame"]:
     """Yield the rows of each call in turn; computed on several cores where the system can fork.
 
-    Forked processes need no guard in the caller's script and take any function, which those that are started
-    anew do not. Where a thread of Python runs, or the system cannot fork, one follows the other.
+    Forked processes take any function, which those that are started anew do not. Where a thread of Python
+    runs, or the system cannot fork, one call follows the other.
     """
-    if cores < 2 or not sys.platform.startswith("linux") or threading.active_count() > 1:
+    if cores < 2 or not processes.can_fork():
         yield from (_rows(function, table, call) for call in calls)
         return
-    _WORK.append((function, table, calls))
+
+    def outcome(place: int) -> "DataFrame | Exception":
+        try:
+            return _rows(function, table, calls[place])
+        except Exception as fault:  # noqa: BLE001 - raised again by the process that asked
+            return fault
+
+    done: dict[int, DataFrame | Exception] = {}
+    turn = 0
+    work = processes.work_on(range(len(calls)), lambda: processes.forked_process(outcome), cores)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)  # of threads that BLAS keeps, and that sleep
-            with ProcessPoolExecutor(cores, multiprocessing.get_context("fork")) as pool:
-                try:
-                    yield from pool.map(_forked_rows, range(len(calls)))
-                except BaseException:
-                    pool.shutdown(wait=False, cancel_futures=True)
-                    raise
-    finally:
-        _WORK.pop()
+        with contextlib.closing(work):
+            for place, made in work:
+                done[place] = made
+                while turn in done:
+                    rows = done.pop(turn)
+                    if isinstance(rows, Exception):
+                        raise rows
+                    yield rows
+                    turn += 1
+    except processes.ProcessEnded:
+        what = "a process ended over a combination, perhaps for lack of memory"
+        raise FeederError("sweep", what, "give fewer jobs") from None
