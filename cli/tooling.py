@@ -119,6 +119,7 @@ def tooling(
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and
     as bent, and tooling.stl, the section of track to print.
     """
+    from feederscrew.base import columns
     from feederscrew.base.units import counted
     from feederscrew.cad.exact import exact_body
     from feederscrew.designing import tooling_trials
@@ -169,7 +170,8 @@ def tooling(
                 out.warn(f"the time (--limit) is over: {count} sent through a trial, no other")
         if not result.partial:
             result = dataclasses.replace(result, dearer=next_class(result, partial(propose, ())))
-        document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}
+        tried = [columns.values(tooling_trials.TRIED_COLUMNS, design) for design in result.trials]
+        document = tables.document(result) | {"trial": tried}
         denied, agreed = tables.trials(result)
         out.warn(*result.warnings, *denied)
         out.say(*agreed, *tables.remarks(result, request["efficiency"]))

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -223,18 +223,20 @@ def aspects(
     from feederscrew.arrivals.drop import drop
     from feederscrew.arrivals.ensemble import drops_of
 
-    many: dict[str, Any] = {"drops": MAX_DROPS, "until": AIM} if drops is None else {"drops": drops}
+    most, until = (MAX_DROPS, AIM) if drops is None else (drops, None)
 
     def make() -> "DropStudy":
         if run.before:
-            run.before(many["drops"])
-        return drop(part, launch, **many, jobs=run.cores, progress=run.progress, aspects=closed)
+            run.before(most)
+        return drop(
+            part, launch, drops=most, until=until, jobs=run.cores, progress=run.progress, aspects=closed
+        )
 
     def to_arrays(test: "DropStudy") -> dict[str, Array]:
         return {name: value for name, value in vars(test.result.drops).items() if name != "partial"}
 
     def from_arrays(arrays: Mapping[str, Array]) -> "DropStudy":
-        return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=closed)
+        return drop(part, launch, drops=most, until=until, dropped=drops_of(arrays, most), aspects=closed)
 
     test = simulation_cache.once(
         part,

@@ -115,8 +115,9 @@ def shares(
         return Shares(counted(aspects, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
-        reported: dict[str, Any] = {"jobs": jobs, "progress": progress, "before": before}
-        return Shares(resting(part, launch=launch_of_name(launch or LAUNCH), drops=drops, **reported).aspects)
+        name = launch_of_name(launch or LAUNCH)
+        found = resting(part, launch=name, drops=drops, jobs=jobs, progress=progress, before=before)
+        return Shares(found.aspects)
     aspects = resting(part, drops=0).aspects
     if not bowl.gravity > 0.0:
         conveying(bowl)  # says so

@@ -1,5 +1,6 @@
 """One bowl for several parts: a chain whose values suit all of them, or else what is changed between them."""
 
+import functools
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -134,20 +135,20 @@ def family(
     keys = frozenset(kept_keys) | {"track.radius", "track.width"}
 
     asked, request = request, replace(request, proof=ProofKind.USUAL)  # a long proof is of what all share
-    own: dict[str, Any] = {"tell": tell, "before": before, "progress": progress}
+    search = functools.partial(loop.design, tell=tell, before=before, progress=progress)
 
     def member(part: Part, lead: DesignStudy | None) -> DesignStudy:
         # with what the first one has where it holds so, else its own
         if lead is None or lead.bowl is None or lead.status not in HELD:
-            return loop.design(part, plain, keys, request, **own)
+            return search(part, plain, keys, request)
         used = {device.kind for device in lead.devices}
         unused = tuple(name for name in PROPOSED if name not in used)
         less = replace(request, without=(*request.without, *unused))
         tracked = replace(plain, track=lead.bowl.track)
-        design = loop.design(part, tracked, keys | set(SHARED_TRACK_KEYS), less, **own, with_nearest=False)
+        design = search(part, tracked, keys | set(SHARED_TRACK_KEYS), less, with_nearest=False)
         if design.status in HELD or design.partial:
             return replace(design, request=request)
-        other = loop.design(part, plain, keys, request, **own)
+        other = search(part, plain, keys, request)
         return replace(max((design, other), key=merit), partial=other.partial)
 
     designs: dict[int, DesignStudy] = {}

@@ -7,15 +7,16 @@ Beside the chain of the static rule, chains of each class come from the search t
 import functools
 import math
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from feederscrew.arrivals.ensemble import wilson
 from feederscrew.arrivals.entry import Shares
 from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.columns import Column
 from feederscrew.base.errors import FeederError
 from feederscrew.base.running import RunSettings
 from feederscrew.bowl.devices.kinds import CostClass, names
@@ -639,32 +640,18 @@ def _sum_shares(shares: Floats, counts: Ints, parts: Ints) -> tuple[float, float
     return total, max(total - down, 0.0), min(total + up, 1.0)
 
 
-def document(designs: Iterable[TriedDesign]) -> list[dict[str, Any]]:
-    """Return designs that were tried as documents of JSON.
-
-    Parameters
-    ----------
-    designs : iterable of TriedDesign
-
-    Returns
-    -------
-    list of dict of str to object
-    """
-    return [
-        {
-            "orientation": design.name,
-            "devices": list(design.devices),
-            "efficiency_static": design.static_efficiency,
-            "efficiency_tried": design.efficiency,
-            "efficiency_low": design.efficiency_ends[0],
-            "efficiency_high": design.efficiency_ends[1],
-            "purity_tried": None if np.isnan(design.purity) else design.purity,
-            "purity_low": design.purity_ends[0],
-            "purity_high": design.purity_ends[1],
-            "parts": design.parts,
-            "sorts": not design.faults,
-            "agrees": design.agrees,
-            "denied": texts.fault_texts(design.faults),
-        }
-        for design in designs
-    ]
+TRIED_COLUMNS: tuple[Column[TriedDesign], ...] = (  # of the document: a row a design that was tried
+    Column("orientation", lambda design: design.name),
+    Column("devices", lambda design: list(design.devices)),
+    Column("efficiency_static", lambda design: design.static_efficiency, "share"),
+    Column("efficiency_tried", lambda design: design.efficiency, "share"),
+    Column("efficiency_low", lambda design: design.efficiency_ends[0], "share"),
+    Column("efficiency_high", lambda design: design.efficiency_ends[1], "share"),
+    Column("purity_tried", lambda design: None if np.isnan(design.purity) else design.purity, "share"),
+    Column("purity_low", lambda design: design.purity_ends[0], "share"),
+    Column("purity_high", lambda design: design.purity_ends[1], "share"),
+    Column("parts", lambda design: design.parts),
+    Column("sorts", lambda design: not design.faults),
+    Column("agrees", lambda design: design.agrees),
+    Column("denied", lambda design: texts.fault_texts(design.faults)),
+)

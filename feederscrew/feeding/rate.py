@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -207,8 +206,9 @@ def rate(
     require_rule(rule)
     if aspect_shares is None:
         check_wanted(part, aspect, angle)
-        source: dict[str, Any] = {"rule": rule, "launch": launch, "probabilities": probabilities}
-        aspect_shares = shares(part, bowl, fed=fed, seed=seed, **source)
+        aspect_shares = shares(
+            part, bowl, launch=launch, probabilities=probabilities, rule=rule, fed=fed, seed=seed
+        )
     check.of_an_aspect(aspect, angle)
     if any(device.action.has_place for device in chain):
         refuse_many_facets(part)

@@ -172,14 +172,18 @@ def tune(
         return stream.oriented(stream.with_shares(coming, there.aspects), there.measured)
 
     wanted = well_oriented.wanted(part, here.aspects, bowl.track, aspect, angle, chain)
-    own: dict[str, Any] = {"rule": rule, "gap": space, "fill": fill}
-    well_oriented.parts_per_metre(along(None), wanted, **own)  # raises where none ever leaves so
+
+    def leaving(queue: stream.Orientations) -> float:
+        return well_oriented.leaving_per_metre(queue, wanted, rule, gap=space, fill=fill)
+
+    # raises where none ever leaves so
+    well_oriented.parts_per_metre(along(None), wanted, rule, gap=space, fill=fill)
     well_oriented.holds(along(bowl), wanted)
     found = knobs.solutions(
         bowl,
         wanted_rate,
-        lambda driven: well_oriented.leaving_per_metre(along(driven), wanted, **own),
-        rough=lambda driven: well_oriented.leaving_per_metre(as_here(driven), wanted, **own),
+        lambda driven: leaving(along(driven)),
+        rough=lambda driven: leaving(as_here(driven)),
         sampled=here.fed,
         worst=worst,
         progress=progress,

@@ -654,10 +654,11 @@ def _bowl(drive_unit: DriveUnit) -> Bowl:
     plain = bowls.default()
     track = replace(plain.track, radius=0.5 * drive_unit.diameter)
     circle = round(SPRING_CIRCLE * track.radius, 3)
-    springs_of_unit: dict[str, Any] = {"spring_angle": UNIT_SPRING_ANGLE, "spring_radius": circle}
-    under = replace(plain.machine, **springs_of_unit, supply=drive_unit.frequency)
+    under = replace(
+        plain.machine, spring_angle=UNIT_SPRING_ANGLE, spring_radius=circle, supply=drive_unit.frequency
+    )
     plain = replace(plain, track=track, machine=under)
-    guess = machine_on(plain, [f"machine.{name}" for name in springs_of_unit])
+    guess = machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
     # to two digits, as a list of machines has them
     names = ("bowl_mass", "bowl_inertia", "base_mass", "base_inertia")
     masses: dict[str, Any] = {name: float(f"{getattr(guess, name):.2g}") for name in names}

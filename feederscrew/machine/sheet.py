@@ -499,8 +499,17 @@ def size_bowl(
     name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
     tried = bowls.verified(chosen.source)
     void = tried is None or any(tried.void(solid, chosen, __version__, name))
-    own: dict[str, Any] = {"aspect": aspect, "heading": angle, "rule": rule, "gap": space, "fill": fill}
-    return size_machine(effective, solid, wanted, as_tried=not void, **own)
+    return size_machine(
+        effective,
+        solid,
+        wanted,
+        aspect=aspect,
+        heading=angle,
+        rule=rule,
+        gap=space,
+        fill=fill,
+        as_tried=not void,
+    )
 
 
 def _orientations_by_drive(

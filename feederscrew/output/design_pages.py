@@ -173,7 +173,7 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
                 f"They begin a little off and travel {1e3 * study.proof.long_ride.distance:.3g} mm. "
                 "What turns, leaves the track or rolls back changes the mix that arrives."
             )
-            proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
+            proof += [ridden, Table(designs.long_ride(study.proof.long_ride.rows()))]
         worst = f"; most often: {study.proof.robust.worst_text}" if study.proof.robust.worst else ""
         draws = Text(f"{study.proof.robust.held} of {study.proof.robust.draws} draws sort{worst}.")
         proof.append(Table(queues_table(d["queues"])))

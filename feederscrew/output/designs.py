@@ -61,6 +61,7 @@ from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
 from feederscrew.sorting.isolating.chain import OutcomeKind
+from feederscrew.trials.long_ride import LONG_RIDE_COLUMNS, RiddenOrientation
 
 shading = heavy("feederscrew.output.shading")
 
@@ -119,6 +120,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
         Units stand in the names of its keys, 'delivered_per_minute'. What was not proved is None.
     """
     is_proved, proof = study.status != Status.NOT_PROVED, dict.fromkeys(PROOF)
+    ridden = () if study.proof.long_ride is None else study.proof.long_ride.rows()
     if is_proved:  # the figures that its queues have shown
         (purity, purity_low), high = study.proof.purity, study.proof.jams_per_hour_high
         rates = (end / PER_MINUTE for end in (*study.proof.delivered, study.proof.worst))
@@ -173,7 +175,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
         "proved_so_far": [] if is_proved else list(verdict_texts.proved_so_far(study)),
         "machine": facts,
         "bowl": bowl,
-        "long_ride": [] if study.proof.long_ride is None else study.proof.long_ride.rows(),
+        "long_ride": [values(LONG_RIDE_COLUMNS, row) for row in ridden],
         "worst_fill": None
         if study.proof.worst_fill is None or not is_proved
         else study.proof.worst_fill.fill,
@@ -261,25 +263,30 @@ def short_alternatives(study: DesignStudy) -> Frame:
     return alternatives(study).taking({"chain": chains})
 
 
-def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
+def long_ride(rows: Sequence[RiddenOrientation]) -> Frame:
     """Return the rows of a long ride as a table.
 
     Parameters
     ----------
-    rows : sequence of mapping
-        Of the document: of each orientation its parts, what stays, what it becomes and its shares [1].
+    rows : sequence of RiddenOrientation
 
     Returns
     -------
     Frame
         Shares in %.
     """
-    becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
-    table: dict[str, Any] = {name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")}
-    table |= {"becomes": becomes, "left": [row["left"] for row in rows]}
-    for name in ("entering", "arriving"):
-        table[f"{name} [%]"] = [round(100.0 * row[f"share_{name}"], 1) for row in rows]
-    return Frame.of(table)
+    becomes = [", ".join(f"{name}: {count}" for name, count in row.becomes.items()) or "-" for row in rows]
+    return Frame.of(
+        {
+            "orientation": [row.orientation for row in rows],
+            "parts": [row.parts for row in rows],
+            "stays": [row.stays for row in rows],
+            "becomes": becomes,
+            "left": [row.left for row in rows],
+            "entering [%]": [round(100.0 * row.share_entering, 1) for row in rows],
+            "arriving [%]": [round(100.0 * row.share_arriving, 1) for row in rows],
+        }
+    )
 
 
 def nearest(study: DesignStudy) -> dict[str, Any] | None:

@@ -1,9 +1,10 @@
 """Faces of a STEP file that the kernel meshes on the wrong side of their edges: found and named."""
 
 import re
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from feederscrew.base import units
 from feederscrew.base.arrays import Floats, Vector
@@ -31,6 +32,23 @@ ROUND_SURFACES = {
 }  # fmt: skip
 PLACED = (*ROUND_SURFACES, b"PLANE", b"AXIS2_PLACEMENT_3D", b"CARTESIAN_POINT", b"DIRECTION")
 Signature = tuple[str, ...]  # kind of a surface, and its sizes [m] as text
+
+
+class CadSurface(TypedDict, total=False):
+    """CadSurface of a face, as OpenCASCADE writes it beside its facets; sizes [m]."""
+
+    face_index: int
+    type: str  # 'plane', 'cylinder', ...; '' where it is not known
+    radius: float
+    major_radius: float
+    minor_radius: float
+    normal: ArrayLike  # (3,) of a plane
+    origin: ArrayLike  # (3,) [m]
+    center: ArrayLike  # (3,) [m] of a sphere or a torus
+    axis: ArrayLike  # (3,)
+    side: int  # of a plane: 1 where its normal is that of ``_side``, else -1
+
+
 Entities = dict[bytes, tuple[bytes, list[Any]]]  # name and arguments by number: numbers of others are bytes
 
 
@@ -67,7 +85,7 @@ def find_cad_faces(document: glb.Document, pieces: list[glb.Piece], data: bytes,
     leaving, turned, wrong = list[float](), list[bool](), list[bool]()
     for piece in pieces:
         entry = piece.extensions.get(glb.BREP_FACES)
-        face, surfaces = np.zeros(len(piece.faces), dtype=np.int64), dict[int, dict[str, Any]]()
+        face, surfaces = np.zeros(len(piece.faces), dtype=np.int64), dict[int, CadSurface]()
         if entry is not None:
             face = np.asarray(document.numbers(int(entry["faceIndices"])), dtype=np.int64)
             surfaces = {int(surface["face_index"]): surface for surface in entry["faces"]}
@@ -169,7 +187,7 @@ def _box(points: Floats) -> tuple[Vector, Vector]:
     return points.min(axis=0), points.max(axis=0)
 
 
-def _surface_title(surface: dict[str, Any], unit: str) -> str:
+def _surface_title(surface: CadSurface, unit: str) -> str:
     """Return the surface that a face lies on, for people: ', a sphere of radius 60 mm'."""
     radius = surface.get("radius", surface.get("minor_radius"))
     if radius is None:
@@ -212,7 +230,7 @@ def _read_senses(data: bytes, size: float) -> dict[Signature, int]:
     return senses
 
 
-def _surface(entity: tuple[bytes, list[Any]], entities: Entities, size: float) -> dict[str, Any]:
+def _surface(entity: tuple[bytes, list[Any]], entities: Entities, size: float) -> CadSurface:
     """A surface of a STEP file as the kernel names it, in metres; LookupError where it is of another kind."""
     name, (placement, *sizes) = entity
     if name == b"TOROIDAL_SURFACE":
@@ -236,7 +254,7 @@ def _side(normal: Vector) -> int:
     return 1 if normal[int(np.argmax(np.abs(normal) > 1e-6))] > 0.0 else -1
 
 
-def _signature(surface: dict[str, Any]) -> Signature:
+def _signature(surface: CadSurface) -> Signature:
     """Return what tells a surface from the others of its part, alike from the file and from the kernel."""
     kind = surface["type"]
     if kind == "plane":
@@ -244,12 +262,11 @@ def _signature(surface: dict[str, Any]) -> Signature:
         normal *= _side(normal)
         height = float(vectors.dot(normal, np.asarray(surface["origin"], dtype=float)))
         return kind, *(f"{number:.4f}" for number in normal + 0.0), f"{height + 0.0:.7f}"
-    return kind, *(
-        f"{surface[name]:.5e}" for name in ("radius", "major_radius", "minor_radius") if name in surface
-    )
+    radii = surface.get("radius"), surface.get("major_radius"), surface.get("minor_radius")
+    return kind, *(f"{radius:.5e}" for radius in radii if radius is not None)
 
 
-def _outwards(triangles: Floats, surface: dict[str, Any], matrix: Floats) -> float:
+def _outwards(triangles: Floats, surface: CadSurface, matrix: Floats) -> float:
     """1 where triangles (F, 3, 3) [m] face along the normal of their surface, else -1.
 
     ``matrix`` (4, 4) takes the surface to the axes of the triangles. The normal of a plane is that of
@@ -258,16 +275,16 @@ def _outwards(triangles: Floats, surface: dict[str, Any], matrix: Floats) -> flo
     a, b, c = np.moveaxis(triangles, 1, 0)
     normals = vectors.cross(b - a, c - a)
 
-    def turned(name: str) -> Vector:
-        return vectors.dot(matrix[:3, :3], np.asarray(surface[name], dtype=float))
+    def turned(direction: ArrayLike) -> Vector:
+        return vectors.dot(matrix[:3, :3], np.asarray(direction, dtype=float))
 
     if surface["type"] == "plane":
         own = np.array(surface["normal"], dtype=float)
-        return float(np.sign((normals * turned("normal")).sum() * _side(own)))
-    middle = turned("center" if "center" in surface else "origin") + matrix[:3, 3]
+        return float(np.sign((normals * turned(own)).sum() * _side(own)))
+    middle = turned(surface["center"] if "center" in surface else surface["origin"]) + matrix[:3, 3]
     away = (a + b + c) / 3.0 - middle
     if surface["type"] != "sphere":
-        axis = vectors.unit(turned("axis"))
+        axis = vectors.unit(turned(surface["axis"]))
         flat = away - np.einsum("fx,x->f", away, axis)[:, None] * axis
         away = flat if surface["type"] == "cylinder" else away - surface["major_radius"] * vectors.unit(flat)
     return float(np.sign((normals * away).sum()))

@@ -379,8 +379,14 @@ def tooling(
         if travel_speed(replace(bowl, track=track)) > travel_speed(bowl):
             may_use = replace(may_use, separation=steeper)
             break
-    request = {"purity": purity, "efficiency": efficiency, "before": bowl.devices, "constraints": may_use}
-    request |= {"margin": clear, "search": holes}
+    request = designing.ChainOptions(
+        margin=clear,
+        search=holes,
+        purity=purity,
+        efficiency=efficiency,
+        before=bowl.devices,
+        constraints=may_use,
+    )
     asked = None if cost_class is None else CostClass(check.choice("cost_class", cost_class, CostClass))
     places = range(len(coming)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(coming)
@@ -457,7 +463,7 @@ def _cheapest(
     shares: Floats,
     wanted: int,
     tracks: Tracks,
-    request: dict[str, Any],
+    request: designing.ChainOptions,
     asked: CostClass | None,
 ) -> Design:
     """The design of the class that is asked for, or of the cheapest that isolates; else the purest."""
@@ -489,7 +495,12 @@ def _cheapest(
 
 
 def _best(
-    part: Part, aspects: Aspects, shares: Floats, wanted: int, tracks: Tracks, request: dict[str, Any]
+    part: Part,
+    aspects: Aspects,
+    shares: Floats,
+    wanted: int,
+    tracks: Tracks,
+    request: designing.ChainOptions,
 ) -> Design:
     """The design of an orientation on the bowl's track, or on one of another width that gives more."""
     own, lying, _ = next(iter(tracks.values()))

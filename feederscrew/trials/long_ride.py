@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from feederscrew.arrivals.ensemble import wilson
 from feederscrew.base import check
 from feederscrew.base.arrays import Bools, Floats, Ints
+from feederscrew.base.columns import Column
 from feederscrew.base.running import USUAL_RUN, RunSettings
 from feederscrew.bowl.record import Bowl
 from feederscrew.motion import conveying as answer
@@ -256,13 +256,12 @@ class LongRide:
         arrived = self.ride.end_rows >= 0
         return float(np.median(self.ride.distances[arrived])) if arrived.any() else 0.0
 
-    def rows(self) -> list[dict[str, Any]]:
-        """Return a dict of each orientation that rode: parts, how many stay, become another, or left.
+    def rows(self) -> tuple["RiddenOrientation", ...]:
+        """Return each orientation that rode: its parts, how many stay, become another, or left.
 
         Returns
         -------
-        list of dict of str to object
-            Shares and their Wilson interval are [1].
+        tuple of RiddenOrientation
         """
         lines, counts, names = [], self.ride.counts, self.ride.names
         for row in self.ride.rows:
@@ -270,19 +269,45 @@ class LongRide:
             low, high = (float(end[0]) for end in wilson([stays], parts))
             further = [k for k in range(len(names)) if k != row and counts[row, k]]
             lines.append(
-                {
-                    "orientation": names[row],
-                    "parts": parts,
-                    "stays": stays,
-                    "stays_low": low,
-                    "stays_high": high,
-                    "becomes": {names[k]: int(counts[row, k]) for k in further},
-                    "left": int(counts[row, -1]),
-                    "share_entering": float(self.entering[row]),
-                    "share_arriving": float(self.arriving[row]),
-                }
+                RiddenOrientation(
+                    orientation=names[row],
+                    parts=parts,
+                    stays=stays,
+                    stays_ends=(low, high),
+                    becomes={names[k]: int(counts[row, k]) for k in further},
+                    left=int(counts[row, -1]),
+                    share_entering=float(self.entering[row]),
+                    share_arriving=float(self.arriving[row]),
+                )
             )
-        return lines
+        return tuple(lines)
+
+
+@dataclass(frozen=True)
+class RiddenOrientation:
+    """One orientation of which parts rode along the bare track."""
+
+    orientation: str  # its name
+    parts: int
+    stays: int  # parts that arrive as they came
+    stays_ends: tuple[float, float]  # [1] their share: the 95 % interval of Wilson
+    becomes: dict[str, int]  # parts by the orientation that they become
+    left: int  # parts that left the track
+    share_entering: float  # [1] of all parts at the track's entry
+    share_arriving: float  # [1] of all parts at the tooling
+
+
+LONG_RIDE_COLUMNS: tuple[Column[RiddenOrientation], ...] = (  # a row an orientation
+    Column("orientation", lambda row: row.orientation),
+    Column("parts", lambda row: row.parts),
+    Column("stays", lambda row: row.stays),
+    Column("stays_low", lambda row: row.stays_ends[0], "share"),
+    Column("stays_high", lambda row: row.stays_ends[1], "share"),
+    Column("becomes", lambda row: row.becomes),
+    Column("left", lambda row: row.left),
+    Column("share_entering", lambda row: row.share_entering, "share"),
+    Column("share_arriving", lambda row: row.share_arriving, "share"),
+)
 
 
 def long_ride(

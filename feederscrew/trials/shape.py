@@ -4,7 +4,7 @@ Round sides that are round are circles of its hull, which touch as circles.
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -77,6 +77,7 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
     triangles, normals = faces[order], normals[order]
     count = int(touches.sum())
     touching, none = corners[:count], np.zeros(count, bool)
+    singles, single_blocks = _singles(touching, none)
     # Which of them are joined by an edge of a triangle.
     pairs = np.concatenate([triangles[:, [k, m]] for k in range(3) for m in range(3) if k != m])
     pairs = np.unique(pairs[(pairs < count).all(axis=1)], axis=0)
@@ -101,18 +102,19 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
         face_blocks=check.frozen(_boxes(corners[triangles])),
         circles=frozen_rows([], CIRCLE),
         on_circle=check.frozen(none),
-        **_singles(touching, none),
+        singles=singles,
+        single_blocks=single_blocks,
         inertia=check.frozen(moments / (part.mass * length**2)),
         radius=float(vectors.length(corners).max()),
     )
     return solid, length, principal
 
 
-def _singles(corners: Points, on_circle: Bools) -> dict[str, Any]:
+def _singles(corners: Points, on_circle: Bools) -> tuple[Ints, Floats]:
     """``singles`` and ``single_blocks`` of corners of which some are on circles, (C,) bool."""
     own = np.flatnonzero(_on_hull(corners) & ~on_circle)
     own = own[order_in_blocks(corners[own])] if len(own) else own
-    return {"singles": check.frozen(own), "single_blocks": check.frozen(_boxes(corners[own][:, None]))}
+    return check.frozen(own), check.frozen(_boxes(corners[own][:, None]))
 
 
 def _on_hull(corners: Points) -> Bools:
@@ -229,8 +231,13 @@ def round_circles(solid: TrueSolid, axes: Sequence[Floats]) -> TrueSolid:
     for ring in rings:
         on_circle[ring.corners] = True
     records = [(*ring.centre, *ring.axis, ring.radius) for ring in rings]
-    marks = _singles(solid.corners, on_circle) | {"on_circle": check.frozen(on_circle)}
-    return solid._replace(circles=frozen_rows(records, CIRCLE), **marks)
+    singles, single_blocks = _singles(solid.corners, on_circle)
+    return solid._replace(
+        circles=frozen_rows(records, CIRCLE),
+        on_circle=check.frozen(on_circle),
+        singles=singles,
+        single_blocks=single_blocks,
+    )
 
 
 class Circle(NamedTuple):

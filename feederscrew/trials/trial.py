@@ -3,7 +3,6 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any
 
 import numpy as np
 
@@ -11,7 +10,6 @@ from feederscrew.arrivals.entry import Shares, check_wanted, the_shares
 from feederscrew.arrivals.entry import shares as arriving
 from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.base import check
-from feederscrew.base.arrays import Floats
 from feederscrew.base.columns import Column
 from feederscrew.base.errors import ArgumentError
 from feederscrew.base.records import ReadableRecord
@@ -262,22 +260,23 @@ def trial(
                 raise
             stopped = True
             break
-        more: dict[str, Any] = {}
+        outcome = TrialRun(bowl, throw_number(bowl), oriented, shares, single_parts)
         if not single_parts.partial:  # parts that fall onto the track and a queue, as far as asked for
             own = part, bowl, aspects, lying, oriented.states
             try:
                 if landing is not None:
-                    more["landing"] = course.landing(*own, launch=launch, parts=landing, run=run)
-                if any(result.partial for result in more.values()):
+                    landed = course.landing(*own, launch=launch, parts=landing, run=run)
+                    outcome = replace(outcome, landing=landed)
+                if outcome.landing is not None and outcome.landing.partial:
                     pass
                 elif again is not None and level is not None:
                     plan = _FillPlan(level, queued, followed, frames, again.wanted, listed(again.up))
-                    more |= _follow_fill(part, bowl, aspects, oriented, shares, single_parts, plan, run)
+                    outcome = _follow_fill(part, aspects, outcome, plan, run)
                 elif crowd is not None:
-                    more["queue"] = queue_of(*own, shares, crowd, run)
+                    outcome = replace(outcome, queue=queue_of(*own, shares, crowd, run))
             except KeyboardInterrupt:
                 stopped = True
-        runs.append(TrialRun(bowl, throw_number(bowl), oriented, shares, single_parts, **more))
+        runs.append(outcome)
         if stopped or runs[-1].partial:
             break
     return TrialStudy(part, aspects, rule, seed, tuple(runs), stopped, measured)
@@ -296,23 +295,15 @@ class _FillPlan:
 
 
 def _follow_fill(
-    part: Part,
-    bowl: Bowl,
-    aspects: Aspects,
-    oriented: stream.Orientations,
-    shares: Floats,
-    single_parts: course.Course,
-    plan: _FillPlan,
-    run: RunSettings,
-) -> dict[str, Any]:
+    part: Part, aspects: Aspects, alone: TrialRun, plan: _FillPlan, run: RunSettings
+) -> TrialRun:
     """Follow the queue of a fill as ``feeder design`` does: what it did, and how much of it was wanted.
 
     Raises ArgumentError if no orientation of the wanted name can leave, KeyboardInterrupt if the user stops
     it before the first period is done.
     """
-    name = plan.wanted
+    bowl, oriented, shares, name = alone.bowl, alone.orientations, alone.shares, plan.wanted
     if not name:  # the orientation in which most of the single parts have left
-        alone = TrialRun(bowl, throw_number(bowl), oriented, shares, single_parts)
         by_rule = int(np.argmax((shares[:, None] * oriented.leaving).sum(axis=0)))
         row = by_rule if alone.main_row is None else alone.main_row
         name = oriented.states[row].name
@@ -331,7 +322,7 @@ def _follow_fill(
             raise
     outcome = queue.result(partial=queue.periods < queue.periods_in(plan.seconds))
     filled = row_of_parts.count(plan.level, outcome)
-    return {"queue": outcome, "filled": filled, "filled_wanted": name}
+    return replace(alone, queue=outcome, filled=filled, filled_wanted=name)
 
 
 def at_outlet(counts: str | PathLike[str], part: Part) -> profiles.CountFile:

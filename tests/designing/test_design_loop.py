@@ -10,6 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.ensemble import wilson
 from feederscrew.arrivals.entry import Shares
+from feederscrew.base.columns import values
 from feederscrew.base.errors import FeederError
 from feederscrew.base.running import RunSettings
 from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
@@ -44,12 +45,12 @@ def ridden(entering, wanted, *changes):
 def test_each_orientation_says_how_many_stay_turn_and_leave():
     rows = ridden([0.5, 0.3, 0.2], (0,), (1, 0, 2), (2, LEFT, 10)).rows()
     low, high = (float(end[0]) for end in wilson([8], 10))
-    assert rows[1] == {
+    assert values(long_ride.LONG_RIDE_COLUMNS, rows[1]) == {
         "orientation": "A@180", "parts": 10, "stays": 8, "stays_low": low, "stays_high": high,
         "becomes": {"A@0": 2}, "left": 0, "share_entering": 0.3,
         "share_arriving": pytest.approx(0.24 / 0.8),
     }  # fmt: skip
-    assert (rows[2]["stays"], rows[2]["left"], rows[2]["becomes"]) == (0, 10, {})
+    assert (rows[2].stays, rows[2].left, rows[2].becomes) == (0, 10, {})
     table = designs.long_ride(rows)
     assert list(table["becomes"]) == ["-", "A@0: 2", "-"] and list(table["left"]) == [0, 0, 10]
     assert list(table["arriving [%]"]) == [70.0, 30.0, 0.0]

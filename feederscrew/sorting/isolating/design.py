@@ -4,7 +4,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
@@ -63,6 +63,19 @@ BESIDE, WHOLE = 1e-3, 1e-3  # [m] that a track is wider than what lies on it, an
 
 # whether the drive leaves orientations lying on what devices in a bowl leave of their feet, by a margin [m]
 Steady = Callable[[Sequence[Device], Sequence[Orientation], Bowl, float], Bools]
+
+
+class ChainOptions(TypedDict):
+    """Keywords of ``design``, as the design of a track hands them on."""
+
+    margin: float  # [m]
+    search: HoleSearch
+    purity: float  # [1]
+    efficiency: float  # [1]
+    before: Sequence[Device]
+    constraints: DesignConstraints
+
+
 Stretch = Sequence[Lean]  # devices in order, each of which leans the track
 
 
@@ -547,7 +560,7 @@ def design_with_track(
     *,
     steady: Steady,
     cache: dict[Any, Sequence[Orientation]] | None = None,
-    **options: Any,
+    **options: Unpack[ChainOptions],
 ) -> Design:
     """Return the design of an orientation, on the track as it is or as it leans best.
 
@@ -814,7 +827,7 @@ def _on_this_track(
     wanted: int,
     bowl: Bowl,
     steady: Steady,
-    options: dict[str, Any],
+    options: ChainOptions,
 ) -> Design:
     """The design of an orientation that the drive leaves lying on what is cut; if there is none, said so."""
 
@@ -837,7 +850,7 @@ def _on_this_track(
 
 
 def _isolate(
-    orientations: Sequence[Orientation], shares: Floats, wanted: int, options: dict[str, Any]
+    orientations: Sequence[Orientation], shares: Floats, wanted: int, options: ChainOptions
 ) -> Design:
     """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""
     proposal = design(orientations, shares, wanted, **options)
