@@ -30,6 +30,7 @@ BEYOND_BOWL_M = 1.0  # [m] beyond everything
 GATE_PLAY_M = 1e-4  # [m] of a gate in its notch, to each side
 SHORTER = 0.99  # of the turns that were asked for: less is said
 BLADE_REACH_M = 2e-6  # [m] from wall and track: a blade that is as near goes on into them
+BLADE_STEP_M = 1e-3  # [m] between places of a blade that are lifted onto the track
 BEYOND_PLATE_M = 0.05  # [m] above and below a blade
 EARS = 4e-3  # [m] by which a gate stands out of the wall
 WALL_LIFT_M = 3e-4  # [m] by which the wall ends higher than the floor below it
@@ -375,7 +376,7 @@ def _plate(plan: BowlPlan, kit: ModuleType, placed: PlacedDevice, blade: Blade) 
     axes, foot = plan.path.blade_frame(blade, plan.first + placed.begin)
     into = 0.5 * plan.material.wall
     if not blade.is_gate:
-        area = blade.carried_into(into, into, BLADE_REACH_M)
+        area = _above_track(plan, blade.carried_into(into, into, BLADE_REACH_M), axes, foot)
         plate = kit.plank(shapely.normalize(area), blade.thickness, axes, foot)
         # what leans with a banked track, or is swept back, stays within the wall
         s = plan.first + placed.begin + blade.foot[0]
@@ -386,9 +387,21 @@ def _plate(plan: BowlPlan, kit: ModuleType, placed: PlacedDevice, blade: Blade) 
     area = blade.carried_into(into, 0.0, BLADE_REACH_M).intersection(
         shapely.box(-into, 0.0, BEYOND_BOWL_M, blade.top)
     )
+    area = _above_track(plan, area, axes, foot)
     # it stands on the track: a gate is fixed by its ear
     ear = shapely.box(-plan.material.wall - EARS, 0.0, PIECE_OVERLAP_M - into, blade.top)
     return kit.plank(shapely.normalize(shapely.union_all([area, ear])), blade.thickness, axes, foot)
+
+
+def _above_track(plan: BowlPlan, area: shapely.Geometry, axes: Floats, foot: Vector) -> shapely.Geometry:
+    """The face of a blade, its heights those over the track everywhere, and not over a straight line."""
+
+    def lifted(points: Points) -> Points:
+        along = np.maximum(points[:, 0], 0.0)
+        return np.column_stack([points[:, 0], points[:, 1] + plan.path.rise_along(axes, foot, along)])
+
+    bent = shapely.transform(shapely.segmentize(area, BLADE_STEP_M), lifted)
+    return shapely.simplify(bent, BLADE_REACH_M)
 
 
 def _notch(plan: BowlPlan, kit: ModuleType, placed: PlacedDevice, blade: Blade) -> Body:

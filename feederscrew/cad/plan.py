@@ -284,8 +284,8 @@ class TrackPath:
     def blade_frame(self, blade: Blade, begin: float) -> tuple[Floats, Vector]:
         """Return the axes of a blade of a device that begins at a length s [m], and its foot.
 
-        Its face stands square to the track at the wall, its lower edge keeps its height over the track at
-        both ends, and so does its back.
+        Its face stands square to the track at the wall, a straight line along it keeps its height over the
+        track at both ends, and so does its back. Between the ends the track is nearer: ``rise_along``.
 
         Parameters
         ----------
@@ -312,6 +312,31 @@ class TrackPath:
         along = (on_track(*(long * face)) - foot) / long
         behind = (on_track(*(blade.thickness * back)) - foot) / blade.thickness
         return np.column_stack([along, self.normal(s), behind]), foot
+
+    def rise_along(self, axes: Floats, foot: Vector, along: Values) -> Values:
+        """Return by how much the track's surface lies over a straight line along the face of a blade.
+
+        A banked track is a cone: a chord of it that reaches ahead along the wall lies below it between its
+        ends, by x^2 sin(bank) / 8 R in the middle of a chord that goes x ahead.
+
+        Parameters
+        ----------
+        axes : (3, 3) float [1]
+            Of the blade, as ``blade_frame`` returns them.
+        foot : (3,) float [m]
+        along : (...) float [m]
+            From the foot.
+
+        Returns
+        -------
+        (...) float [m]
+            Along the second axis, upwards.
+        """
+        along = np.asarray(along, float)
+        x, y, z = np.moveaxis(foot + along[..., None] * axes[:, 0], -1, 0)
+        s = self.at(np.arctan2(y, x))
+        off = (self.wall_radius(s) - np.hypot(x, y)) / np.cos(self.bank_at(s))
+        return (self.height(s, off) - z) * axes[2, 1]
 
     def bore(self, s: float, z: float, before: float) -> tuple[Vector, Vector]:
         """Return where a bore for a nozzle begins, and its direction, outwards along the track's surface.

@@ -2,7 +2,6 @@
 
 import itertools
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
@@ -388,12 +387,14 @@ def groove_walls(plan: BowlPlan, kit: ModuleType) -> tuple[list[Body], list[Body
     far = plan.material.wall + GROOVE_CUT_MARGIN_M
     cuts, walls = [], []
     for groove in groove_spans(plan):
-        start, end, opens = groove.start, groove.end, groove.opens
-        stop, cut_legs, wall_legs = min(end + opens, path.end + plan.outlet), [], []
-        for low, high in _legs(plan, kit, [start, stop], (start + opens, end, path.end)):
+        changes = groove.leans
+        ends = [groove.start, min(groove.closed, path.end + plan.outlet)]
+        cut_legs, wall_legs = [], []
+        for low, high in _legs(plan, kit, ends, (*(at for change in changes for at in change[:2]), path.end)):
             s = steps(plan, kit, low, high)
-            if min(start + opens, high) > low or low >= end:
-                s = np.linspace(low, high, max(len(s), int(np.ceil(OPENING * (high - low) / opens)) + 1))
+            # where it turns, so finely
+            turns = next((b - a for a, b, _ in changes if a < 0.5 * (low + high) < b), np.inf)
+            s = s if np.isinf(turns) else _finer(s, int(np.ceil(OPENING * (high - low) / turns)) + 1)
             c, sn = np.cos(lean_at(groove, s)), np.sin(lean_at(groove, s))
             up, rearward = np.stack([sn, c], axis=-1)[:, None], np.stack([c, -sn], axis=-1)[:, None]
             heights = path.height(s)[:, None, None] * [0.0, 1.0]
@@ -412,10 +413,16 @@ def groove_walls(plan: BowlPlan, kit: ModuleType) -> tuple[list[Body], list[Body
     return cuts, walls
 
 
+def _finer(s: Floats, count: int) -> Floats:
+    """Return lengths from the first to the last of some, evenly, ``count`` of them where they are fewer."""
+    return np.linspace(s[0], s[-1], max(len(s), count))
+
+
 def groove_spans(plan: BowlPlan) -> list[GrooveStretch]:
     """Return the grooves of a bowl, along its wall.
 
-    They lie in the last turn: above them there is no other.
+    They lie in the last turn: above them there is no other. One that is open from the entry on opens where it
+    begins, over the length of the longest part.
 
     Parameters
     ----------
@@ -425,23 +432,23 @@ def groove_spans(plan: BowlPlan) -> list[GrooveStretch]:
     -------
     list of GrooveStretch
     """
-    earliest, last = float(plan.path.at(-MAX_GROOVE_WALL_RAD)), plan.path.end + plan.outlet
-    grooves = () if plan.stretch is None else plan.stretch.grooves
-    return [
-        replace(
-            groove,
-            start=max(plan.first + groove.start, earliest, GROOVE_CUT_MARGIN_M),
-            end=min(plan.first + groove.end, last),
-        )
-        for groove in grooves
-    ]
+    if plan.stretch is None:
+        return []
+    first = max(float(plan.path.at(-MAX_GROOVE_WALL_RAD)), GROOVE_CUT_MARGIN_M)
+
+    def along_bowl(start: float, end: float, lean: float) -> tuple[float, float, float]:
+        """Return a change of the wall's lean as the bowl has it."""
+        begin, over = max(plan.first + start, first), end - start
+        return begin, begin + (over if np.isfinite(over) else longest), lean
+
+    longest = plan.stretch.longest
+    return [GrooveStretch(tuple(along_bowl(*change) for change in own.leans)) for own in plan.stretch.grooves]
 
 
 def lean_at(groove: GrooveStretch, s: Values) -> Values:
-    """Return by how much the wall of a groove leans back from upright.
+    """Return by how much the wall of a groove leans back from upright, as it is made.
 
-    It opens and closes linearly over a length of its own. The least is ``MIN_GROOVE_WALL_LEAN_RAD``: a face
-    in the plane of the bowl's wall cuts badly.
+    The least is ``MIN_GROOVE_WALL_LEAN_RAD``: a face in the plane of the bowl's wall cuts badly.
 
     Parameters
     ----------
@@ -454,6 +461,4 @@ def lean_at(groove: GrooveStretch, s: Values) -> Values:
     -------
     float or array [rad]
     """
-    opened = np.clip((s - groove.start) / groove.opens, 0.0, 1.0)
-    share = opened * (1.0 - np.clip((s - groove.end) / groove.opens, 0.0, 1.0))
-    return np.maximum(groove.lean * share, MIN_GROOVE_WALL_LEAN_RAD)
+    return np.maximum(groove.lean_at(s), MIN_GROOVE_WALL_LEAN_RAD)

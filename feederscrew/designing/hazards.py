@@ -15,7 +15,7 @@ from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.compiled import zero_rows
 from feederscrew.base.geometry.lattice import Cells, cells, chords, handles
 from feederscrew.base.geometry.polygons import turned
-from feederscrew.base.units import counted
+from feederscrew.base.units import MM, counted
 from feederscrew.bowl import default
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials, texts
@@ -156,7 +156,7 @@ def risks(
             continue
         text = (
             f"{other.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction "
-            f"holds it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
+            f"holds it between walls {between[0] / MM:.3g} mm to {between[1] / MM:.3g} mm apart"
         )
         c, s = math.cos(strut(other, width)), math.sin(strut(other, width))
         x, y, z = other.axes
@@ -486,7 +486,7 @@ class PullTest:
             staging.BARE_TRACK, *staging.build_track([], track, length, (-length, length)), begin=-length,
             exit=np.inf, air=staging.STILL_AIR, size=length, width=track.width,
         )  # fmt: skip
-        nowhere = queue.CrowdedTrack(stage, -length, np.zeros((0, 2)), np.zeros(1), length)
+        nowhere = queue.CrowdedTrack(stage, -length, np.zeros((0, 2)), np.zeros(1), np.zeros(0), length)
         self.pair = queue.PartsOnTrack(self.setting, nowhere, 2)
 
     def pull_all(self, turn: Floats, place: Floats, most: float) -> tuple[int, int]:

@@ -245,7 +245,9 @@ def at_entry(orientations: Sequence[Orientation], devices: Sequence[Device]) -> 
 
 
 def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
-    """Return the devices that come first and lean the track from its entry on, up to the end of a groove.
+    """Return the devices that come first and lean the track from its entry on.
+
+    Of banks and grooves the first one does: a second one begins at its own place.
 
     Parameters
     ----------
@@ -256,12 +258,13 @@ def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
     -------
     tuple of Device
     """
-    first_devices, grooved = [], False
+    first_devices, is_banked = [], False
     for device in devices:
-        if not device.action.leans or (grooved and device.action is Action.BANK):
+        banks = device.action in (Action.BANK, Action.GROOVE)
+        if not device.action.leans or (is_banked and banks):
             break
         first_devices.append(device)
-        grooved = grooved or device.action is Action.GROOVE
+        is_banked = is_banked or banks
     return tuple(first_devices)
 
 

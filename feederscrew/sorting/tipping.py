@@ -10,7 +10,7 @@ import numpy as np
 
 from feederscrew.base import check
 from feederscrew.base.arrays import Bools, Floats
-from feederscrew.base.errors import ConfigError
+from feederscrew.base.errors import ConfigError, Detail
 from feederscrew.base.geometry.polygons import convex, cross, inset, sides
 from feederscrew.base.units import MM, listed
 from feederscrew.bowl.devices.base import Device, opening_at
@@ -314,7 +314,7 @@ def remark(orientations: Sequence[Orientation]) -> tuple[str, ...]:
     if hop > 0.0:
         lead = f"at this drive parts hop {hop / MM:.2g} mm high and fly {flight / MM:.2g} mm along the track"
         less = "margins at edges across the track are less that way, all others less that height"
-        remarks.append(f"{lead}: {less}")
+        remarks.append(Detail(f"{lead}: {less}"))
     if turning:
         lead = f"{listed(turning)}: a landing may tip it over, or the wall turn it"
         remarks.append(f"{lead}, so no verdict on it is sure - see feeder trial")

@@ -78,7 +78,7 @@ def _leaning(plan, device):
         starts = [at for at, climb in way.bends if climb == device.angle]
     else:
         starts = [end for _, end, bank in way.leans if bank == device.angle] or [0.6 * plan.first]
-    opened = [plan.first + one.start + one.opens for one in stretch.grooves if device.kind == "V groove"]
+    opened = [plan.first + one.leans[0][1] for one in stretch.grooves if device.kind == "V groove"]
     start = max(min(starts), *opened) if opened else min(starts)
     later = [*(a for a, _, _ in way.leans), *(at for at, _ in way.bends)]
     end = min([way.end, *(at for at in later if at > start + 1e-4)])

@@ -84,3 +84,24 @@ def test_a_narrowed_track_has_the_volume_of_its_annular_sectors(tmp_path):
     vertices, _ = printed.solid(section)
     highest = 1e3 * vertices[np.argmax(vertices[:, 2])]
     assert exact_body.below(body, highest + [0.0, 0.0, 6.0]) == pytest.approx(highest[2], abs=0.02)
+
+
+@pytest.mark.needs("OCP")
+def test_a_bare_track_and_the_wall_of_its_section_are_one_body(tmp_path):
+    """The plate was lost: the annular sectors of wall and plate by hand, their common part once.
+
+    The plate goes 1 mm further out than the wall of 2 mm, and the wall begins at the middle of the plate.
+    """
+    tooled = section_of(tmp_path, "height bar: 20 mm")
+    plan, radius, width = printed.section_plan(tooled), tooled.track.radius, tooled.width
+    tooled = replace(tooled, devices=())
+    body = exact_file.exact_section(tooled)
+
+    def sector(inner, outer, high):
+        return 0.5 * (outer**2 - inner**2) * high * tooled.length / radius
+
+    wall, plate = plan.material.wall, plan.material.plate
+    assert tooled.track.bank == 0.0
+    expected = sector(radius - width, radius + 3e-3, plate)
+    expected += sector(radius, radius + wall, plan.top)
+    assert exact_body.volume(body) * 1e-9 == pytest.approx(expected, rel=1e-6)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapes
 from solids import (
     GAP,
     NEAR,
@@ -28,7 +29,9 @@ from feederscrew.cad import facets, riding, track
 from feederscrew.cad.closed_body import body, pieces, walls
 from feederscrew.cad.exact import exact_body
 from feederscrew.cad.measuring import measures, track_heights, track_width
-from feederscrew.sorting.tooled_track import track_at_entry
+from feederscrew.resting.aspects import find
+from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.tooled_track import lay_out, track_at_entry
 
 LEFT = replace(STEPPED, left=True)
 STEEPER = replace(TRACK, climb=np.radians(6.5))
@@ -63,6 +66,24 @@ def test_a_bank_further_on_twists_the_track(shape, rng):
     for s in (start - 1e-3, *(start + (end - start) * np.array([0.3, 0.7])), end + 2e-3):
         assert track_width(plan, whole, s) == pytest.approx(TRACK.width, abs=NEAR)
     assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
+
+
+@pytest.mark.parametrize("sweep", [30.0, 55.0])
+def test_a_blade_that_reaches_ahead_keeps_its_clearance_all_along_a_banked_track(sweep):
+    """A straight edge lay x^2 sin(bank) / 8 R nearer to the track between its ends: 0.25 mm at 30 deg."""
+    blade = device("wiper", limit=5e-3, sweep=np.radians(sweep))
+    solid = body(planned((bank(8.0), blade), STEEPER))
+    plan, whole = solid.plan, facets.unplaced(solid)
+    first = plan.first + plan.stretch.devices[1].begin
+    (own,) = plan.stretch.devices[1].features.blades
+    long, radius, met = 20e-3 / np.sin(own.heading), plan.path.radius, []
+    for x in np.linspace(0.1, 0.9, 9) * long * np.cos(own.heading):  # in the middle of its thickness
+        y = x * np.tan(own.heading) - 0.5 * own.thickness / np.cos(own.heading)
+        s, off = first + own.foot[0] + radius * np.arctan2(x, radius - y), radius - np.hypot(x, radius - y)
+        if off > 1.5e-3:  # the wall leans over what is nearer
+            place, up = plan.path.places(s, off), plan.path.normal(s)
+            met.append(facets.first_met(whole, place + 1e-4 * up, place + 15e-3 * up)[0] + 1e-4)
+    assert len(met) > 6 and met == pytest.approx([5e-3] * len(met), abs=4e-5)
 
 
 @pytest.mark.parametrize("degrees", [30.0, 12.0])
@@ -147,10 +168,9 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
     is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
     (span,) = track.groove_spans(plan)
-    start, end, lean, opens = span.start, span.end, span.lean, span.opens
-    assert lean == pytest.approx(0.5 * np.pi - angle) and opens == 18e-3
-    twisted = max([start, *(stop for _, stop, tilt in plan.path.leans if tilt == angle)])
-    first, last = max(start + opens, twisted) + 1e-3, min(end, plan.path.end + plan.outlet) - 1e-3
+    opened, end = span.leans[0][1], span.end
+    assert span.lean == pytest.approx(0.5 * np.pi - angle)
+    first, last = opened + 1e-3, min(end, plan.path.end + plan.outlet) - 1e-3
     for s in rng.uniform(first, last, 40):
         foot, out = plan.path.places(s, 0.0), outward(float(plan.path.angle(s)))
         for along in (1e-3, 9e-3, 16e-3):  # up the wall's face, 17 mm wide
@@ -167,17 +187,40 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
 def test_a_groove_begins_where_it_is_listed_and_ends_at_a_bank():
     plan = grooved("before a bank")[0].plan
     (span,) = track.groove_spans(plan)
-    start, end, opens = span.start, span.end, span.opens
+    start, end = span.start, span.end
     first, last = (placed.begin for placed in plan.stretch.devices[1:])
     assert (start, end) == pytest.approx((plan.first + first, plan.first + last))
-    lean = track.lean_at(span, np.array([start, start + 0.5 * opens, end]))
-    assert np.degrees(lean) == pytest.approx([3.0, 25.0, 50.0])  # it opens over the length of a part
-    assert track.lean_at(replace(span, lean=0.8), end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD
+    # it opens as the track twists: its free edge rises by 10 deg at most
+    opens = plan.width * np.sin(np.radians(40.0)) / np.tan(np.radians(10.0))
+    lean = track.lean_at(span, np.array([start, start + 0.5 * opens, start + opens, end]))
+    assert np.degrees(lean) == pytest.approx([3.0, 25.0, 50.0, 50.0])
+    banks = plan.path.bank_at(np.array([start, start + 0.5 * opens, start + opens, end, end + opens]))
+    assert np.degrees(banks) == pytest.approx([0.0, 20.0, 40.0, 40.0, 0.0], abs=1e-9)
+    assert track.lean_at(span, end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD
     early = grooved("from the entry")[0].plan
     assert early.path.angle(track.groove_spans(early)[0].start) == pytest.approx(-0.85 * 2.0 * np.pi)
-    # Banks that are listed first are those of the whole track.
+    # A bank that is listed first is that of the track from its entry on; the next begins at its own place.
     chain = (bank(3.0), bank(6.0), GAP, bank(9.0))
-    assert track_at_entry(TRACK, chain, [One(TRACK)]).bank == np.radians(6.0)
+    assert track_at_entry(TRACK, chain, [One(TRACK)]).bank == np.radians(3.0)
+
+
+def test_grooves_that_adjoin_are_one_and_their_wall_goes_from_lean_to_lean():
+    """The first closed while the second opened: between them the wall stood half upright."""
+    chain = (groove(30.0), groove(50.0), bank(0.0))
+    solid = body(planned(chain, STEEPER, LEFT))
+    is_one_body(solid)
+    plan, whole = solid.plan, facets.unplaced(solid)
+    (span,) = track.groove_spans(plan)
+    begin, end = span.leans[1][:2]
+    middle = 0.5 * (begin + end)
+    assert np.degrees(track.lean_at(span, np.array([begin, middle, end]))) == pytest.approx(
+        [60.0, 50.0, 40.0]
+    )
+    rise = np.radians(40.0)  # of the wall's face at the middle
+    foot, out = plan.path.places(middle, 0.0), outward(float(plan.path.angle(middle)))
+    for along in (2e-3, 9e-3, 16e-3):
+        place = foot + along * (np.cos(rise) * out + [0.0, 0.0, np.sin(rise)])
+        assert facets.below(whole, place + [0.0, 0.0, 8e-3]) == pytest.approx(place[2], abs=NEAR)
     chain = (bank(6.0), GAP, bank(6.0))
     assert planned(chain).path.leans == ()
     ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0))).path.leans
@@ -201,8 +244,8 @@ def test_a_part_lies_in_the_groove_at_both_faces(name):
     solid, angle = grooved(name)
     plan, whole = solid.plan, facets.unplaced(solid)
     (span,) = track.groove_spans(plan)
-    start, end, opens = span.start, span.end, span.opens
-    for s in np.linspace(start + opens + 8e-3, min(end, plan.path.end) - 8e-3, 5):
+    opened, end = span.leans[0][1], span.end
+    for s in np.linspace(opened + 8e-3, min(end, plan.path.end) - 8e-3, 5):
         off = []
         points = riding.place_rider(plan, rider(5e-3, 3e-3), cuboid([7e-3, 4e-3, 3e-3]), s)
         for one in facets.as_planned(plan, points):
@@ -213,3 +256,14 @@ def test_a_part_lies_in_the_groove_at_both_faces(name):
         assert min(off) == pytest.approx(3e-4 / np.tan(angle), abs=1.2e-4)
         formula = float(plan.path.height(s, 8e-3))
         assert track_heights(plan, whole, s, 8e-3) == pytest.approx(formula, abs=NEAR)
+
+
+def test_a_ledge_comes_all_the_way_down_in_a_small_bowl():
+    """At 15 deg a drop of 30 mm takes 112 mm, in a bowl of 80 mm: it ended 18 mm down, at nine tenths."""
+    part = shapes.part(shapes.box(60, 12, 5))
+    small = replace(TRACK, radius=80e-3)
+    tooled = lay_out(small, (TIP,), orientations(part, find(part), small))
+    (ledge,) = tooled.ledges
+    assert ledge.drop.height == pytest.approx(30e-3) and np.degrees(ledge.drop.ramp) > 15.0
+    assert ledge.level_at(ledge.foot, ledge.drop.aside) == pytest.approx(-30e-3, abs=1e-9)
+    assert ledge.foot < ledge.end + 0.25 * 2.0 * np.pi * 80e-3  # within a quarter turn

@@ -1,5 +1,6 @@
 """Several parts for one bowl: one chain where one suits all, else what is changed."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -86,6 +87,9 @@ def test_what_is_swapped_is_listed_device_by_device_and_on_the_page():
     ):  # fmt: skip
         assert text in page
     assert page.partition("<footer>")[0].lower().count("throw number") == 2
+    # each part can be turned, and each name is of its part
+    for name in ("small", "large"):
+        assert f'id="opening-{name}"' in page and re.search(rf'class="pose [^>]*>A@\d+ of {name}<', page)
     same = design_pages.family_page(families.FamilyStudy((first, replace(first, part=LARGE))))
     assert "Nothing is changed from one part to the next." in same
     assert "One track and one chain of devices suit all parts" in same

@@ -388,7 +388,7 @@ def test_each_class_has_its_best_design_the_cheapest_first():
     assert rows[2].sees == ("outline",) and "tells" in rows[1].why
     found = designs.document(study_with(GAP, alternatives=rows))["alternatives"]
     assert found[0]["delivered_per_minute"] == pytest.approx(45.0) and found[0]["needs"] == []
-    assert found[2]["needs"] == ["camera from above", "a valve", "compressed air"]
+    assert found[2]["needs"] == ["1 camera from above", "1 valve", "compressed air"]
     printed = tables_of.text(designs.summary(study_with(GAP, alternatives=rows)), "table")
     assert "with steel alone" in printed and "yield 90 %" in " ".join(printed.split())
     tried = [

@@ -442,7 +442,7 @@ def test_what_arrives_is_named_and_what_is_undecided_is_said(part):
     assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == entry.NO_ARRIVALS_MESSAGE
     sheet = profiles.parse_count_sheet("aspect,x\nA,0.5\nB,0.25\nC,0.25\n", "c")
     made = profiles.parse_profiles(sheet, "c.csv", "", "ABC")
-    answer = stream.counted(aspects, made).recommended
+    answer = entry.counted(aspects, made).recommended
     np.testing.assert_array_equal(answer.low, answer.high)
 
 

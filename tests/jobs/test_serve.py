@@ -1,11 +1,11 @@
 """``feeder serve``: what is refused, one job at a time, and the main flow in a browser."""
 
+import contextlib
 import errno
 import io
 import json
 import os
 import shlex
-import shutil
 import signal
 import socket
 import subprocess
@@ -16,16 +16,23 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from command_lines import BRACKET
+from command_lines import BRACKET, asked_by
+from design_counts import attempt, design_of_nothing
+from devtools import Browser
 
 pytest.importorskip("werkzeug", reason="needs werkzeug: pip install 'feederscrew[serve]'")
 
 from werkzeug.test import Client
 
+from feederscrew.designing.next_tries import TryKind
+from feederscrew.designing.record import NearestDesign
 from feederscrew.jobs.serving import server, uploads
+from feederscrew.jobs.serving.orders import PageOrder
 from feederscrew.jobs.serving.refusal import in_words_of_the_page
 from feederscrew.jobs.serving.server import BoundedServer
 from feederscrew.jobs.serving.site import Site
+from feederscrew.output import designs
+from feederscrew.part import load
 
 HOST = "127.0.0.1:8000"
 WEDGE = b"OFF\n4 4 0\n0 0 0\n20 0 0\n0 10 0\n0 0 5\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
@@ -36,8 +43,8 @@ import json, pathlib, sys
 rate = float(sys.argv[sys.argv.index("--target") + 1].removesuffix("/min"))
 answer = {"status": "holds", "why": "all fills do", "wanted": "A@90", "delivered_per_minute": 70.0}
 if rate > 60:
-    nearest = {"rate_per_minute": 57.9}
-    answer = {"status": "falls short", "why": "too slow", "wanted": "A@90", "nearest": nearest}
+    step = {"label": "try first", "why": "57/min holds", "options": {"--target": "57/min"}, "settings": {}}
+    answer = {"status": "falls short", "why": "too slow", "wanted": "A@90", "next": [step]}
 folder = pathlib.Path(sys.argv[-1]) / pathlib.Path(sys.argv[2]).stem
 folder.mkdir()
 (folder / "design.html").write_text("<h1>holds</h1>")
@@ -299,29 +306,68 @@ def test_the_file_of_a_bowl_at_hand_is_read_and_goes_into_the_design(page, site)
     assert not list(site.folder.rglob("*.yaml"))
     bowl = page.post("/bowl", b"track: {width: 8 mm}\n", {"name": "../mine.yaml"}).get_json()
     told = page.ended(page.order(page.send().get_json()["id"], bowl=bowl["id"]).get_json()["id"])
-    (path,) = site.folder.rglob("*.yaml")
-    assert f"--config {path.parent.relative_to(site.folder)}" not in told["lines"][0]
-    assert "--config" in told["lines"][0] and "--config ../mine.yaml" in told["command"]
+    path, beside = sorted(site.folder.rglob("*.yaml"), key=lambda one: "designs" in one.parts)
+    assert beside.read_bytes() == path.read_bytes()
+    assert "--config mine.yaml" in told["lines"][0] and "--config ../mine.yaml" in told["command"]
     assert told["order"]["bowl"] == bowl["id"] and path.parent.parent == site.folder / "parts"
 
 
-def test_what_falls_short_has_at_most_three_next_steps_that_are_orders(page):
-    """The one that was tried and holds comes first, then what the order ruled out, then other sides."""
+def test_what_falls_short_has_next_steps_that_are_designed_at_a_click(page):
     part = page.send().get_json()["id"]
-    holds = page.ended(page.order(part).get_json()["id"])
-    assert holds["next"] == []
+    assert page.ended(page.order(part).get_json()["id"])["next"] == []
     values = {"rate": 90, "may_use": ["air"], "up": "A", "heading": "best", "outcome": "lying"}
     short = page.ended(page.order(part, **values).get_json()["id"])
     assert (short["status"], short["why"]) == ("falls short", "too slow")
-    assert [step["change"] for step in short["next"]] == [
-        {"rate": 57.0}, {"may_use": ["air", "camera"]}, {"heading": "any"},
-    ]  # fmt: skip
-    free = page.ended(page.order(part, rate=90).get_json()["id"])["next"]
-    assert [step["change"] for step in free][:2] == [{"rate": 57.0}, {"up": "A", "heading": "any"}]
-    for step in (*short["next"], *free):
-        order = {**short["order"], **step["change"]}
-        again = page.ended(page.order(order.pop("part"), **order).get_json()["id"])
-        assert again["order"] == {**short["order"], **step["change"]}
+    assert short["next"] == ["try first: 57/min holds"]
+    for step in (1, -1, True, "0", None):
+        assert page.post("/design", json.dumps({"after": short["id"], "step": step})).status_code == 400
+    assert page.post("/design", json.dumps({"after": "7", "step": 0})).status_code == 404
+    again = page.post("/design", json.dumps({"after": short["id"], "step": 0})).get_json()
+    assert page.ended(again["id"])["order"] == {**short["order"], "rate": 57.0}
+
+
+def test_a_step_of_the_page_asks_for_what_the_step_of_the_command_line_asks_for(page, site):
+    """One source of steps: each order, and the call that is printed for it, is read as the same request."""
+    key = page.send().get_json()["id"]
+    part, kinds = load(str(site.uploads.find(key).path)), set()
+    heading = site.uploads.find(key).headings["A"][-1]
+    orders = [
+        {},
+        {"up": "A", "heading": heading},
+        {"up": "B", "heading": "best", "outcome": "lying"},
+        {"may_use": ["air"], "diameter": 250, "outcome": "hanging"},
+        {"machine": "any", "up": "C", "may_use": []},
+    ]
+    for values in orders:
+        order = PageOrder.of(VALUES | values, site.uploads.find(key))
+        for _ in range(3):  # a step after a step
+            former = asked_by(shlex.split(order.command))
+            near = NearestDesign(0.25, "a calmer drive", wanted="A@0", request=former)
+            own, slow = attempt(f"{order.up or 'A'}@0"), attempt("C@0", 20.5, ())
+            studies = [
+                design_of_nothing(part, own, request=former, call=order.arguments),
+                design_of_nothing(part, slow, own, request=former, call=order.arguments, nearest=near),
+                design_of_nothing(part, own, request=former, call=order.arguments, partial=True),
+                design_of_nothing(part, own, request=former, call=order.arguments, arrivals=()),
+            ]
+            steps = [step for study in studies for step in designs.document(study)["next"]]
+            for step in steps:
+                after = order.after(step["options"], step["settings"])
+                assert asked_by(shlex.split(after.command)) == asked_by(step["words"]), step
+                kinds.add(step["change"])
+                beside = step["change"] == TryKind.MORE_TRIALS
+                assert bool(after.values["also"]) == (beside or bool(order.values["also"])), step
+            order = order.after(steps[0]["options"], steps[0]["settings"])
+    assert len(kinds) >= 8, kinds
+
+
+def test_a_calmer_drive_is_a_step_of_the_page_too(page, site):
+    order = PageOrder.of(VALUES, site.uploads.find(page.send().get_json()["id"]))
+    calmer = order.after({}, {"drive.amplitude": "0.12 mm"})
+    assert "--set 'drive.amplitude=0.12 mm'" in calmer.command
+    assert calmer.values == {**order.values, "also": "drive.amplitude 0.12 mm"}
+    more = calmer.after({"--trials": "32"}, {"drive.amplitude": "0.1 mm"})
+    assert more.values["also"] == "--trials 32 drive.amplitude 0.1 mm"
 
 
 def test_one_design_at_a_time_and_it_can_be_stopped_and_ends_with_the_server(page, site):
@@ -473,98 +519,123 @@ def test_idle_connections_are_bounded_and_do_not_shut_the_page_out(site, monkeyp
         bounded.server_close()
 
 
-FLOW = """<script>
-(async () => {
-  const until = async (holds) => { while (!holds()) await new Promise((done) => setTimeout(done, 100)); };
-  const at = (name) => document.getElementById(name), bytes = await (await fetch("/bracket")).arrayBuffer();
-  const files = new DataTransfer(), seen = {};
-  files.items.add(new File([bytes], "bracket.stl"));
-  at("file").files = files.files;
-  at("file").dispatchEvent(new Event("change"));
-  const inside = () => at("aspects").contentDocument;
-  await until(() => !at("lying").hidden && inside()?.querySelector(".has-views .view .up"));
-  const views = inside().querySelectorAll(".view canvas");
-  const pixels = () => views[0].getContext("2d").getImageData(0, 0, 680, 544).data;
-  const sum = () => pixels().reduce((all, one, k) => (all + one * (k % 97)) % 1e9, 0);
-  const before = sum();
-  await new Promise((done) => setTimeout(done, 400));
-  // every view is whole, and each side can be chosen there or in the list
-  const below = [...views].map((view) => view.getBoundingClientRect().bottom);
-  const cut = Math.max(...below) > at("aspects").clientHeight;
-  Object.assign(seen, { views: views.length, turns: sum() !== before, cut });
-  const buttons = [...inside().querySelectorAll(".up")];
-  buttons[1].click();
-  const pressed = () => buttons.map((one) => one.getAttribute("aria-pressed")).indexOf("true");
-  Object.assign(seen, { up: at("up").value, heading: at("heading").value, pressed: pressed() });
-  const unnamed = [...document.querySelectorAll("input, select")].filter((one) => !one.labels?.length);
-  Object.assign(seen, { unnamed: unnamed.length, wide: document.documentElement.scrollWidth > innerWidth });
-  at("rate").value = 90;
-  at("order").requestSubmit();
-  await until(() => at("next").children.length);
-  const colour = () => getComputedStyle(at("state")).color;
-  const steps = at("next").children.length;
-  Object.assign(seen, { short: at("state").textContent, steps, shortColour: colour() });
-  at("next").children[0].click();
-  await until(() => at("state").textContent === "holds" && !at("result").hidden);
-  const [state, files_shown, fault] = ["state", "files", "fault"].map((name) => at(name).textContent);
-  Object.assign(seen, { state, files: files_shown, fault, colour: colour(), rate: at("rate").value });
-  seen.list = [...at("designs").children].map((one) => one.textContent);
-  seen.cookie = document.cookie;
-  await fetch("/seen", { method: "POST", body: JSON.stringify(seen) });
-})();
-</script></body>"""
+AT = "document.getElementById('{}')"
+INSIDE = AT.format("aspects") + ".contentDocument"
+OUTLINED = "getComputedStyle(document.activeElement.closest('.file') ?? document.activeElement).outlineStyle"
 
 
-@pytest.mark.needs("chromium")
-@pytest.mark.parametrize("width", [390, 1280])
-def test_the_main_flow_in_a_browser(tmp_path, width):
-    """A part is dropped, its views turn and a side is chosen; a design falls short, the next step holds."""
-    (tmp_path / "own").mkdir()
-    site = Site(tmp_path / "own/run", (sys.executable, "-c", WRITES))
-    seen, told = {}, threading.Event()
-
-    def probed(environ, start_response):
-        """The site with a script of the test in its page, the part, and where the script tells."""
-        if environ["PATH_INFO"] == "/bracket":
-            start_response("200 OK", [("Content-Type", "application/octet-stream")])
-            return [BRACKET.read_bytes()]
-        if environ["PATH_INFO"] == "/seen":
-            seen.update(json.loads(environ["wsgi.input"].read(int(environ["CONTENT_LENGTH"]))))
-            told.set()
-            start_response("204 No Content", [])
-            return []
-
-        def begin(status, headers):
-            start_response(status, [one for one in headers if one[0] != "Content-Length"])
-
-        whole = b"".join(site(environ, begin))
-        return [whole.replace(b"</body>", FLOW.encode()) if environ["PATH_INFO"] == "/" else whole]
-
+@contextlib.contextmanager
+def served(folder, program):
+    """A site that answers a browser."""
+    site = Site(folder / "run", (sys.executable, "-c", program))
     made = BoundedServer(site, 0)
-    made.app = probed
     thread = threading.Thread(target=made.serve_forever, args=(0.05,))
     thread.start()
-    flags = "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader"
-    flags += f" --enable-unsafe-swiftshader --remote-debugging-port=0 --user-data-dir={tmp_path / 'profile'}"
-    command = [shutil.which("chromium"), *flags.split(), f"--window-size={width},900", site.address]
-    browser = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        assert told.wait(120.0)
+        yield site
     finally:
-        browser.terminate()
-        browser.wait()
         site.close()
         made.shutdown()
         thread.join()
         made.server_close()
-    assert (
-        seen["views"] >= 5 and seen["turns"] and not seen["cut"] and not seen["wide"] and not seen["unnamed"]
-    )
-    assert (seen["up"], seen["heading"], seen["pressed"]) == ("B", "any", 1)
-    assert (seen["short"], seen["state"], seen["fault"], seen["rate"]) == ("falls short", "holds", "", "57")
-    assert (
-        1 <= seen["steps"] <= 3 and seen["colour"] != seen["shortColour"] and "design.html" in seen["files"]
-    )
-    first, second = ("bracket.stl (mm), 57 a minute, B up", "bracket.stl (mm), 90 a minute, B up")
-    assert [line.startswith(begin) for line, begin in zip(seen["list"], (first, second))] == [True, True]
-    assert seen["cookie"] == ""
+
+
+@pytest.mark.needs("chromium")
+@pytest.mark.parametrize(("width", "dark"), [(390, True), (390, False), (1280, True), (1280, False)])
+def test_the_main_flow_with_the_keyboard_alone(tmp_path, width, dark):
+    """A part and a side are chosen; a design falls short, a step to try holds: no mouse, all is legible."""
+    (tmp_path / "own").mkdir()
+    with served(tmp_path / "own", WRITES) as site, Browser(tmp_path / "profile", width, dark=dark) as page:
+
+        def at(name, rest=""):
+            return page.evaluate(AT.format(name) + rest)
+
+        def reach(script):
+            page.tab_to(script)
+            assert page.evaluate(OUTLINED) == "solid", f"{script}: the focus is not seen"
+
+        page.open(site.address)
+        reach(AT.format("file"))
+        page.choose_by_key(BRACKET)
+        page.until(f"{INSIDE}?.querySelector('.has-views .view .up')")
+        page.until(f"{INSIDE}.querySelectorAll('.view .up').length >= 5")
+        views = page.evaluate(
+            f"[...{INSIDE}.querySelectorAll('.view canvas')].map((one) => one.getBoundingClientRect().bottom)"
+        )
+        assert len(views) >= 5 and max(views) < at("aspects", ".clientHeight"), "the fifth view is cut off"
+        # this side up: within the frame of the views
+        second = f"{INSIDE}.querySelectorAll('.view .up')[1]"
+        for _ in range(60):
+            if page.evaluate(f"{INSIDE}.activeElement === {second}"):
+                break
+            page.press("Tab")
+        page.press("Enter")
+        assert (at("up", ".value"), at("heading", ".value")) == ("B", "any")
+        assert page.evaluate(f"{second}.getAttribute('aria-pressed')") == "true"
+        reach(AT.format("rate"))
+        page.type("90")
+        reach(AT.format("outcome"))
+        page.press("ArrowDown")
+        reach("document.querySelector('#uses input')")
+        page.press(" ")
+        fields = "[...document.querySelectorAll('input:not(:disabled), select')]"
+        unnamed = page.evaluate(f"{fields}.filter((one) => !one.labels?.length).map((one) => one.id)")
+        assert unnamed == [], "a field has no label"
+        reach(AT.format("start"))
+        page.press("Enter")
+        page.until(AT.format("next") + ".children.length")
+        assert (at("state", ".textContent"), at("next", ".textContent")) == (
+            "falls short",
+            "try first: 57/min holds",
+        )
+        short = page.evaluate(f"getComputedStyle({AT.format('state')}).color")
+        reach(AT.format("next") + ".firstElementChild")
+        page.press("Enter")
+        page.until(f"{AT.format('state')}.textContent === 'holds' && !{AT.format('result')}.hidden")
+        assert page.evaluate(f"getComputedStyle({AT.format('state')}).color") != short
+        kept = (at("rate", ".value"), at("outcome", ".value"), at("fault", ".textContent"))
+        assert kept == ("57", "lying", "")
+        assert "--without 'air jet'" in at("command", ".textContent")
+        assert "design.html" in at("files", ".textContent")
+        # the results of this run, each with its part
+        listed = page.evaluate(f"[...{AT.format('designs')}.children].map((one) => one.textContent)")
+        assert [line.partition(" a minute, B up")[0] for line in listed] == [
+            "bracket (mm), 57".replace("bracket", BRACKET.name), f"{BRACKET.name} (mm), 90",
+        ]  # fmt: skip
+        reach(AT.format("designs") + ".children[1].firstElementChild")
+        page.press("Enter")
+        page.until(f"{AT.format('state')}.textContent === 'falls short'")
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), "it goes off the screen"
+        ratio, words = page.least_contrast("aspects")
+        assert ratio >= 4.5, f"{words}: contrast {ratio:.2f}"
+        assert page.evaluate("document.cookie") == ""
+
+
+@pytest.mark.needs("chromium")
+def test_the_bar_shows_stage_and_time_and_a_click_turns_and_chooses(tmp_path):
+    """While a design runs: a bar with its stage, the time gone and to go, and a button that stops it."""
+    (tmp_path / "own").mkdir()
+    with served(tmp_path / "own", WAITS) as site, Browser(tmp_path / "profile") as page:
+        page.open(site.address)
+        page.tab_to(AT.format("file"))
+        page.choose_by_key(BRACKET)
+        page.until(f"{INSIDE}?.querySelector('.has-views .view .up')")
+        seen = f"{INSIDE}.querySelector('.view canvas').toDataURL()"
+        before = page.evaluate(seen)
+        page.until(f"{seen} !== {json.dumps(before)}")  # the views turn once by themselves
+        frame = page.evaluate(f"(({{ x, y }}) => [x, y])({AT.format('aspects')}.getBoundingClientRect())")
+        third = page.evaluate(
+            f"(({{ x, y, width, height }}) => [x + width / 2, y + height / 2])"
+            f"({INSIDE}.querySelectorAll('.view canvas')[2].getBoundingClientRect())"
+        )
+        place = [a + b for a, b in zip(frame, third)]
+        page.click(*place, moved=40)
+        assert page.evaluate(AT.format("up") + ".value") == "", "a drag turns the view, and chooses nothing"
+        page.click(*place)
+        assert page.evaluate(AT.format("up") + ".value") == "C"
+        page.evaluate(AT.format("order") + ".requestSubmit()")
+        page.until(f"!{AT.format('bar')}.hidden && {AT.format('bar')}.value === 0.25")
+        stage = page.evaluate(AT.format("stage") + ".textContent")
+        assert stage == "trial 2 of 16, 30 s gone, about 90 s to go"
+        page.press("Enter")  # Stop has the focus
+        page.until(f"{AT.format('state')}.textContent === 'stopped' && {AT.format('bar')}.hidden")

@@ -194,6 +194,8 @@ class Blade:
     def carried_into(self, wall: float, track: float, reach: float) -> shapely.Geometry:
         """Return its face carried on into wall and track where it reaches them.
 
+        No corner is left within a straight side: it would lie on the wall's or the track's own face.
+
         Parameters
         ----------
         wall, track : float [m]
@@ -215,9 +217,10 @@ class Blade:
             )
         strip = shapely.box(-BEYOND_BLADES_M, 0.0, BEYOND_BLADES_M, reach)
         bounds = shapely.bounds(shapely.get_parts(solid.intersection(strip)))
-        return shapely.union_all(
+        whole = shapely.union_all(
             [solid, *(shapely.box(near, -track, far, reach) for near, _, far, _ in bounds)]
         )
+        return shapely.simplify(whole, SAME_PLACE_M)
 
     def footprint(self, radius: float) -> Points:
         """Return the plate seen from above, unrolled along the wall.

@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
 
 LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
-LEDGE_RAMP_RAD = math.radians(15.0)  # [rad] slope on which a ledge comes down to the track beside it
+LEDGE_RAMP_RAD = math.radians(15.0)  # [rad] least slope on which a ledge comes down to the track beside it
+LONGEST_RAMP_SHARE = 0.7  # of the radius at the ledge's edge: so far ahead a ramp reaches at most
 LOWER_TRACK_LENGTHS = 10.0  # of the part's size: how far the lower track goes on
 SETTLES = 2.0  # of the part's size: how far behind a turning device parts end
 SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
@@ -102,7 +103,9 @@ class Tip(_Ledge):
 
     def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         length, lower = room_of(orientations), below_ledge(orientations)
-        drop = Drop(lower, self.limit, _reach(orientations), length, LEDGE_RAMP_RAD)
+        # steeper where it would go too far round a small bowl: its foot is square to where it begins
+        least = math.atan2(lower, LONGEST_RAMP_SHARE * (track.radius - self.limit))
+        drop = Drop(lower, self.limit, _reach(orientations), length, max(LEDGE_RAMP_RAD, least))
         return Features(length + drop.ramp_length(track.radius), drop=drop, settles=SETTLES)
 
     def judged(self, encounter: Encounter) -> Verdict:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import shapely
 from scipy import optimize
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
 DEFLECTOR_BEGIN_RAD = math.radians(12.0)  # [rad] at the wall, as tried
 DEFLECTOR_END_RAD = math.radians(50.0)  # [rad] at the free edge, as tried
+TRIED_SIZES = 400  # of a piece, up to where the first alone would reach the free edge of a straight track
 DEFLECTOR_BEND_RAD = math.radians(7.0)  # [rad] between two flat pieces at most
 
 
@@ -122,11 +124,12 @@ class CurvedDeflector(Overhead):
     def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         room, tall = room_of(orientations), tall_of(orientations, self.limit)
         # pieces of an arc are alike: so long that the last one ends at the free edge
-        size = optimize.brentq(
-            lambda size: self._feet(size, track.radius)[-1][1] - track.extent,
-            0.0,
-            track.extent / math.sin(self.begin),
-        )
+        sizes = np.linspace(0.0, track.extent / math.sin(self.begin), TRIED_SIZES)[1:].tolist()
+        far = next((size for size in sizes if self._beyond(size, track) >= 0.0), None)
+        if far is None:
+            what = f"its face from {degrees_words(self.begin)} on meets the wall before the free edge"
+            raise ConfigError(self.where, what, "give a larger angle from, or a larger bowl")
+        size = optimize.brentq(self._beyond, 0.0, far, (track,))
         *feet, end = self._feet(size, track.radius)
         blades: list[Blade] = []
         for (along, off), heading in zip(feet, self.headings):
@@ -134,6 +137,10 @@ class CurvedDeflector(Overhead):
             face = shapely.box(-BLADE if blades else 0.0, self.limit, size, tall)
             blades.append(Blade(face, (0.5 * room + along, off), heading))
         return Features(0.5 * room + end[0], blades=tuple(blades))
+
+    def _beyond(self, size: float, track: "Track") -> float:
+        """How far [m] beyond the free edge its last piece ends, of pieces of a size [m]."""
+        return self._feet(size, track.radius)[-1][1] - track.extent
 
     def _feet(self, size: float, radius: float) -> list[tuple[float, float]]:
         """Where its flat pieces of a size [m] begin and the last one ends: along the wall [m], and off it."""

@@ -202,17 +202,23 @@ def drawn(wires: list[Body], along: Iterable[float]) -> Body:
 
 
 def outwards(body: Body) -> Body:
-    """Return a body, turned inside out where its volume is negative.
+    """Return a body of one shell, made anew with that turned inside out where its volume is negative.
+
+    A solid that is only marked as reversed does not do: within a compound, as a cut leaves it, OpenCASCADE
+    takes it for nothing and loses it in a union.
 
     Parameters
     ----------
-    body : TopoDS_Shape
+    body : TopoDS_Solid
 
     Returns
     -------
-    TopoDS_Shape
+    TopoDS_Solid
     """
-    return body if volume(body) > 0.0 else body.Reversed()
+    if volume(body) > 0.0:
+        return body
+    shell = parts(body, TopAbs.TopAbs_SHELL)[0]
+    return BRepBuilderAPI.BRepBuilderAPI_MakeSolid(cast("Shell", shell.Reversed())).Solid()
 
 
 def side(path: TrackPath, start: Points, stop: Points, z: float) -> Body:

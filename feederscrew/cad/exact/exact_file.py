@@ -183,12 +183,17 @@ def exact_section(section: TooledTrack) -> Body:
     vertices, faces = solid(section)
     a, b, c = np.moveaxis(vertices[faces] / MM, 1, 0)
     facets = float(np.einsum("fk,fk->f", a, np.cross(b, c)).sum()) / 6.0
-    size = np.nan
+    refused = FeederError("tooling.step", "OpenCASCADE makes no section", "take tooling.stl")
     for near in exact_body.FUZZY_TOLERANCES_MM:
-        with exact_body.meeting(near):
-            body = exact_body.one_piece(section_body(section, exact_body), "tooling.step")
+        try:
+            with exact_body.meeting(near):
+                body = exact_body.one_piece(section_body(section, exact_body), "tooling.step")
+        except FeederError as fault:
+            refused = FeederError("tooling.step", fault.what, "take tooling.stl")
+            continue
         size = exact_body.volume(body)
         if exact_body.valid(body) and abs(size / facets - 1.0) <= SECTION_VOLUME_TOLERANCE:
             return body
-    what = f"OpenCASCADE makes a section of {size:.6g} mm3, not {facets:.6g}"
-    raise FeederError("tooling.step", what, "take tooling.stl")
+        what = f"OpenCASCADE makes a section of {size:.6g} mm3, not {facets:.6g}"
+        refused = FeederError("tooling.step", what, "take tooling.stl")
+    raise refused

@@ -18,9 +18,8 @@ from typing import Any
 from feederscrew.base.errors import printable
 from feederscrew.base.running import STAGE_VARIABLE
 from feederscrew.jobs.serving import guard
-from feederscrew.jobs.serving.next_steps import next_steps
 from feederscrew.jobs.serving.orders import PageOrder
-from feederscrew.jobs.serving.refusal import in_words_of_the_page
+from feederscrew.jobs.serving.refusal import Refusal, in_words_of_the_page
 
 MOST_DESIGNS = 100  # of one run: each keeps its folder
 LINES_SHOWN = 400  # of what a design says
@@ -97,8 +96,12 @@ class DesignJob:
         self._answer: dict[str, Any] | None = None
         try:
             self.results.mkdir(parents=True)
+            # beside its files the call is the one that the page shows, and so are those that it ends in
+            _place(order.upload.path, folder)
+            if order.bowl is not None:
+                _place(order.bowl.path, folder)
             self._process = subprocess.Popen(
-                [*program, *order.arguments, "-o", str(self.results)],
+                [*program, *order.arguments],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
@@ -134,11 +137,8 @@ class DesignJob:
         """Return the last lines that the design said, with the name of the part in place of its path."""
         if not self.is_running:
             self._reader.join(timeout=1.0)
-        upload, places = self.order.upload, (str(self.results), str(self.folder))
-        lines = [printable(line).replace(str(upload.path), upload.name) for line in self._lines]
-        for place in places:
-            lines = [line.replace(f"{place}{os.sep}", "").replace(place, "results") for line in lines]
-        return lines
+        upload = self.order.upload
+        return [printable(line).replace(upload.path.name, upload.name) for line in self._lines]
 
     @property
     def state(self) -> DesignState:
@@ -203,8 +203,35 @@ class DesignJob:
             "fault": self.fault,
             "why": self.answer.get("why") or "",
             "command": self.order.command,
-            "next": [step.document for step in next_steps(self.order, self.answer)],
+            "next": [f"{step['label']}: {step['why']}" for step in self.steps],
         }
+
+    @property
+    def steps(self) -> list[dict[str, Any]]:
+        """Return what to try after it, as its document and the command line have it."""
+        return self.answer.get("next") or []
+
+    def order_after(self, place: object) -> PageOrder:
+        """Return the order that a step to try asks for.
+
+        Parameters
+        ----------
+        place : object
+            Of the step in ``steps``, from 0, as a browser sent it.
+
+        Returns
+        -------
+        PageOrder
+
+        Raises
+        ------
+        Refusal
+            If there is no such step.
+        """
+        if isinstance(place, bool) or not isinstance(place, int) or not 0 <= place < len(self.steps):
+            raise Refusal(400, "that step is not one of the design - reload the page")
+        step = self.steps[place]
+        return self.order.after(step["options"], step["settings"])
 
     def stop(self) -> None:
         """Ask it to end, as Ctrl-C does."""
@@ -226,6 +253,14 @@ class DesignJob:
         with contextlib.suppress(ProcessLookupError):
             if self.is_running:
                 os.killpg(self._process.pid, number)
+
+
+def _place(path: Path, folder: Path) -> None:
+    """Put a file into a folder, without a copy of it where the disk can."""
+    try:
+        os.link(path, folder / path.name)
+    except OSError:
+        shutil.copyfile(path, folder / path.name)
 
 
 def _json_file(path: Path | None) -> dict[str, Any]:

@@ -232,7 +232,8 @@ class Site:
         Parameters
         ----------
         request : Request
-            Its body is the values of the page's fields, as JSON.
+            Its body, as JSON: the values of the page's fields, or ``after``, the id of a design, and
+            ``step``, the place of one of its steps to try.
 
         Returns
         -------
@@ -242,8 +243,8 @@ class Site:
         Raises
         ------
         Refusal
-            If a value is not of its list, a rate is out of range, the part is not here, or a design is
-            running.
+            If a value is not of its list, a rate is out of range, the part is not here, the step is not one
+            of its design, or a design is running.
         """
         try:
             values = json.loads(_body(request, VALUES_BYTES, "the request", "use the page of feeder serve"))
@@ -251,9 +252,12 @@ class Site:
             values = None
         if not isinstance(values, dict):
             raise Refusal(400, "the values of the design are not JSON - use the page of feeder serve")
-        bowl = values.get("bowl")
-        own_bowl = None if bowl is None else self.uploads.find_bowl(bowl)
-        order = PageOrder.of(values, self.uploads.find(values.get("part")), own_bowl)
+        if "after" in values:
+            order = self._design(str(values["after"])).order_after(values.get("step"))
+        else:
+            bowl = values.get("bowl")
+            own_bowl = None if bowl is None else self.uploads.find_bowl(bowl)
+            order = PageOrder.of(values, self.uploads.find(values.get("part")), own_bowl)
         with self._alone():
             if any(job.is_running for job in self.designs.values()):
                 raise Refusal(409, "a design is running - stop it first")
