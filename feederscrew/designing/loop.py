@@ -264,16 +264,18 @@ def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
         proofs.append((study, candidate))
         if study.status in HELD or study.partial or search.is_spent:
             return
-        other = _change_by_proof(search, study, candidate)
+        other = _change_by_proof(search, study, candidate, [proved for _, proved in proofs])
         if other is None or not other.attempt.clean:
             return
         candidate = other
 
 
-def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
+def _change_by_proof(
+    search: Search, study: DesignStudy, candidate: Candidate, proved: Sequence[Candidate] = ()
+) -> Candidate | None:
     """A design at another drive, with another value or one device more, by what its proof denied.
 
-    None where there is nothing to change.
+    None where there is nothing to change but what was proved at this drive before.
     """
     state, policy = search.state, search.policy
     proposal, lying = candidate.proposal, candidate.orientations.lying
@@ -281,7 +283,9 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
         # what stood there, and where, says what to change
         jammed = tuple(row for queue in study.queues for row in queue.jammed)
         mends = exploring.mends_of_jams(search, candidate, jammed)
-        for mended in itertools.islice(mends, policy.jam_mends):
+        known = {other.proposal.chain for other in proved if other.bowl.drive == candidate.bowl.drive}
+        fresh = (mended for mended in mends if mended.chain not in known)
+        for mended in itertools.islice(fresh, policy.jam_mends):
             tried = exploring.try_again(search, candidate, mended, candidate.bowl)
             if tried.attempt.clean:
                 return tried

@@ -180,6 +180,8 @@ def move_text(move: Move) -> str:
             return f"blade behind the rails {in_mm(abs(move.value))} {higher}"
         case MoveKind.CUTS_BEFORE:
             return "cuts before the rails by what hangs in the trial"
+        case MoveKind.OTHER_CUTS:
+            return "other cuts before the rails, for those at which parts stand"
         case MoveKind.LONGER_PULSE:
             return f"pulse of {1e3 * move.value:.0f} ms"
         case MoveKind.DROP_BEFORE:

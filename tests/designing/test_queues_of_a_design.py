@@ -268,7 +268,7 @@ def prove(monkeypatch):
 
 def candidates_of(bowl, other):
     clean, ways = SimpleNamespace(clean=True, faults=()), SimpleNamespace(lying=())
-    chain = SimpleNamespace(cuts=(), devices=(), name="rails")
+    chain = SimpleNamespace(cuts=(), devices=(), name="rails", chain=("rails: 6 mm",))
     first = SimpleNamespace(
         bowl=bowl, proposal=chain, weights=None, trial=None, orientations=ways, attempt=clean,
         plain_bowl=lambda search: None,
