@@ -3,11 +3,11 @@
 import shlex
 from collections.abc import Callable, Iterable, Sequence
 
-from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.base.units import DEG, HOUR, MINUTE, MM
+from feederscrew.bowl.device_list import DEVICES_SECTION
 from feederscrew.bowl.reading import Setting
 from feederscrew.designing.record import DesignRequest
 from feederscrew.part.record import Part
-from feederscrew.units import DEG, HOUR, MINUTE, MM
 
 PROGRAM, COMMAND = "feeder", "design"
 USUAL_UNITS = "mm"  # of a file, where the call says nothing

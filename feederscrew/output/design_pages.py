@@ -7,7 +7,10 @@ from functools import cache
 from itertools import zip_longest
 from typing import Any
 
-from feederscrew import units
+from feederscrew.base import units
+from feederscrew.base.columns import ColumnHead, Frame, share_head
+from feederscrew.bowl.arguments import settings_of
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.verified import (
     AMONG,
@@ -20,12 +23,12 @@ from feederscrew.bowl.verified import (
     Status,
     Verified,
 )
-from feederscrew.columns import ColumnHead, Frame, share_head
 from feederscrew.designing import texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.next_tries import next_tries
 from feederscrew.designing.record import DesignStudy
+from feederscrew.machine.sheet import MachineSheet
 from feederscrew.output import (
     beside_bowl,
     designs,
@@ -66,9 +69,6 @@ from feederscrew.output.style import png
 from feederscrew.output.trial import rides
 from feederscrew.output.trial.tables import queues_table
 from feederscrew.resting.aspects import find
-from feederscrew.sorting.devices.trade import Action
-from feederscrew.studies.arguments import settings_of
-from feederscrew.studies.bowl import MachineSheet
 
 MEASURE = (
     "Stroke: a stroke gauge, a printed sticker on the bowl's rim, shows it peak to peak; if it is below the "

@@ -9,11 +9,20 @@ from typing import Any, cast
 
 import numpy as np
 
-from feederscrew import __version__, units
+from feederscrew import __version__
 from feederscrew import bowl as bowls
-from feederscrew.arrays import Floats, Ints
-from feederscrew.bowl import devices, reading, schema
-from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.base import units
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.columns import ColumnHead, Frame, heads, of_records, values
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import DEG, MM, MM_S, PER_MINUTE
+from feederscrew.bowl import device_list as devices
+from feederscrew.bowl import reading, schema
+from feederscrew.bowl.device_list import DEVICES_SECTION
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.record import (
     DRIVE_PHASE_COLUMNS,
@@ -25,9 +34,6 @@ from feederscrew.bowl.record import (
     Track,
 )
 from feederscrew.bowl.verified import NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
-from feederscrew.columns import ColumnHead, Frame, heads, of_records, values
-from feederscrew.conveying.answer import answer, throw_number
-from feederscrew.conveying.hop import HOP_COLUMNS, hop
 from feederscrew.designing import acceptance_sheet, texts
 from feederscrew.designing.acceptance_sheet import SheetLine
 from feederscrew.designing.fill_verdicts import DIFFERENCE_COLUMNS
@@ -46,19 +52,15 @@ from feederscrew.designing.record import (
     Pair,
     Risk,
 )
-from feederscrew.errors import FeederError
-from feederscrew.geometry import vectors
-from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
+from feederscrew.machine.sheet import MachineSheet
+from feederscrew.motion.conveying import answer, throw_number
+from feederscrew.motion.hop import HOP_COLUMNS, hop
 from feederscrew.output import next_tries, part_facts, style, tables
 from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
-from feederscrew.studies.bowl import MachineSheet
-from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
 

@@ -2,12 +2,12 @@
 
 from typing import Any
 
+from feederscrew.base.units import PER_MINUTE, counted, listed
 from feederscrew.bowl.verified import HELD
 from feederscrew.designing import next_tries as decisions
 from feederscrew.designing.calls import call_of, call_text, call_words, changed_options
 from feederscrew.designing.next_tries import Evidence, NextTry, TryKind
 from feederscrew.designing.record import DesignStudy
-from feederscrew.units import PER_MINUTE, counted, listed
 
 LABELS = ("try first", "then", "or")  # of the commands, the likeliest first
 CALMER = ("calmer", "or")  # of those after a design that holds

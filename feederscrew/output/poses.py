@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.arrays import Floats
-from feederscrew.geometry.polygons import turned
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM
 from feederscrew.output import batch
 from feederscrew.output.page.blocks import Pose, Views
 from feederscrew.output.shading import Mesh
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
-from feederscrew.units import MM
 
 shading = heavy("feederscrew.output.shading")
 tooling_views = heavy("feederscrew.output.tooling_views")

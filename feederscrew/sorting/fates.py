@@ -6,12 +6,12 @@ from functools import cached_property
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats
-from feederscrew.bowl.devices import unfit
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats
+from feederscrew.bowl.device_list import unfit
+from feederscrew.bowl.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.sorting import footprints
-from feederscrew.sorting.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.orientations import Hanging, Orientation, hang, may_hang
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
@@ -245,7 +245,9 @@ def at_entry(orientations: Sequence[Orientation], devices: Sequence[Device]) -> 
 
 
 def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
-    """Return the devices that come first and lean the track from its entry on, up to the end of a groove.
+    """Return the devices that come first and lean the track from its entry on.
+
+    Of banks and grooves the first one does: a second one begins at its own place.
 
     Parameters
     ----------
@@ -256,12 +258,13 @@ def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
     -------
     tuple of Device
     """
-    first_devices, grooved = [], False
+    first_devices, is_banked = [], False
     for device in devices:
-        if not device.action.leans or (grooved and device.action is Action.BANK):
+        banks = device.action in (Action.BANK, Action.GROOVE)
+        if not device.action.leans or (is_banked and banks):
             break
         first_devices.append(device)
-        grooved = grooved or device.action is Action.GROOVE
+        is_banked = is_banked or banks
     return tuple(first_devices)
 
 

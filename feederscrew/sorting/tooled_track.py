@@ -17,10 +17,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Floats, Points, Values
+from feederscrew.base.arrays import Floats, Points, Values
+from feederscrew.bowl.devices.base import Device, room_of, size_of
+from feederscrew.bowl.devices.features import Drop, Features, ShopWork, TrackOpening
 from feederscrew.bowl.record import Track
-from feederscrew.sorting.devices.base import Device, room_of, size_of
-from feederscrew.sorting.devices.features import Drop, Features, ShopWork, TrackOpening
 from feederscrew.sorting.fates import leading_devices
 from feederscrew.sorting.orientations import Orientation
 
@@ -146,12 +146,42 @@ class Ledge:
 
 @dataclass(frozen=True)
 class GrooveStretch:
-    """A stretch in which the wall leans back, as the other face of a V."""
+    """A stretch in which the wall leans back, as the other face of a V: from upright to upright."""
 
-    start: float  # [m] s; -inf: from the track's entry on
-    end: float  # [m] s; inf: to the outlet
-    lean: float  # [rad] of the wall from upright
-    opens: float  # [m] over which it opens, and closes
+    leans: tuple[tuple[float, float, float], ...]  # from and to s [m] the wall comes to a lean [rad]; last 0
+
+    @property
+    def start(self) -> float:
+        """S [m] from which it opens; -inf where it is open from the track's entry on."""
+        return self.leans[0][0]
+
+    @property
+    def end(self) -> float:
+        """S [m] from which it closes; inf where it goes on to the outlet."""
+        return self.leans[-1][0]
+
+    @property
+    def closed(self) -> float:
+        """S [m] from which the wall is upright again."""
+        return self.leans[-1][1]
+
+    @property
+    def lean(self) -> float:
+        """The most [rad] by which the wall leans back from upright."""
+        return max(lean for _, _, lean in self.leans)
+
+    def lean_at(self, s: Values) -> Floats:
+        """Return the lean of the wall from upright at some lengths: linear over each change.
+
+        Parameters
+        ----------
+        s : float or (...) float [m]
+
+        Returns
+        -------
+        (...) float [rad]
+        """
+        return changed_at(s, 0.0, self.leans)
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,9 +196,9 @@ class TooledTrack:
     devices: tuple[PlacedDevice, ...]  # in the order parts meet them
     climbs: tuple[tuple[float, float], ...] = ()  # s [m] from which it climbs otherwise, and how [rad]
     banks: tuple[tuple[float, float, float], ...] = ()  # from and to s [m] it twists to another bank [rad]
+    walls: tuple[tuple[float, float, float], ...] = ()  # from and to s [m] the wall comes to a lean [rad]
     drops: tuple[tuple[float, float], ...] = ()  # s and height [m] of each step down
     ledges: tuple[Ledge, ...] = ()
-    grooves: tuple[GrooveStretch, ...] = ()
 
     def climb_at(self, s: Values) -> Floats:
         """Return the climb at some lengths: constant between its changes.
@@ -196,15 +226,10 @@ class TooledTrack:
         -------
         (...) float [rad]
         """
-        bank = np.full(np.shape(s), float(self.track.bank))
-        before = self.track.bank
-        for start, end, after in self.banks:
-            bank = bank + (after - before) * np.clip((np.asarray(s) - start) / (end - start), 0.0, 1.0)
-            before = after
-        return bank
+        return changed_at(s, float(self.track.bank), self.banks)
 
     def wall_lean_at(self, s: Values) -> Floats:
-        """Return the lean of the wall from upright at some lengths; it opens and closes linearly.
+        """Return the lean of the wall from upright at some lengths: linear over each change.
 
         Parameters
         ----------
@@ -214,12 +239,21 @@ class TooledTrack:
         -------
         (...) float [rad]
         """
-        lean = np.zeros(np.shape(s))
-        for groove in self.grooves:
-            opened = np.clip((np.asarray(s) - groove.start) / groove.opens, 0.0, 1.0)
-            closed = np.clip((np.asarray(s) - groove.end) / groove.opens, 0.0, 1.0)
-            lean = np.maximum(lean, groove.lean * opened * (1.0 - closed))
-        return lean
+        return changed_at(s, 0.0, self.walls)
+
+    @property
+    def grooves(self) -> tuple[GrooveStretch, ...]:
+        """The stretches in which the wall leans back; grooves that adjoin are one stretch."""
+        stretches: list[GrooveStretch] = []
+        leans: list[tuple[float, float, float]] = []
+        for change in self.walls:
+            leans.append(change)
+            if change[2] == 0.0:
+                stretches.append(GrooveStretch(tuple(leans)))
+                leans = []
+        if leans:
+            stretches.append(GrooveStretch((*leans, (np.inf, np.inf, 0.0))))
+        return tuple(stretches)
 
     def level_at(self, s: Values) -> Floats:
         """Return the level of the track at some lengths, its climb left out: it falls at each step.
@@ -333,7 +367,7 @@ def lay_out(
     width = track.extent if whole else _drawn_width(track, chain, orientations)
     shown = track if track.width <= track.extent else replace(track, width=width)
     features = _features_along(shown, chain, orientations)
-    twists = _twists(track, features, entry, MIN_TWIST_ROOMS * room_of(orientations))
+    twists = _twists(track, features, entry, MIN_TWIST_ROOMS * room_of(orientations), longest)
     placed = _placed_devices(chain, features, twists, lead, size_of_part(orientations), track.radius)
     length = placed[-1].end if placed else lead
     slots = continue_slots([item.openings for item in placed], length, SLOT_OVERLAP_M)
@@ -355,20 +389,22 @@ def lay_out(
             (begin + own.begin, begin + own.begin + own.length, own.bank)
             for begin, some in zip(begins, twists)
             for own in some
+            if own.bank is not None
         ),
+        walls=_walls(placed, twists, entry),
         drops=tuple((item.begin, item.drop.height) for item in placed if item.drop is not None),
         ledges=_ledges(placed),
-        grooves=_grooves(placed, entry, longest),
     )
 
 
 @dataclass(frozen=True)
 class _Twist:
-    """Where a track twists to another bank, from the origin of the device that banks it."""
+    """Where a track comes to lean otherwise, from the origin of the device that leans it."""
 
     begin: float  # [m]
     length: float  # [m]
-    bank: float  # [rad] behind it
+    bank: float | None  # [rad] behind it; None where that is as before
+    wall: float | None  # [rad] of the wall behind it; None where that is as before
 
 
 def _drawn_width(track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]) -> float:
@@ -398,24 +434,29 @@ def _features_along(
 
 
 def _twists(
-    track: Track, features: Sequence[Features], entry: int, shortest: float
+    track: Track, features: Sequence[Features], entry: int, shortest: float, opens: float
 ) -> list[tuple[_Twist, ...]]:
-    """Return the twists of each device; those of the entry bank the track before it begins.
+    """Return the twists of each device; those of the entry lean the track before it begins.
+
+    A groove's wall leans over the same length as its bank twists: so the V opens and closes evenly.
 
     ``entry`` counts the devices that come first and lean the track from its entry on; ``shortest`` [m] is a
-    twist at least.
+    twist at least, ``opens`` [m] one in which the wall leans.
     """
-    bank, twists = track.bank, []
+    bank, wall, twists = track.bank, 0.0, []
     for number, own in enumerate(features):
         here = []
-        for slope in own.slopes if number >= entry else ():
-            if slope.bank is not None and slope.bank != bank:
+        for slope in own.slopes:
+            new_bank = bank if slope.bank is None else slope.bank
+            new_wall = wall if slope.wall is None else slope.wall
+            if number >= entry and (new_bank, new_wall) != (bank, wall):
                 # by how much the free edge rises or falls
-                edge = track.width * abs(np.sin(slope.bank) - np.sin(bank))
-                here.append(
-                    _Twist(slope.begin, float(max(shortest, edge / np.tan(MAX_EDGE_SLOPE_RAD))), slope.bank)
-                )
-                bank = slope.bank
+                edge = track.extent * abs(np.sin(new_bank) - np.sin(bank))
+                least = shortest if new_wall == wall else max(shortest, opens)
+                length = float(max(least, edge / np.tan(MAX_EDGE_SLOPE_RAD)))
+                changed = new_bank if new_bank != bank else None, new_wall if new_wall != wall else None
+                here.append(_Twist(slope.begin, length, *changed))
+            bank, wall = new_bank, new_wall
         twists.append(tuple(here))
     return twists
 
@@ -449,17 +490,21 @@ def _ledges(placed: Sequence[PlacedDevice]) -> tuple[Ledge, ...]:
     )
 
 
-def _grooves(placed: Sequence[PlacedDevice], entry: int, opens: float) -> tuple[GrooveStretch, ...]:
-    """Return the stretches in which the wall leans back; at the entry from the first of the track on."""
-    grooves: list[GrooveStretch] = []
-    for number, item in enumerate(placed):
-        for slope in item.features.slopes:
-            at = -np.inf if number < entry else item.begin + slope.begin
-            if slope.wall is not None and grooves and np.isinf(grooves[-1].end):
-                grooves[-1] = replace(grooves[-1], end=at)
-            if slope.wall:
-                grooves.append(GrooveStretch(at, np.inf, slope.wall, opens))
-    return tuple(groove for groove in grooves if groove.end > groove.start)
+def _walls(
+    placed: Sequence[PlacedDevice], twists: Sequence[tuple[_Twist, ...]], entry: int
+) -> tuple[tuple[float, float, float], ...]:
+    """Return where the wall comes to lean; at the entry before the first of the track."""
+    leading = (slope.wall for item in placed[:entry] for slope in item.features.slopes)
+    first = [(-np.inf, -np.inf, lean) for lean in leading if lean]
+    return (
+        *first,
+        *(
+            (item.begin + own.begin, item.begin + own.begin + own.length, own.wall)
+            for item, some in zip(placed, twists)
+            for own in some
+            if own.wall is not None
+        ),
+    )
 
 
 def continue_slots(
@@ -494,6 +539,32 @@ def continue_slots(
             end, last = slots[0].begin + overlap, False
         continued.append(here)
     return continued[::-1]
+
+
+def changed_at(s: Values, first: float, changes: Sequence[tuple[float, float, float]]) -> Floats:
+    """Return a value along a track at some lengths: linear over each of its changes.
+
+    Parameters
+    ----------
+    s : float or (...) float [m]
+    first : float [rad]
+        Before all changes.
+    changes : sequence of (float [m], float [m], float [rad])
+        From and to which length it comes to another value; from -inf of one that holds from the entry on.
+
+    Returns
+    -------
+    (...) float [rad]
+    """
+    value, before = np.full(np.shape(s), first), first
+    for start, end, after in changes:
+        is_sudden = not np.isfinite(start) or end <= start
+        share = (
+            (np.asarray(s) >= start) if is_sudden else np.clip((np.asarray(s) - start) / (end - start), 0, 1)
+        )
+        value = value + (after - before) * share
+        before = after
+    return value
 
 
 def clear_behind(begin: float, features: Features, size: float) -> float:

@@ -8,18 +8,18 @@ from enum import Enum, auto
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrivals.kernel import body
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import zero_rows
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
-from feederscrew.dropping.kernel import body
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import zero_rows
+from feederscrew.feeding import stream
 from feederscrew.part.record import Part
-from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.sorting.tooled_track import lay_out, size_of_part
 from feederscrew.trials import course, part_poses, runs, staging
@@ -38,9 +38,10 @@ BACKED_UP_SECONDS = 0.5  # a part that stands at a pressure break so long, and i
 STANDING_WAY = 0.05  # [L] of the part's length: a part that has come no further since its last mark stands
 PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
 CARRIED_SHARE = 0.1  # [1] of its weight: a part of which others carry more, and which lies higher than
-CLIMB_HEIGHT = 0.02  # [L] over the first level of the track, has climbed on others
+CLIMB_HEIGHT = 0.02  # [L] over the track at its place, has climbed on others
 WHOLE_PERIOD_TOLERANCE = 1e-6  # of a period: a time so little longer than whole periods is that of them
 PITCHES_BEFORE = 2.0  # greatest pitches of parts that come with room for a sensor: track before its devices
+SEEN_AGAIN_WAY = 0.5  # [L] back from a sensor: a part that comes again from there is seen again
 SPEED_PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
 TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
 
@@ -53,7 +54,21 @@ class CrowdedTrack:
     start: float  # [m] along the wall, where the drawn track begins
     windows: Floats  # (D, 2) [m] where each device's stretch begins and ends
     levels: Floats  # (D + 1,) [m] of the track before the first device and behind each
+    changes: Floats  # (D,) [m] along the wall, where it is at the level behind each device
     outlet: float  # [m] behind the last of them
+
+    def level_at(self, place: float) -> float:
+        """Return the level of the track at a place along the wall: of a ledge its own, up to its end.
+
+        Parameters
+        ----------
+        place : float [m]
+
+        Returns
+        -------
+        float [m]
+        """
+        return float(self.levels[int(np.searchsorted(self.changes, place, side="right"))])
 
 
 def lay_out_track(
@@ -80,10 +95,11 @@ def lay_out_track(
     tooled = lay_out(track, devices, orientations, whole=True)
     end = tooled.length + TAIL * size
     placed = staging.place_all(tooled, end, size)
-    levels = [0.0]
+    levels, changes = [0.0], []
     for item in placed:
         drop = item.features.drop
         levels.append(levels[-1] - (0.0 if drop is None else drop.height * float(np.cos(item.bank))))
+        changes.append(item.begin + (0.0 if drop is None or drop.aside <= 0.0 else item.features.length))
     # The bare track has the bowl's climb: a spacing section leads down from its own place on.
     first = [replace(slope, climb=None) for slope in staging.entry_slopes(devices, track, orientations)]
     blown = staging.place_air(placed, track, orientations)
@@ -98,7 +114,8 @@ def lay_out_track(
     )
     windows = [(item.start, item.end) for item in tooled.devices]
     spans = check.frozen(np.reshape(windows, (-1, 2)).astype(float))
-    return CrowdedTrack(stage, -room, spans, check.frozen(np.array(levels)), tooled.length)
+    heights = check.frozen(np.array(levels)), check.frozen(np.array(changes, float))
+    return CrowdedTrack(stage, -room, spans, *heights, tooled.length)
 
 
 Reaches = dict[int, list[float]]  # [L] by part: rear and front along the wall, and its lowest point
@@ -129,13 +146,14 @@ class PartsOnTrack:
     def __init__(self, part_in_bowl: runs.BowlOfPart, track: CrowdedTrack, count: int) -> None:
         self.part_in_bowl, self.solid, self.stage = part_in_bowl, part_in_bowl.solid, track.stage
         self.hull = part_in_bowl.solid.corners[part_in_bowl.solid.outer]
-        self.windows, self.levels = track.windows, track.levels
+        self.track = track
         self.surface = runs.surface_of(part_in_bowl, track.stage)
         self.arrays = runs.workspace_of(part_in_bowl.solid, self.surface, count)
         self.is_on = np.zeros(count, bool)
         self.period = 2.0 * np.pi / part_in_bowl.floor.rate
         self.last_ways = np.full((SPEED_PERIODS, count), np.nan)  # ways of each, of the last periods
         self.pulses = [staging.Pulses() for _ in track.stage.air.watches]
+        self.was_seen = np.zeros((len(self.pulses), count), bool)  # by each sensor, since it came to it
 
     def lay(self, n: int, state: State) -> None:
         """Put a part onto the track.
@@ -149,6 +167,7 @@ class PartsOnTrack:
         self.arrays.states[n] = state
         runs.forget(self.arrays, n)
         self.last_ways[:, n] = np.nan
+        self.was_seen[:, n] = False
         self.is_on[n] = True
 
     def take(self, n: int) -> None:
@@ -199,7 +218,8 @@ class PartsOnTrack:
         """Let sensors look at the parts whose centres of mass have come past them in a period.
 
         What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
-        it comes to them at its mean speed of the last periods.
+        it comes to them at its mean speed of the last periods; at that of this one where it has come no
+        further in those. A part that rocks is seen once, until it has gone back by ``SEEN_AGAIN_WAY``.
 
         Parameters
         ----------
@@ -215,14 +235,17 @@ class PartsOnTrack:
         self.last_ways[1:] = self.last_ways[:-1]
         self.last_ways[0] = before
         now, length = turn * self.period, self.part_in_bowl.length
-        for watch, pulses in zip(self.stage.air.watches, self.pulses):
+        for watch, pulses, was_seen in zip(self.stage.air.watches, self.pulses, self.was_seen):
             place = watch.place / length
-            for n in [n for n in rows if before[n] < place <= after[n]]:
+            was_seen &= after >= place - SEEN_AGAIN_WAY
+            for n in [n for n in rows if before[n] < place <= after[n] and not was_seen[n]]:
+                was_seen[n] = True
                 states = self.arrays.states[[n, *self.parts_near(n, rows, watch.sensor.resolution)]]
-                level = float(self.levels[int(np.searchsorted(self.windows[:, 1], watch.place))])
+                level = self.track.level_at(watch.place)
                 if runs.blows_off(watch.sensor, self.part_in_bowl, states, level):
                     noted = self.last_ways[np.isfinite(self.last_ways[:, n]), n]
                     speed = (after[n] - noted[-1]) / (len(noted) * self.period)
+                    speed = speed if speed > 0.0 else (after[n] - before[n]) / self.period
                     left = max(watch.nozzles / length - after[n], 0.0)
                     pulses.set_off(now + left / speed, watch.seconds / self.part_in_bowl.unit)
             self.surface.jets.begin[watch.jets], self.surface.jets.end[watch.jets] = pulses.next(now)
@@ -339,7 +362,7 @@ class PartsQueue:
     poses : sequence of Orientation
         As of ``queue_of``.
     plan : QueuePlan
-        Its seconds are not looked at: ``follow`` says how long the queue goes on.
+        ``follow`` says how long the queue goes on; the frames for a film are spread over the plan's seconds.
     seed : int
         Of play, gaps, tilt and the order of the orientations.
     """
@@ -421,10 +444,10 @@ class PartsQueue:
         KeyboardInterrupt
             If the user stops it: ``result`` has the periods until then.
         """
-        count = self.periods_in(seconds)
+        count, planned = self.periods_in(seconds), self.periods_in(self.plan.seconds)
         while self.periods < count:
             self.ride(self.periods)
-            if self.periods * self.plan.frames >= (len(self.poses) + 1) * count:
+            if self.periods * self.plan.frames >= (len(self.poses) + 1) * planned:
                 # Where all parts are, for a film.
                 states = self.crowd.arrays.states
                 places, attitudes = states[:, :3] * self.part_in_bowl.length, states[:, body.Q : body.Q + 4]
@@ -497,7 +520,8 @@ class PartsQueue:
         forces = self.crowd.forces
         counts.touch_shares.append((forces[lying, BEHIND] > 0.0).mean())
         for n in lying.tolist():  # parts that have come to lie on others
-            climbed = bool(forces[n, BELOW] > CARRIED_SHARE and reach[n][2] > CLIMB_HEIGHT)
+            over = reach[n][2] - self.track.level_at(after[n] * length) / length
+            climbed = bool(forces[n, BELOW] > CARRIED_SHARE and over > CLIMB_HEIGHT)
             counts.climbs += climbed and not self.on_others[n]
             self.on_others[n] = climbed
         for n in order:

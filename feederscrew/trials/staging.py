@@ -10,12 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Floats
-from feederscrew.bowl.record import Track
-from feederscrew.geometry.compiled import frozen_rows
-from feederscrew.geometry.polygons import cross
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.features import (
+from feederscrew.base.arrays import Floats
+from feederscrew.base.geometry.compiled import frozen_rows
+from feederscrew.base.geometry.polygons import cross
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.features import (
     LONGEST_RAMP_SINE,
     Blade,
     Drop,
@@ -25,7 +24,8 @@ from feederscrew.sorting.devices.features import (
     TrackOpening,
     box_ring,
 )
-from feederscrew.sorting.devices.openings import beyond_borders
+from feederscrew.bowl.devices.openings import beyond_borders
+from feederscrew.bowl.record import Track
 from feederscrew.sorting.fates import leading_devices
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M, Orientation
 from feederscrew.sorting.tooled_track import (
@@ -52,6 +52,7 @@ TRACK_FRICTION = np.nan  # friction of a plate that has that of the track
 # of the part's size
 BLEND = 0.25  # way over which a climb, or a bank of the entry, becomes the next
 OPENS = 1.0  # way over which a lean of wall becomes the next
+MAX_LEAN_STEP_RAD = np.radians(2.0)  # [rad] between two places of a twist: between them sines are linear
 
 # A plate: frame (4, 3), depth [m], friction [1], and borders (B, 10).
 Plate = tuple[Floats, float, float, Floats]
@@ -66,7 +67,7 @@ class PlacedSlope(NamedTuple):
     climb: float | None = None  # [rad]
     bank: float | None = None  # [rad]
     wall: float | None = None  # [rad] lean of the wall
-    over: float | None = None  # [m] along the wall, up to this lean; None: by the part's size
+    over: float | None = None  # [m] along the wall, over which it comes to lean so; None: by the part's size
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +80,7 @@ class Placement:
     last: float  # [m] where the track above its step is drawn to, at most
     bank: float = 0.0  # [rad] of the track there
     climb: float = 0.0  # [rad]
-    over: tuple[float | None, ...] = ()  # [m] of each of its slopes, over which the bank changes
+    over: tuple[float | None, ...] = ()  # [m] of each of its slopes, over which the track comes to lean so
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +219,7 @@ def stage_placed(
     Stage
     """
     placed, size = tooled.devices[number], size_of_part(orientations)
-    features, over = placed.features, bank_lengths(tooled, placed)
+    features, over = placed.features, lean_lengths(tooled, placed)
     begin = -CLEAR_SIZES * size
     beyond = max([clear_behind(0.0, features, size), *(way for way in over if way is not None)])
     ends = begin - DRAWN_BEFORE * size, beyond + DRAWN_AFTER * size
@@ -281,14 +282,14 @@ def place_all(tooled: TooledTrack, end: float, size: float) -> list[Placement]:
             end if placed.end == tooled.length else placed.end,
             float(tooled.bank_at(placed.begin)),
             float(tooled.climb_at(placed.begin)),
-            bank_lengths(tooled, placed),
+            lean_lengths(tooled, placed),
         )
         for placed in opened.devices
     ]
 
 
-def bank_lengths(tooled: TooledTrack, placed: PlacedDevice) -> tuple[float | None, ...]:
-    """Return over which length of the wall each slope of a device changes the bank.
+def lean_lengths(tooled: TooledTrack, placed: PlacedDevice) -> tuple[float | None, ...]:
+    """Return over which length of the wall the track comes to lean as each slope of a device says.
 
     Parameters
     ----------
@@ -298,12 +299,10 @@ def bank_lengths(tooled: TooledTrack, placed: PlacedDevice) -> tuple[float | Non
     Returns
     -------
     tuple of float [m] or None
-        None where it leaves the bank, leans the wall, or begins at the track's entry.
+        None where it leaves bank and wall as they are, or begins at the track's entry.
     """
-    twists = {start: end - start for start, end, _ in tooled.banks}
-    return tuple(
-        None if slope.wall else twists.get(placed.begin + slope.begin) for slope in placed.features.slopes
-    )
+    twists = {start: end - start for start, end, _ in (*tooled.banks, *tooled.walls)}
+    return tuple(twists.get(placed.begin + slope.begin) for slope in placed.features.slopes)
 
 
 def stage_bare_track(
@@ -656,7 +655,11 @@ def tabulate_leans(
         new = slope.climb, slope.bank, slope.wall
         before, here = here, tuple(old if value is None else value for old, value in zip(here, new))
         over = (BLEND if here[-1] == before[-1] else OPENS) * size if slope.over is None else slope.over
-        rows.append((slope.place / length + over / length, *here))
+        most = max(abs(new - old) for old, new in zip(before, here))
+        count = max(int(np.ceil(most / MAX_LEAN_STEP_RAD)), 1)
+        for share in np.arange(1, count + 1) / count:  # angles are linear over a twist
+            between = (old + share * (new - old) for old, new in zip(before, here))
+            rows.append(((slope.place + share * over) / length, *between))
     leans = []
     for place, rise, tilt, wall in rows:
         c, s, off = np.cos(rise), np.sin(rise), tilt - wall

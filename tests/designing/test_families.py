@@ -9,11 +9,11 @@ import shapes
 from design_counts import design_study
 
 from feederscrew import bowl as bowls
+from feederscrew.base.errors import FeederError
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.designing import families
 from feederscrew.designing.record import DesignRequest
-from feederscrew.errors import FeederError
 from feederscrew.output import design_pages
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.isolating.chain import Cut
 
 SMALL, LARGE = shapes.part(shapes.box(10, 8, 4), "small"), shapes.part(shapes.box(14, 11, 6), "large")

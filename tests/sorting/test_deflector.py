@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from on_track import LEVEL, block, device, lying, pick, read
 
-from feederscrew.errors import Faults
+from feederscrew.base.errors import ConfigError, Faults
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 
 
@@ -49,3 +49,9 @@ def test_what_a_file_says_of_a_deflector_comes_back_as_it_was(tmp_path):
     assert blade.document_values() == pytest.approx({"value_mm": 6.3, "from_deg": 12.0, "to_deg": 50.0})
     with pytest.raises(Faults, match="bends back"):
         read(tmp_path, "curved deflector: {clearance: 6 mm, from: 40 deg, to: 30 deg}")
+
+
+def test_a_face_that_meets_the_wall_again_is_refused():
+    """A chord of 14.7 deg leaves a wall of 80 mm by R (1 - cos) at most, 2.6 mm: no piece reaches 24 mm."""
+    with pytest.raises(ConfigError, match="its face from 12 deg on meets the wall before the free edge"):
+        deflector(6.3, end=15.0).features(replace(LEVEL, radius=80e-3, width=24e-3), lying(block()))

@@ -8,14 +8,14 @@ import pytest
 from block_rides import ALONG, ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SHARES, SOLID, laid, lying, still
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.kernel import body
+from feederscrew.base.running import USUAL_RUN, RunSettings
+from feederscrew.bowl.devices.kinds import KINDS, make_device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Friction
-from feederscrew.conveying import answer
-from feederscrew.dropping.kernel import body
-from feederscrew.rates import stream
+from feederscrew.feeding import stream
+from feederscrew.motion import conveying as answer
 from feederscrew.resting import profiles
-from feederscrew.running import USUAL_RUN, RunSettings
-from feederscrew.sorting.devices.kinds import KINDS, make_device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import part_poses, queue, result, runs
 from feederscrew.trials.kernel.steps import BEHIND, BELOW
@@ -338,3 +338,39 @@ def test_the_break_that_is_proposed_carries_what_is_wanted_and_no_more_than_it_h
     assert kind.relieving([one, replace(one, width=6.3e-3)], 2.5e-4, "design") is None
     hopping = kind.relieving([replace(one, hop=1e-3)], 2.5e-4, "design")
     assert hopping.limit == pytest.approx(device.limit + 1e-3)
+
+
+def test_who_lies_on_another_behind_a_step_has_climbed_as_before_it():
+    """Behind a step of 8 mm a block on another lies 3 mm below the first level: it was not counted."""
+    for place in (0.02, -0.05):
+        bowl = replace(STILL, devices=(make_device("step", "s", limit=8e-3),))
+        row = queue.PartsQueue(PART, bowl, ASPECTS, (EVERY, SHARES), EVERY, QueuePlan(2, 1.0), 1)
+        (begin,) = row.track.changes
+        level = row.track.level_at(begin + place)
+        assert level == (-8e-3 if place > 0.0 else 0.0)
+        for n, height in enumerate((0.0, 5e-3)):
+            state = laid(PART, FLAT, bowl, place=begin + place, aside=1e-3)
+            state[body.Z] += (level + height) / LENGTH
+            row.crowd.lay(n, state)
+        row.waiting_parts = []
+        row.follow(0.1)
+        assert row.counts.climbs == 1
+
+
+def test_the_level_beside_a_ledge_is_that_of_the_ledge_up_to_its_end():
+    line = queue.lay_out_track(BOWL, EVERY, (make_device("tipping ledge", "t", limit=6e-3),), 0.1)
+    (end,) = line.changes
+    height = max(one.length for one in EVERY) / 2.0  # half the greatest length
+    assert line.level_at(end - 1e-6) == 0.0 and line.level_at(end) == pytest.approx(-height)
+    assert end < line.outlet
+
+
+def test_frames_of_a_queue_are_the_same_whether_it_is_followed_at_once_or_in_bits():
+    plan = QueuePlan(2, 0.4, 0.0, 8)
+    rows = [queue.PartsQueue(PART, BOWL, ASPECTS, (EVERY, SHARES), EVERY, plan, 1) for _ in range(2)]
+    rows[0].follow(0.4)
+    for seconds in (0.1, 0.25, 0.4):
+        rows[1].follow(seconds)
+    assert [one[0] for one in rows[0].moments] == [one[0] for one in rows[1].moments]
+    assert len(rows[0].moments) == 8
+    np.testing.assert_array_equal(rows[0].poses, rows[1].poses)

@@ -7,10 +7,10 @@ import pytest
 from block_rides import ASPECTS, LENGTH, PART, SOLID, laid, ridden, still
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping.kernel import body
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.kinds import make_device
-from feederscrew.sorting.devices.pneumatics import Nozzles, thrust
+from feederscrew.arrivals.kernel import body
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.bowl.devices.pneumatics import Nozzles, thrust
 from feederscrew.sorting.orientations import add_travel, orientations, travel_speed
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import course, queue, runs, staging
@@ -131,3 +131,26 @@ def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():
     mean = 3.1 * moved / (4 * parts.period)
     left = watch.nozzles / LENGTH - (place[0] + 0.05 * moved)
     assert parts.surface.jets.begin[watch.jets] == pytest.approx(10 * parts.period + left / mean)
+
+
+def test_a_part_that_rocks_at_a_sensor_is_seen_once_and_its_pulse_is_none_of_the_past():
+    """Three periods of 2 mm back, then 0.2 mm past the sensor: its mean speed is below 0."""
+    line, parts = parts_on(SORTING)
+    (watch,) = line.stage.air.watches
+    across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
+    parts.lay(0, laid(PART, across, BOWL, place=watch.place))
+    place, moved = np.array([watch.place / LENGTH]), 2e-3 / LENGTH
+    for step in range(3):
+        parts.watch([0], place + (2.9 - step) * moved, place + (1.9 - step) * moved, 10 + step)
+    parts.watch([0], place - 0.05 * moved, place + 0.05 * moved, 14)
+    left = watch.nozzles / LENGTH - (place[0] + 0.05 * moved)
+    ((begin, _),) = parts.pulses[0].log
+    assert begin == pytest.approx(14 * parts.period + left / (0.1 * moved / parts.period))
+    for turn in range(15, 25):  # it rocks
+        ends = place + 0.05 * moved, place - 0.05 * moved
+        parts.watch([0], *(ends if turn % 2 else ends[::-1]), turn)
+    assert len(parts.pulses[0].log) == 1
+    # half a part's length back it comes anew
+    parts.watch([0], place, place - 0.6, 30)
+    parts.watch([0], place - 0.6, place + 0.01, 31)
+    assert len(parts.pulses[0].log) == 2

@@ -13,8 +13,8 @@ from html import unescape
 from importlib import resources
 from itertools import groupby
 
-from feederscrew.columns import Frame
-from feederscrew.errors import printable
+from feederscrew.base.columns import Frame
+from feederscrew.base.errors import printable
 from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
 from feederscrew.output.page.words import GLOSSARY

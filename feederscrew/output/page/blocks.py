@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from feederscrew.columns import Frame
-from feederscrew.errors import Detail
+from feederscrew.base.columns import Frame
+from feederscrew.base.errors import Detail
 
 
 @dataclass(frozen=True)
