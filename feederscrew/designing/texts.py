@@ -60,7 +60,7 @@ def fault_text(fault: Fault) -> str:
         case FaultKind.LOST:
             text = f"{fault.orientation} is lost ({ends_text(fault.ends) or Fate.TURNED.word})"
         case FaultKind.CARRIED:
-            text = f"{fault.orientation} is carried through"
+            text = f"{fault.orientation} leaves too"
         case FaultKind.STAYS:
             text = f"{fault.orientation} stays ({ends_text(fault.ends)})"
         case FaultKind.NOT_RUN:
