@@ -321,7 +321,18 @@ def _change_by_proof(
             or proposals.purify(candidate, study.left_instead)
             or proposals.spread_apart(candidate, search.request.without)
         )
-    return None if changed is None else exploring.try_again(search, candidate, changed, candidate.bowl)
+    if changed is None:
+        return None
+    tried = exploring.try_again(search, candidate, changed, candidate.bowl)
+    if tried.attempt.clean or search.is_spent or not _loses_wanted(tried):
+        return tried
+    # at one device more what hops is lost: a calmer drive carries it past both
+    return exploring.try_calmer(search, tried) or tried
+
+
+def _loses_wanted(candidate: Candidate) -> bool:
+    """Whether a trial of a candidate lost parts of what is wanted."""
+    return any(fault.kind is FaultKind.LOST for fault in candidate.attempt.faults)
 
 
 def _leaves_over_slot(study: DesignStudy, candidate: Candidate) -> bool:
