@@ -232,17 +232,30 @@ class CapSelector(_Bay):
         middle = max(one.orientation.distance for one in (*wanted, *mouths))
         longest = max(one.orientation.length for one in mouths)
         best, most = None, 0.0
-        for land, length, tongue, reach in itertools.product(LANDS, LENGTHS, TONGUES, REACHES):
-            sizes = land * middle, longest + length * mouth, tongue * mouth, middle + reach * mouth
-            made = [round(size / SHOP_STEP_M) * SHOP_STEP_M for size in sizes]
+        sizes = list(itertools.product(LANDS, LENGTHS, TONGUES, REACHES))
+        for land, length, tongue, reach in sorted(sizes, key=lambda size: -_free_way(*size[1:])):
+            free = _free_way(length, tongue, reach) * mouth
+            if free <= most:  # nor has any of the rest a longer one
+                break
+            made = [
+                round(size / SHOP_STEP_M) * SHOP_STEP_M
+                for size in (land * middle, longest + length * mouth, tongue * mouth, middle + reach * mouth)
+            ]
             selector = cls(where, made[0], length=made[1], tongue=made[2], reach=made[3])
             if selector.misfits(wanted[0].orientation.track.extent):
                 continue
-            # the way over which neither tongue nor ends hold the rim: on a short one it catches as it tips
-            free = min(length, 2.0 * math.sqrt(1.0 - reach**2) - tongue) * mouth
-            passes = min(selector.judged(one).margin for one in wanted)
-            if min(free, passes) > most:
-                rims = min(-selector.judged(one).margin for one in mouths)
-                if min(free, passes, rims) > most:
-                    best, most = selector, min(free, passes, rims)
+            margin = free
+            for sign, encounters in ((1.0, wanted), (-1.0, mouths)):
+                for one in encounters:
+                    margin = min(margin, sign * selector.judged(one).margin) if margin > most else 0.0
+            if margin > most:
+                best, most = selector, margin
         return [best.rewritten()] if best else []
+
+
+def _free_way(length: float, tongue: float, reach: float) -> float:
+    """The way [1] over which neither tongue nor ends hold the rim: on a short one it catches as it tips.
+
+    All are shares of the mouth's radius, the length that by which the bay is longer than the part.
+    """
+    return min(length, 2.0 * math.sqrt(1.0 - reach**2) - tongue)
