@@ -132,15 +132,16 @@ def bowl_of(tooled, every):
 
 def thickness(difference):
     """How wide [m] a difference of two areas is where it is widest, to a micrometre or so."""
-    low, high = 0.0, 8e-3
+
+    def is_thinner(width):
+        return difference.buffer(-0.5 * width, join_style="mitre").is_empty
+
     if difference.is_empty:
         return 0.0
+    low, high = 0.0, NEAR if is_thinner(NEAR) else 8e-3
     while high - low > 1e-6:
         middle = 0.5 * (low + high)
-        if difference.buffer(-0.5 * middle, join_style="mitre").is_empty:
-            high = middle
-        else:
-            low = middle
+        low, high = (low, middle) if is_thinner(middle) else (middle, high)
     return high
 
 
