@@ -116,7 +116,9 @@ def draw_chain(seed, every):
 @functools.cache
 def drawn(seed, radius):
     """Everything that is made of the chain of a seed on a bowl of a radius [m]."""
-    track = Track(climb=np.radians(3.5), bank=np.radians(4.0 * (seed % 5 == 2)), radius=radius, width=24e-3)
+    track = Track(
+        climb=np.radians(3.5), bank=np.radians(4.0 * (seed % 5 in (1, 2))), radius=radius, width=24e-3
+    )
     every = orientations(part(), find(part()), track)
     chain = draw_chain(seed, every)
     return track, every, chain, lay_out(track, chain, every)

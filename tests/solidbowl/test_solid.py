@@ -259,8 +259,9 @@ def test_beds_that_are_none(text, line):
     assert str(fault.value).startswith(line)
 
 
-# In closed form: a bowl of 300 mm, a track of 20 mm that climbs at 3.5 deg, a gap of 9 mm between
-# parallel edges, and a part of which 18 x 14 mm set its size. Room for 0.6 of that to either side of a device; 10 mm behind.
+# In closed form: a bowl of 300 mm, a track of 20 mm that climbs at 3.5 deg, a gap of 9 mm between parallel
+# edges, and a part of which 18 x 14 mm set its size. Room for 0.6 of that to either side of a device; 10 mm
+# behind.
 RISE, ROUND, SIZE = np.tan(np.radians(3.5)), 2.0 * np.pi * 150.0, np.hypot(18.0, 14.0)  # [1], [mm]
 GAP_LENGTH = 150.0 * np.arcsin(9.0 / 130.0)  # at the wall, of 9 mm at the free edge
 NEEDED = 1.2 * SIZE + GAP_LENGTH + 10.0
