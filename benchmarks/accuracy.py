@@ -19,10 +19,10 @@ import intervals
 import numpy as np
 from bodies import MADE, ROOT, ROUND, Body, made, rounds, shapes
 
+from feederscrew.feeding.compare import compare_sets
 from feederscrew.part import load
 from feederscrew.resting.deviation import total_variation
 from feederscrew.resting.rules.recommended import LAUNCH_NAMES
-from feederscrew.studies.compare import compare_sets
 
 MORE = 10  # times the drops, on measured sets
 

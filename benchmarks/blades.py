@@ -11,16 +11,16 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
+from feederscrew.base.running import RunSettings
+from feederscrew.base.units import GRAVITY
+from feederscrew.bowl.devices.base import RETURNED
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.base import RETURNED
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.falling import along_blade
 from feederscrew.sorting.orientations import add_travel, orientations
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 from feederscrew.trials import course
 from feederscrew.trials.course import Fate
-from feederscrew.units import GRAVITY
 
 DRIVES = ((50, 25, 0.95), (50, 25, 1.3), (50, 20, 1.8), (100, 20, 2.2))  # [Hz], [deg], throw number
 BLADES = ((20, 0.6), (30, 0.6), (30, 0.3), (45, 0.6))  # sweep [deg] and friction [1] of the face

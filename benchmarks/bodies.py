@@ -9,10 +9,10 @@ from types import SimpleNamespace
 import numpy as np
 import trimesh
 
-from feederscrew.dropping import drop_test, launch_conditions
+from feederscrew.arrivals import drop_test, launch_conditions
+from feederscrew.base.running import RunSettings
 from feederscrew.resting.aspects import find, require_ground
 from feederscrew.resting.rules.formulas import surface_weights
-from feederscrew.running import RunSettings
 
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "tests/support"))

@@ -18,13 +18,13 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from feederscrew.dropping import ensemble
-from feederscrew.dropping.kernel import body, falling
-from feederscrew.dropping.kernel.falling import Steps
-from feederscrew.dropping.kernel.floor_motion import at_rest
-from feederscrew.dropping.launch_conditions import PRESETS
-from feederscrew.dropping.rounded_hull import shape_of_part
-from feederscrew.geometry.compiled import entry
+from feederscrew.arrivals import ensemble
+from feederscrew.arrivals.kernel import body, falling
+from feederscrew.arrivals.kernel.falling import Steps
+from feederscrew.arrivals.kernel.floor_motion import at_rest
+from feederscrew.arrivals.launch_conditions import PRESETS
+from feederscrew.arrivals.rounded_hull import shape_of_part
+from feederscrew.base.geometry.compiled import entry
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 

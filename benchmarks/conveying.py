@@ -17,9 +17,9 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests/support"))
 import waits
 from conveying_reference import Reference, random_settings
 
-from feederscrew.conveying import answer, steady
-from feederscrew.conveying.operating_point import OperatingPoint, plain
-from feederscrew.mechanics import limits
+from feederscrew.motion import conveying as answer
+from feederscrew.motion import limits, steady
+from feederscrew.motion.operating_point import OperatingPoint, plain
 
 TARGETS = {0.0: (60_000, 1_600), 0.3: (12_000, 300)}  # points a second: compiled, plain Python
 SPEED_UP = 15.0

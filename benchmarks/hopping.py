@@ -14,9 +14,9 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests/support"))
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer
+from feederscrew.base.running import RunSettings
+from feederscrew.motion import conveying as answer
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
 from feederscrew.sorting.orientations import orientations
 from feederscrew.trials import long_ride
 

@@ -11,7 +11,7 @@ a standard deviation that all launches have in common and that is not known but 
 import numpy as np
 from scipy import optimize, stats
 
-from feederscrew.dropping.ensemble import NORMAL_95
+from feederscrew.arrivals.ensemble import NORMAL_95
 from feederscrew.resting.deviation import total_variation
 from feederscrew.resting.rules import recommended
 

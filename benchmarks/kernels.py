@@ -16,8 +16,8 @@ import numpy as np
 import speed
 import waits
 
-from feederscrew.conveying import answer
-from feederscrew.conveying.operating_point import plain
+from feederscrew.motion import conveying as answer
+from feederscrew.motion.operating_point import plain
 
 POINTS = 20_000
 PAIRS = 3

@@ -10,9 +10,9 @@ import sys
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.base.running import RunSettings
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
 from feederscrew.sorting.orientations import orientations
 from feederscrew.trials.long_ride import LEFT, ride_of_track
 

@@ -1,7 +1,7 @@
 """Small changes to the physics, one at a time, and whether the tests notice: `make mutants`.
 
 Examples: python benchmarks/mutants.py --each 12 --seed 1
-          python benchmarks/mutants.py rates.tipping.goes_over machine.sizing
+          python benchmarks/mutants.py sorting.tipping.goes_over machine.sizing
           python benchmarks/mutants.py sorting.falling.may_wedge --tests tests/sorting/test_holding.py
 
 A name is that of a module, function, method or constant below `feederscrew`. The operators change numbers,
@@ -24,51 +24,51 @@ import numpy as np
 
 ROOT = Path(__file__).parent.parent
 SIZING = "tests/machine/test_sizing_rules.py"
-ROCKING = "tests/rates/test_rocking_noticed.py"
+ROCKING = "tests/feeding/test_rocking_noticed.py"
 HOLDING = "tests/sorting/test_holding.py"
 VERDICTS = "tests/sorting/test_verdicts.py"
-LEDGES = f"{VERDICTS} {HOLDING} tests/rates/test_tipping.py"
-RATES = "tests/rates/test_rate.py"
+LEDGES = f"{VERDICTS} {HOLDING} tests/sorting/test_tipping.py"
+RATES = "tests/feeding/test_rate.py"
 CONDITION = "tests/machine/test_condition.py"
 JUDGED = "tests/resting/test_judged_by_measurement.py"
-TIPPING = "tests/rates/test_tipping.py"
+TIPPING = "tests/sorting/test_tipping.py"
 SIGNS = "tests/trials/test_trial_signs.py"
 TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "machine.sizing": f"{SIZING} tests/cli/test_cli_bowl.py",
     "machine.condition._of_stroke": CONDITION,
     "machine.condition._why": CONDITION,
-    "rates.tipping.goes_over": ROCKING,
-    "rates.tipping": f"{RATES} {ROCKING} {TIPPING}",
-    "rates.well_oriented": RATES,
-    "rates.stream.Orientations.sure": "tests/rates/test_tipping.py -k round",
+    "sorting.tipping.goes_over": ROCKING,
+    "sorting.tipping": f"{RATES} {ROCKING} {TIPPING}",
+    "feeding.well_oriented": RATES,
+    "feeding.stream.Orientations.sure": "tests/sorting/test_tipping.py -k round",
     "resting.rules.recommended.HOP_SHARES": JUDGED,
     "resting.rules.recommended.LAUNCH_WIDTH": JUDGED,
     "resting.rules.recommended.WIDTH_FLOOR": JUDGED,
     "sorting.verdicts.WORN": HOLDING,
     "sorting.falling": HOLDING,
     "sorting.verdicts": HOLDING,
-    "sorting.devices.blades": f"{VERDICTS} tests/sorting/test_clearing.py",
-    "sorting.devices.ledges": LEDGES,
-    "sorting.devices.ledges.Tip.judged": HOLDING,
-    "sorting.devices.openings": LEDGES,
-    "sorting.devices.pneumatics.SteadyJet": VERDICTS,
-    "trials.course": "tests/studies/test_trial_numbers.py tests/trials/test_trial_course.py",
-    "trials.result": "tests/studies/test_trial_numbers.py tests/cli/test_cli_trial.py",
+    "bowl.devices.blades": f"{VERDICTS} tests/sorting/test_clearing.py",
+    "bowl.devices.ledges": LEDGES,
+    "bowl.devices.ledges.Tip.judged": HOLDING,
+    "bowl.devices.openings": LEDGES,
+    "bowl.devices.pneumatics.SteadyJet": VERDICTS,
+    "trials.course": "tests/trials/test_trial_numbers.py tests/trials/test_trial_course.py",
+    "trials.result": "tests/trials/test_trial_numbers.py tests/cli/test_cli_trial.py",
     "trials.queue.PartsQueue.enter": "tests/trials/test_trial_queue.py -k 'enter or wait'",
     "trials.kernel.steps._want_no_strike": f"{SIGNS} -k 'slides and 0.2'",
     "trials.kernel.steps._stand_share": f"{SIGNS} -k stand",
     "trials.kernel.steps._add_forces": f"{SIGNS} -k air",
     "trials.kernel.track_contacts.wall_friction": f"{SIGNS} -k 'brake and 0.7'",
     "trials.kernel.steps.lift_island": "tests/trials/test_trial_queue.py -k pushed_apart",
-    "dropping.kernel.falling._press_on": "tests/dropping/test_drop.py",
+    "arrivals.kernel.falling._press_on": "tests/arrivals/test_drop.py",
 }
 EXCUSED = {  # constants whose value within reason has no consequence, and why
     "machine.sizing.DIAMETER_TOLERANCE_M": "a bound below every length that is printed",
     "machine.sizing.MAX_SIZING_ITERATIONS": "the search ends by itself long before",
     "machine.sizing.STROKE_SAMPLES": "strokes so near each other find the same one",
-    "rates.tipping.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest within the same instant",
-    "rates.tipping.TIPPING_PHASES": "any number of instants that shows a stroke",
-    "rates.tipping.MAX_FORCE_OFFSET_HEIGHTS": "any width beyond every force: it tips over the ends alone",
+    "sorting.tipping.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest at once",
+    "sorting.tipping.TIPPING_PHASES": "any number of instants that shows a stroke",
+    "sorting.tipping.MAX_FORCE_OFFSET_HEIGHTS": "any width beyond every force: it tips over the ends alone",
     "sorting.falling.FAR": "any length beyond every foot",
 }
 COPIED = (

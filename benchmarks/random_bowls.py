@@ -18,14 +18,14 @@ import numpy as np
 import trial_parts
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
+from feederscrew.base.running import RunSettings
+from feederscrew.cad import facets, measuring, riding
+from feederscrew.cad.closed_body import body
+from feederscrew.cad.measuring import ways_down
+from feederscrew.cad.plan import MATERIAL_NAMES, SolidOptions, material, plan
 from feederscrew.output import solid_files
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
-from feederscrew.solidbowl import facets, measuring, riding
-from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.measuring import ways_down
-from feederscrew.solidbowl.plan import MATERIAL_NAMES, SolidOptions, material, plan
 from feederscrew.sorting.orientations import orientations
 from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.trials import course

@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from feederscrew.conveying.answer import even_range
+from feederscrew.motion.conveying import even_range
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs/method/validation.md"

@@ -16,9 +16,9 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
-from feederscrew.rates import stream
+from feederscrew.base.running import RunSettings
+from feederscrew.feeding import stream
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
 from feederscrew.trials.long_ride import LEFT, ride_of_track
 
 BANKS_DEG = (0.0, 3.0, 8.0)

@@ -14,10 +14,10 @@ import trimesh
 import waits
 from scipy.spatial import ConvexHull
 
-from feederscrew.dropping import ensemble
-from feederscrew.dropping.kernel import falling, one_drop
-from feederscrew.dropping.launch_conditions import Launch, sample
-from feederscrew.dropping.rounded_hull import shape_of_part
+from feederscrew.arrivals import ensemble
+from feederscrew.arrivals.kernel import falling, one_drop
+from feederscrew.arrivals.launch_conditions import Launch, sample
+from feederscrew.arrivals.rounded_hull import shape_of_part
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find, require_ground
 from feederscrew.resting.exact_tumbling import tumble

@@ -13,8 +13,8 @@ import numpy as np
 import shapely
 import waits
 
+from feederscrew.bowl.devices.openings import polygon
 from feederscrew.sorting import footprints, kernel
-from feederscrew.sorting.devices.openings import polygon
 from feederscrew.sorting.footprints import Footprint
 
 RADIUS, DISTANCE, CORNERS = 0.15, 9e-3, 30

@@ -23,14 +23,13 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer
+from feederscrew.bowl.devices.kinds import KINDS
+from feederscrew.motion import conveying as answer
 from feederscrew.part import load
-from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.sorting import tooling as tooling_study
 from feederscrew.sorting.isolating.chain import limits
 from feederscrew.sorting.isolating.design import TRACK_REMARK
-from feederscrew.studies import tooling as tooling_study
-from feederscrew.studies import trial
-from feederscrew.trials import course, result
+from feederscrew.trials import course, result, trial
 
 sys.path.insert(0, str(Path(__file__).parent))
 import trial_parts

@@ -15,11 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
+from feederscrew.base.running import RunSettings
+from feederscrew.feeding import stream
 from feederscrew.part import load
-from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
 from feederscrew.trials import course
 
 PAGE = Path(__file__).parent.parent / "docs/method/trial.md"

@@ -44,7 +44,7 @@ def advise(
     the part allows is yours to judge. With -o: advice.html with pictures before and after, advice.json,
     changes.csv, and each changed part that was tried as change_1.stl, for feeder design.
     """
-    from feederscrew.advising.advice import advise as study
+    from feederscrew.designing.advice import advise as study
     from feederscrew.output import advise as tables
 
     solid, settings, record = out.part_in_bowl(part, bowl)

@@ -67,9 +67,9 @@ def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chose
     input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png, names.yaml (for --names) and
     run.json.
     """
+    from feederscrew.arrivals.aspects_study import aspects as aspects_study
     from feederscrew.output import aspects as aspects_output
     from feederscrew.resting.aspects import waits
-    from feederscrew.studies.aspects import aspects as aspects_study
 
     if graph and out.directory is None:
         raise click.UsageError("--graph writes files: give -o DIR as well")
@@ -117,7 +117,7 @@ def inertia(part: Values, out: Output) -> None:
     --format json, and run.json.
     """
     from feederscrew.output import inertia as inertia_output
-    from feederscrew.studies.aspects import inertia as inertia_study
+    from feederscrew.part.inertia import inertia as inertia_study
 
     solid = out.part(part)
     study = inertia_study(solid)

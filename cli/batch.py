@@ -84,9 +84,9 @@ def batch(
     and a folder a part in DIR/parts.
     """
     ctx.with_resource(end_within(END_AFTER_S))
-    from feederscrew import batch as batches
-    from feederscrew.batch import summary
-    from feederscrew.units import counted
+    from feederscrew.base.units import counted
+    from feederscrew.jobs import batch as batches
+    from feederscrew.jobs.batch import summary
 
     if out.directory is None:
         raise click.UsageError("Missing option '-o' - say where the results go")

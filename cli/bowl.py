@@ -86,11 +86,11 @@ def bowl(
     mass and inertia of that body take the place of the estimate.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.errors import FeederError
+    from feederscrew.base.errors import FeederError
+    from feederscrew.cad import solid as solids
     from feederscrew.machine import condition
+    from feederscrew.machine import sheet as study
     from feederscrew.output import machine, marking, proof
-    from feederscrew.studies import bowl as study
-    from feederscrew.studies import solidbowl as solids
 
     _check_call(part, target, solid_request, measured, chain_options)
     out.tell_unread(bowl["path"])

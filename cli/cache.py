@@ -19,8 +19,8 @@ def cache(ctx: click.Context) -> None:
     one of them again reads it. The folder is named by FEEDER_CACHE; set to nothing, nothing is kept.
     """
     if ctx.invoked_subcommand is None:
-        from feederscrew import caches
-        from feederscrew.studies import simulation_cache
+        from feederscrew.arrivals import simulation_cache
+        from feederscrew.base import caches
 
         folder, refused = caches.simulation_folder(), simulation_cache.refusal()
         if folder is None:
@@ -40,8 +40,8 @@ def clear(quiet: bool) -> None:
 
     Delete the simulations that earlier runs have kept, and no other file. The next run makes them again.
     """
-    from feederscrew import caches
-    from feederscrew.studies import simulation_cache
+    from feederscrew.arrivals import simulation_cache
+    from feederscrew.base import caches
 
     out = Output.of_call(format="table", quiet=quiet)
     count = simulation_cache.clear()

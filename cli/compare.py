@@ -62,9 +62,9 @@ def compare(
     """
     from feederscrew import bowl as bowls
     from feederscrew.designing import acceptance_sheet
+    from feederscrew.feeding import compare as study_of
     from feederscrew.output import compare as compare_output
     from feederscrew.output import designs
-    from feederscrew.studies import compare as study_of
 
     if bowl is not None:  # what explains the velocities of one bowl
         if len(sources) > 1:
@@ -124,8 +124,8 @@ def calibrate(part: Values, counts: str, out: Output) -> None:
     The CSV is that of `feeder compare`: the line 'aspect,NAME,...', then one line an aspect. Columns
     that hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
     """
+    from feederscrew.feeding.compare import calibrate as calibrate_study
     from feederscrew.output import compare as compare_output
-    from feederscrew.studies.compare import calibrate as calibrate_study
 
     solid = out.part(part)
     study = calibrate_study(solid, counts)

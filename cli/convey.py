@@ -27,8 +27,8 @@ def convey(bowl: Values, spans: tuple[str, ...], curve: bool, best_phase: bool, 
     convey_phase.json, .csv and .png.
     """
     from feederscrew import bowl as bowls
+    from feederscrew.motion import convey as studies
     from feederscrew.output import convey as convey_output
-    from feederscrew.studies import convey as studies
 
     if best_phase and (spans or curve):
         raise click.UsageError("--best-phase stands alone - leave out --vary and --bowl")

@@ -13,13 +13,13 @@ from feederscrew_cli.interrupt import exit_status, hold_interrupts, note_interru
 from feederscrew_cli.options import Output, Values
 
 if TYPE_CHECKING:
+    from feederscrew.arrivals.entry import Shares
     from feederscrew.bowl import Bowl
     from feederscrew.bowl.reading import Setting
     from feederscrew.designing.families import FamilyStudy
     from feederscrew.designing.record import DesignRequest, DesignStudy
     from feederscrew.output.folder import ResultFolder
     from feederscrew.part.record import Part
-    from feederscrew.studies.rate import Shares
 
 REQUEST = (  # what shall leave, and what may be used
     options.target("Parts that must leave the bowl: 60/min."),
@@ -230,9 +230,9 @@ def _batch(
 ) -> int:
     """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
     from feederscrew import bowl as bowls
-    from feederscrew.batch import inputs as lists
+    from feederscrew.base.errors import FeederError
     from feederscrew.bowl.verified import CONDITIONS
-    from feederscrew.errors import FeederError
+    from feederscrew.jobs.batch import inputs as lists
     from feederscrew.output import designs, offers
 
     orders = lists.read_orders(part["source"])

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 import feederscrew
-from feederscrew import caches
+from feederscrew.base import caches
 from feederscrew_cli import grouped
 
 DISTRIBUTION = "feederscrew"
@@ -136,7 +136,7 @@ def simulations() -> list[tuple[str, str]]:
         Lines of the report: name and value.
     """
     try:
-        from feederscrew.studies import simulation_cache
+        from feederscrew.arrivals import simulation_cache
     except ImportError:  # of a library that is missing: the report says so above
         return [("state", "not known: a library is missing")]
     folder = caches.simulation_folder()

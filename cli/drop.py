@@ -111,9 +111,9 @@ def drop(
     _check_call(test["until"], traced, launches, is_plate, out)
     with hold_interrupts():
         from feederscrew import bowl as bowls
+        from feederscrew.arrivals import drop as studies
         from feederscrew.output import drop as drop_output
         from feederscrew.output import plate as plate_output
-        from feederscrew.studies import drop as studies
 
     study: Any
     test["jobs"] = test["jobs"] or os.cpu_count()

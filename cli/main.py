@@ -13,8 +13,8 @@ from typing import Any, NoReturn, TextIO
 import click
 
 from feederscrew import __version__
-from feederscrew.errors import ArgumentError, Faults, FeederError, MissingPackage
-from feederscrew.units import printable
+from feederscrew.base.errors import ArgumentError, Faults, FeederError, MissingPackage
+from feederscrew.base.units import printable
 from feederscrew_cli.interrupt import exit_status, note_every_interrupt, was_heard
 from feederscrew_cli.talk import options_by_argument, translate, typed
 

@@ -25,9 +25,9 @@ def vibration_angle(value: str) -> float:
     click.BadParameter
         If it is not an angle, or out of the limits.
     """
+    from feederscrew.base.errors import ConfigError
     from feederscrew.bowl.reading import checked
     from feederscrew.bowl.schema import BY_NAME
-    from feederscrew.errors import ConfigError
 
     key = BY_NAME["drive.vibration_angle"]
     try:
@@ -55,8 +55,8 @@ def floor(
     floor.json, the cycle, maps over (beta, mu) and (frequency, amplitude) as Figures 5-6 and 5-7, and
     theta'' over the heading, as CSV and PNG.
     """
+    from feederscrew.arrivals import floor as complete
     from feederscrew.output import floor as floor_output
-    from feederscrew.studies import floor as complete
     from feederscrew.thesis import motion as by_print
 
     solid, settings, record = out.part_in_bowl(part, bowl)
@@ -98,7 +98,7 @@ def track(
     from feederscrew.bowl import key_ranges
     from feederscrew.output import track as track_output
     from feederscrew.output.floor import printout
-    from feederscrew.studies import track as complete
+    from feederscrew.sorting import track as complete
     from feederscrew.thesis import motion as by_print
 
     if len(spans) not in (0, 2):
@@ -135,7 +135,7 @@ def headings(part: Values, aspect: str | None, bowl: Values, out: Output) -> Non
     headings.csv, headings.json and a picture of each aspect from above.
     """
     from feederscrew.output import headings as headings_output
-    from feederscrew.studies.headings import headings as study
+    from feederscrew.sorting.headings import headings as study
 
     solid, settings, record = out.part_in_bowl(part, bowl)
     with out.folder_of(solid, settings=settings) as folder:
@@ -171,8 +171,8 @@ def slide(betas: tuple[float, ...], as_published: bool, bowl: Values, out: Outpu
     each angle, and curves over all, as PNG.
     """
     from feederscrew.bowl import identity, name, record, texts
+    from feederscrew.motion.slide import slide as study
     from feederscrew.output import slide as slide_output
-    from feederscrew.studies.slide import slide as study
 
     settings, path = out.settings(bowl), bowl["path"]
     with out.folder(name(path), identity(path), texts(settings)) as folder:

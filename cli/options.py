@@ -151,7 +151,7 @@ def quantity_type(
     """
 
     def read(value: str | float) -> float:
-        from feederscrew import units
+        from feederscrew.base import units
 
         if not isinstance(value, str):
             return value
@@ -185,7 +185,7 @@ def angle(value: str | float) -> float:
     click.BadParameter
         If it is not an angle, or beyond ten turns.
     """
-    from feederscrew.units import QuantityError, quantity
+    from feederscrew.base.units import QuantityError, quantity
 
     try:
         number = quantity(value, "angle", bare="deg") if isinstance(value, str) else value

@@ -10,9 +10,9 @@ from feederscrew_cli import options, progress
 from feederscrew_cli.options import Output, Values
 
 if TYPE_CHECKING:
+    from feederscrew.arrivals.entry import Shares
     from feederscrew.bowl import Bowl
     from feederscrew.part.record import Part
-    from feederscrew.studies.rate import Shares
 
 CHAIN_OPTIONS = (
     options.aspect("Aspect on which the part must leave the bowl.", required=True),
@@ -120,22 +120,22 @@ def shares_finder(
     Returns
     -------
     callable
-        From a Bowl to ``studies.rate.Shares``; each bowl is answered once.
+        From a Bowl to ``arrivals.entry.Shares``; each bowl is answered once.
 
     Raises
     ------
     ArgumentError
         If the part has no such aspect or heading.
     """
-    from feederscrew.studies import rate as study
+    from feederscrew.arrivals import entry
 
-    study.check_wanted(part, request["aspect"], request.get("heading"))
+    entry.check_wanted(part, request["aspect"], request.get("heading"))
     shares_by_bowl: dict[Bowl, Shares] = {}
 
     def shares_of(bowl: "Bowl") -> "Shares":
         if bowl not in shares_by_bowl:
             values = share_keywords(share_options) | ({} if shares_by_bowl else progress_keywords(out))
-            shares_by_bowl[bowl] = study.shares(part, bowl, rule=request["rule"], **values)
+            shares_by_bowl[bowl] = entry.shares(part, bowl, rule=request["rule"], **values)
         return shares_by_bowl[bowl]
 
     return shares_of
@@ -160,7 +160,7 @@ def shares(out: Output, part: "Part", bowl: "Bowl", share_options: Values, reque
 
 
 def share_keywords(share_options: Values) -> Values:
-    """Return the keywords of ``studies.rate.shares`` that the options name.
+    """Return the keywords of ``arrivals.entry.shares`` that the options name.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def share_keywords(share_options: Values) -> Values:
 
 
 def progress_keywords(out: Output) -> Values:
-    """Return the keywords of ``studies.rate.shares`` that tell how far it is.
+    """Return the keywords of ``arrivals.entry.shares`` that tell how far it is.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import click
 
-from feederscrew.running import STAGE_VARIABLE
+from feederscrew.base.running import STAGE_VARIABLE
 
 if TYPE_CHECKING:
     from feederscrew_cli.talk import Output
@@ -179,10 +179,10 @@ def _time(seconds: float) -> str:
 
 
 KERNELS = {  # what waits for the compiler once: its module, and how it is told
-    "drops": ("feederscrew.dropping.drop_test", "compiled", "the drop kernel", "ten seconds"),
-    "plate": ("feederscrew.dropping.plate_test", "compiled", "the plate's kernel", "ten seconds"),
+    "drops": ("feederscrew.arrivals.drop_test", "compiled", "the drop kernel", "ten seconds"),
+    "plate": ("feederscrew.arrivals.plate_test", "compiled", "the plate's kernel", "ten seconds"),
     "trial": ("feederscrew.trials.runs", "is_compiled", "the trial's kernel", "a minute"),
-    "conveying": ("feederscrew.conveying.answer", "sweep_compiled", "the conveying kernel", "ten seconds"),
+    "conveying": ("feederscrew.motion.conveying", "sweep_compiled", "the conveying kernel", "ten seconds"),
 }
 
 

@@ -64,10 +64,10 @@ def rate(
     """
     orientation.check_heading(chain_options)
     from feederscrew.bowl import friction_remarks, verified
+    from feederscrew.feeding.rate import rate as study
+    from feederscrew.feeding.well_oriented import fed
     from feederscrew.output import proof
     from feederscrew.output import rate as rate_output
-    from feederscrew.rates.well_oriented import fed
-    from feederscrew.studies.rate import rate as study
 
     solid, settings, record = out.part_in_bowl(part, bowl)
     out.warn(*friction_remarks(settings, solid.material))
@@ -115,9 +115,9 @@ def tune(
     With -o: tune.csv and tune.json.
     """
     from feederscrew.bowl import friction_remarks, verified
+    from feederscrew.feeding.tune import tune as study
     from feederscrew.output import proof
     from feederscrew.output import rate as rate_output
-    from feederscrew.studies.tune import tune as study
 
     solid, settings, record = out.part_in_bowl(part, bowl)
     out.warn(*friction_remarks(settings, solid.material))

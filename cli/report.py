@@ -56,8 +56,8 @@ def report(part: Values, request_options: Values, share_options: Values, bowl: V
     orientation.check_heading(request_options)
     from feederscrew.bowl import read, verified
     from feederscrew.output import proof
-    from feederscrew.output.report import page, write
-    from feederscrew.studies.report import report as study
+    from feederscrew.output.report import report as study
+    from feederscrew.output.report_page import page, write
 
     out.tell_unread(bowl["path"])
     solid = out.part(part)

@@ -48,8 +48,8 @@ def sample(
     bracket 25x10x12 (lengths in mm); t-shape takes --ratio. Bolts, screws, nuts and washers have the nominal
     sizes of their standard. A thread is a cylinder as thick as its major diameter.
     """
-    from feederscrew.columns import of_records
-    from feederscrew.samples import catalogue
+    from feederscrew.base.columns import of_records
+    from feederscrew.jobs.samples import catalogue
 
     out = Output.of_call(format=format, quiet=quiet)
     if name is None and not everything:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from feederscrew.errors import MissingPackage
+from feederscrew.base.errors import MissingPackage
 from feederscrew_cli import grouped, options
 from feederscrew_cli.interrupt import end_within, hold_interrupts
 
@@ -37,9 +37,9 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
             import werkzeug.serving  # noqa: F401
         except ImportError:
             raise MissingPackage("serve", "needs werkzeug, which is not installed", INSTALL_SERVE) from None
-        from feederscrew.serving.designs import Guard
-        from feederscrew.serving.server import BoundedServer
-        from feederscrew.serving.site import Site
+        from feederscrew.jobs.serving.designs import Guard
+        from feederscrew.jobs.serving.server import BoundedServer
+        from feederscrew.jobs.serving.site import Site
 
     with (
         end_within(END_WITHIN_S),

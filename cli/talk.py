@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from feederscrew.errors import Detail
-from feederscrew.units import printable
+from feederscrew.base.errors import Detail
+from feederscrew.base.units import printable
 from feederscrew_cli import progress
 from feederscrew_cli.interrupt import hold_interrupts
 
 if TYPE_CHECKING:
+    from feederscrew.base.columns import Frame
     from feederscrew.bowl import Bowl
     from feederscrew.bowl.reading import Setting
-    from feederscrew.columns import Frame
     from feederscrew.output.folder import ResultFolder
     from feederscrew.output.offers import Offer
     from feederscrew.part.record import Part
@@ -182,8 +182,8 @@ class Output:
         self.warn(*solid.warnings)
         self.check_folder(solid.name, solid.inputs)
         if self.verbose:
-            from feederscrew import caches
-            from feederscrew.studies import simulation_cache
+            from feederscrew.arrivals import simulation_cache
+            from feederscrew.base import caches
 
             self.say(*filter(None, [simulation_cache.refusal()]), *caches.kernel_refusals())
         return solid

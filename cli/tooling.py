@@ -10,7 +10,7 @@ from feederscrew_cli.interrupt import heed_interrupts
 from feederscrew_cli.options import Output, Values
 
 if TYPE_CHECKING:
-    from feederscrew.studies.tooling import ToolingStudy
+    from feederscrew.sorting.tooling import ToolingStudy
 
 
 @grouped.command(
@@ -119,19 +119,19 @@ def tooling(
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and
     as bent, and tooling.stl, the section of track to print.
     """
+    from feederscrew.base.units import counted
+    from feederscrew.cad.exact import exact_body
     from feederscrew.designing import tooling_trials
     from feederscrew.output import marking
     from feederscrew.output import tooling as tables
-    from feederscrew.solidbowl.exact import exact_body
-    from feederscrew.studies.tooling import (
+    from feederscrew.sorting.tooling import (
         ToolingSearch,
         check_named,
         may_be_left_out,
         next_class,
         tooling_without,
     )
-    from feederscrew.studies.tooling import tooling as study
-    from feederscrew.units import counted
+    from feederscrew.sorting.tooling import tooling as study
 
     begun = time.monotonic()
     orientation.check_heading(request)

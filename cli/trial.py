@@ -117,7 +117,7 @@ def trial(
         from feederscrew.bowl import at_strokes, verified
         from feederscrew.bowl.verified import Verified
         from feederscrew.output.trial import tables
-        from feederscrew.studies import trial as studies
+        from feederscrew.trials import trial as studies
 
         if film:
             from feederscrew.output.trial import film as films

@@ -10,9 +10,9 @@ from pathlib import Path
 import generated
 import numpy as np
 
-from feederscrew.conveying.answer import sweep
-from feederscrew.conveying.operating_point import Numbers, plain, with_numbers
-from feederscrew.conveying.steady import VELOCITY
+from feederscrew.motion.conveying import sweep
+from feederscrew.motion.operating_point import Numbers, plain, with_numbers
+from feederscrew.motion.steady import VELOCITY
 
 DOCS = Path(__file__).resolve().parent
 METHOD = DOCS / "method/conveying.md"

@@ -16,7 +16,7 @@ import generated
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "equations.md"
-ROOMS = ("screw", "resting", "mechanics", "thesis")  # where equations are computed
+STAGES = ("motion", "resting", "thesis")  # where equations are computed
 NUMBER = r"\[(?:\d\.\d+|section \d\.\d|Table \d-\d+)\]"
 MARK = re.compile(rf"\beqs?\. ({NUMBER}(?:(?:, | and | to ){NUMBER})*)", re.IGNORECASE)
 HEAD = """# From an equation of the thesis to its function and its test
@@ -111,7 +111,7 @@ def page():
         If a mark is of no known equation, or an equation lacks a function or a test.
     """
     library = ROOT / "feederscrew"
-    functions = _places([path for room in ROOMS for path in library.glob(f"{room}/**/*.py")], library)
+    functions = _places([path for stage in STAGES for path in library.glob(f"{stage}/**/*.py")], library)
     tests = _places((ROOT / "tests").glob("**/test_*.py"), ROOT / "tests")
     strange = sorted({*functions, *tests} - {*NUMBERS})
     lacking = [number for number in NUMBERS if number not in functions or number not in tests]

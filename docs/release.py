@@ -28,7 +28,7 @@ PART = "lbracket_30x20x15.stl"
 
 def version():
     """Return the version that the package says it has."""
-    return re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/version.py").read_text())[1]
+    return re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/base/version.py").read_text())[1]
 
 
 def faults():

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import generated
 
+from feederscrew.feeding.compare import compare_sets
 from feederscrew.resting.rules.registry import RULES
-from feederscrew.studies.compare import compare_sets
 
 PAGE = Path(__file__).resolve().parent / "resting.md"
 BEGIN, END = "<!-- rules -->\n", "<!-- end of rules -->"

@@ -11,7 +11,7 @@ from pathlib import Path
 import screenshot
 from werkzeug.serving import make_server
 
-from feederscrew.serving.site import Site
+from feederscrew.jobs.serving.site import Site
 
 SIZE = (1280, 1250)
 PART = "/part-of-the-picture"

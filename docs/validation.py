@@ -12,12 +12,12 @@ from pathlib import Path
 import generated
 import numpy as np
 
-from feederscrew.dropping.ensemble import wilson
-from feederscrew.dropping.toss_runs import FACE_NAMES
+from feederscrew.arrivals.aspects_study import aspects
+from feederscrew.arrivals.drop import SURE_SHARE, follow
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.arrivals.toss_runs import FACE_NAMES
+from feederscrew.feeding.compare import compare_sets
 from feederscrew.part import load
-from feederscrew.studies.aspects import aspects
-from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.drop import SURE_SHARE, follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 METHOD = PAGE.parent / "method/validation.md"

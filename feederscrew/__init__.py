@@ -11,10 +11,14 @@ unit.
 
 import lazy_loader
 
-from feederscrew.version import __version__ as __version__
+from feederscrew.base import views as _views
+from feederscrew.base.version import __version__ as __version__
+
+_views.place = "feederscrew.output.record_views"  # tables and pictures of records, made when one is asked for
 
 _of_stub, _names_of_stub, __all__ = lazy_loader.attach_stub(__name__, __file__)
-__all__.remove("__version__")
+for _name in ("__version__", "errors"):  # ``fs.errors``: the module, for what has no name of its own here
+    __all__.remove(_name)
 
 
 def __getattr__(name: str) -> object:

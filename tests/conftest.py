@@ -17,10 +17,10 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import settings
 
-from feederscrew.dropping import arrival
+from feederscrew.arrivals import arrival, simulation_cache
+from feederscrew.arrivals import aspects_study as aspects
 from feederscrew.output import shading as shading_output
 from feederscrew.output import style
-from feederscrew.studies import aspects, simulation_cache
 from feederscrew_cli.main import feeder
 
 # A shell that starts the tests in the background ignores these, and so would every command they start.
@@ -59,11 +59,11 @@ def pytest_sessionfinish(session):
         session.config.stash[COMPILING].wait()
 
 
-EARLY = ("solidbowl", "dropping", "conveying", "resting", "screw", "part", "mechanics", "rates", "thesis")
+EARLY = ("base", "cad", "arrivals", "motion", "resting", "part", "feeding", "thesis")
 
 
 def _early(item):
-    """Whether a test runs without the trial: as one of a room before it, or of the bowl as a solid."""
+    """Whether a test runs without the trial: as one of a stage before it, or of the bowl as a solid."""
     return item.path.parent.name in EARLY and item.path.name not in ("test_on_mesh.py", "test_naming.py")
 
 

@@ -12,9 +12,9 @@ import shapes
 from command_lines import BRACKET, ROOT
 
 import feederscrew as fs
-from feederscrew.columns import Frame
+from feederscrew.base.columns import Frame
+from feederscrew.bowl import arguments
 from feederscrew.output import tables
-from feederscrew.studies import arguments
 from feederscrew_cli.main import feeder
 
 FUNCTIONS = {name: getattr(fs, name) for name in fs.__all__ if inspect.isfunction(getattr(fs, name))}
@@ -36,8 +36,8 @@ def part():
     [
         ("import sys, feederscrew; dir(feederscrew); print(*{'numpy', 'pandas'} & set(sys.modules))", ""),
         # it listed `sys`, `functools`, `importlib` and every folder that was imported
-        ("import feederscrew.batch, feederscrew as fs; fs.rate; print(*[n for n in dir(fs) if n[0] != '_'])",
-         " ".join(sorted(fs.__all__))),
+        ("import feederscrew.jobs.batch, feederscrew as fs; fs.rate;"
+         " print(*[n for n in dir(fs) if n[0] != '_'])", " ".join(sorted(fs.__all__))),
         # importing a room would put it in the place of the function
         ("import feederscrew.sorting.isolating.chain, feederscrew.trials.course, feederscrew as fs;"
          " from feederscrew import tooling; print(tooling is fs.tooling, callable(fs.trial))", "True True"),
@@ -187,6 +187,6 @@ def test_a_bowl_is_sized_at_the_stroke_of_a_trial_that_is_still_of_it(monkeypatc
     taken = {}
     tried = SimpleNamespace(void=lambda *_: iter(void))
     monkeypatch.setattr("feederscrew.bowl.verified", lambda path: tried)
-    monkeypatch.setattr("feederscrew.studies.bowl.size_machine", lambda *_, **options: taken.update(options))
+    monkeypatch.setattr("feederscrew.machine.sheet.size_machine", lambda *_, **options: taken.update(options))
     fs.size_bowl(part, "30/min", "A")
     assert taken["as_tried"] is not bool(void)

@@ -9,7 +9,7 @@ from command_lines import PARTS
 from design_counts import design_study
 
 import feederscrew as fs
-from feederscrew.bowl import devices
+from feederscrew.bowl import device_list as devices
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.schema import UNBALANCE_KEYS as TOGETHER
 from feederscrew.bowl.values import BowlValues

@@ -1,4 +1,4 @@
-"""The folders are the pipeline: a room imports only rooms before it, and heavy libraries have one door."""
+"""The folders are the pipeline: a stage imports only stages before it, and heavy libraries have one door."""
 
 import ast
 import re
@@ -7,38 +7,30 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.bowl.devices.kinds import KINDS
 
 ROOT = Path(__file__).parent.parent
 ORDER = [
-    "version", "heavy", "arrays", "errors", "check", "units", "columns", "value_forms", "signatures",
-    "records", "running", "caches", "processes", "documents", "dxf", "geometry", "part", "resting",
-    "sorting.devices", "bowl", "screw", "mechanics", "conveying", "dropping", "sorting", "rates", "trials",
-    "machine", "solidbowl", "studies", "designing", "advising",
-    "output", "thesis", "samples", "batch", "serving",
+    "base", "part", "resting", "bowl", "motion", "arrivals", "sorting", "feeding", "cad", "machine", "trials",
+    "designing", "output", "thesis", "jobs",
 ]  # fmt: skip
 DOORS = {
-    "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/documents.py"},
-    "pandas": {"feederscrew/output", "feederscrew/records.py"},
-    "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/figures.py"},
-    "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/dxf.py"},
-    "manifold3d": {"feederscrew/part", "feederscrew/sorting/solid.py", "feederscrew/solidbowl/facets.py",
-                   "feederscrew/advising/changes.py"},
-    "OCP": {"feederscrew/output/solid_files.py", "feederscrew/solidbowl/exact"},
-    "click": {"cli"}, "numba": {"feederscrew/geometry"}, "llvmlite": {"feederscrew/geometry"},
-    "werkzeug": {"feederscrew/serving", "cli/serve.py"},
+    "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/base/documents.py"},
+    "pandas": {"feederscrew/output", "feederscrew/base/records.py"},
+    "matplotlib": {"feederscrew/output", "feederscrew/base/records.py", "feederscrew/thesis/figures.py"},
+    "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/base/dxf.py"},
+    "manifold3d": {"feederscrew/part", "feederscrew/sorting/solid.py", "feederscrew/cad/facets.py",
+                   "feederscrew/designing/changes.py"},
+    "OCP": {"feederscrew/output/solid_files.py", "feederscrew/cad/exact"},
+    "click": {"cli"}, "numba": {"feederscrew/base/geometry"}, "llvmlite": {"feederscrew/base/geometry"},
+    "werkzeug": {"feederscrew/jobs/serving", "cli/serve.py"},
 }  # fmt: skip
 FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])
 
 
 @cache
 def tree(path):
-    """What a file does when it is imported: names for annotations alone may come from a later room."""
-    module = ast.parse(path.read_text())
-    for node in module.body:
-        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
-            node.body = []
-    return module
+    return ast.parse(path.read_text())
 
 
 @cache
@@ -47,10 +39,15 @@ def nodes(path):
 
 
 @cache
-def imports(path):
-    """Every dotted name a file imports: at its top, inside a function, or when it is needed."""
-    names = []
+def imports(path, *, types=True):
+    """Every dotted name a file imports: at its top, in a function, when it is needed, or for its types."""
+    names, left_out = [], set()
+    for node in () if types else tree(path).body:
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            left_out |= {id(inner) for inner in ast.walk(node)}
     for node in nodes(path):
+        if id(node) in left_out:
+            continue
         if isinstance(node, ast.Import):
             names += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
@@ -61,13 +58,10 @@ def imports(path):
     return tuple(names)
 
 
-def room(dotted):
-    """The room of 'feederscrew.part.hull': 'part'; a folder before its room is one; None outside."""
+def stage(dotted):
+    """The stage of 'feederscrew.part.hull': 'part'; None outside."""
     head, *rest = dotted.split(".")
-    if head != "feederscrew" or not rest:
-        return None
-    inner = ".".join(rest[:2])
-    return inner if inner in ORDER else rest[0] if rest[0] in ORDER else None
+    return rest[0] if head == "feederscrew" and rest and rest[0] in ORDER else None
 
 
 def module(path):
@@ -75,31 +69,39 @@ def module(path):
     return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
-LATE = {"records": "output"}  # a record loads its views by their name, when one is asked for
 DOTTED = re.compile(r"feederscrew\.[\w.]+")
 FROM_OURS = re.compile(r"^\s*from (feederscrew\.[\w.]+) import ", re.MULTILINE)  # not parsed: slow
 
 
-def test_a_room_imports_only_rooms_before_it_and_a_heavy_library_through_its_one_door():
+def test_a_stage_imports_only_stages_before_it_and_a_heavy_library_through_its_one_door():
     for path in FILES:
-        place, here = str(path.relative_to(ROOT)), room(module(path))
+        place, here = str(path.relative_to(ROOT)), stage(module(path))
         allowed = {None, *ORDER[: ORDER.index(here) + 1]} if here else {None, *ORDER}
         for name in imports(path):
             assert here is None or not name.startswith("feederscrew_cli"), f"{place}: {name}"
-            assert room(name) in allowed, f"{place} imports {name}"
+            assert stage(name) in allowed, f"{place} imports {name}"
+        for name in imports(path, types=False):
             doors = DOORS.get(name.split(".")[0], {place})
             assert place.startswith(tuple(doors)), f"{place} imports {name}, not through {doors}"
         texts = (getattr(node, "value", None) for node in nodes(path))
         for text in (text for text in texts if isinstance(text, str) and DOTTED.fullmatch(text)):
-            assert here is None or room(text) in (here, LATE.get(here)), f"{place}: {text}"
+            assert here is None or stage(text) in allowed, f"{place}: {text}"
 
 
-def test_every_room_of_the_order_and_every_own_module_that_is_imported_exists():
+def test_there_are_at_most_16_packages_and_130_arrows_between_them():
+    """With the command line. An arrow: some module of one stage imports from another, be it for a type."""
+    assert len(ORDER) + 1 <= 16
+    arrows = {(stage(module(path)), stage(name)) for path in FILES for name in imports(path)}
+    between = {(here, there) for here, there in arrows if here and there and here != there}
+    assert 14 <= len(between) <= 100  # 298 between 37 rooms, before these became stages
+
+
+def test_every_stage_of_the_order_and_every_own_module_that_is_imported_exists():
     """mypy takes a missing module for one without types, and an import within a function runs late."""
     library = ROOT / "feederscrew"
-    rooms = {path.relative_to(library).parts[0].removesuffix(".py") for path in library.glob("**/*.py")}
-    assert rooms - {"__init__", "__main__"} <= set(ORDER)
-    assert all((library / name.replace(".", "/") / "__init__.py").exists() for name in ORDER if "." in name)
+    stages = {path.relative_to(library).parts[0].removesuffix(".py") for path in library.glob("**/*.py")}
+    assert stages - {"__init__", "__main__"} == set(ORDER)
+    assert all((library / name / "__init__.py").exists() for name in ORDER)
     names = {module(path) for path in FILES if path.parts[-2] != "cli"}
     for path in [*FILES, *(path for folder in ("tests", "docs", "benchmarks") for path in sources(folder))]:
         for name in FROM_OURS.findall(path.read_text()):
@@ -114,7 +116,7 @@ def test_no_imports_go_in_a_circle():
     names = {module(path) for path in FILES}
     graph = {}
     for path in FILES:
-        wanted = (name if name in names else name.rpartition(".")[0] for name in imports(path))
+        wanted = (name if name in names else name.rpartition(".")[0] for name in imports(path, types=False))
         graph[module(path)] = {name for name in wanted if name in names} - {module(path)}
     TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
     # No class name occurs twice.

@@ -5,14 +5,14 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from feederscrew import units
-from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.base import units
+from feederscrew.base.errors import FeederError
+from feederscrew.base.value_forms import UNITLESS, quantity
+from feederscrew.bowl.device_list import DEVICES_SECTION
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.bowl.reading import OF_THE_MACHINE, default
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
-from feederscrew.errors import FeederError
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.kinds import KINDS
-from feederscrew.value_forms import UNITLESS, quantity
 
 SCHEMA_FILE = "feeder.schema.json"  # what the JSON Schema is called beside a bowl file
 EDITORS = f"# yaml-language-server: $schema={SCHEMA_FILE}"  # the line by which editors find it

@@ -14,15 +14,16 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check, documents, units
-from feederscrew.bowl import devices, friction_table, schema, verified
+from feederscrew.base import check, documents, units
+from feederscrew.base.columns import Column
+from feederscrew.base.documents import Entry, Node
+from feederscrew.base.errors import ArgumentError, ConfigError, FeederError
+from feederscrew.base.geometry.grids import GridAxis
+from feederscrew.bowl import device_list as devices
+from feederscrew.bowl import friction_table, schema, verified
+from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track, vibration_angle
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
-from feederscrew.columns import Column
-from feederscrew.documents import Entry, Node
-from feederscrew.errors import ArgumentError, ConfigError, FeederError
-from feederscrew.geometry.grids import GridAxis
-from feederscrew.sorting.devices.base import Device
 
 DEVICES_SECTION = devices.DEVICES_SECTION
 RECORDS = {"drive": Drive, "friction": Friction, "track": Track, "machine": Machine, "sizing": Sizing}

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Unpack, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew.columns import Column
-from feederscrew.records import ReadableRecord
-from feederscrew.sorting.devices.base import Device
+from feederscrew.base.columns import Column
+from feederscrew.base.records import ReadableRecord
+from feederscrew.bowl.devices.base import Device
 
 if TYPE_CHECKING:
     from feederscrew.bowl.values import BowlValues, Overrides

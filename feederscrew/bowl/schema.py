@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import units
+from feederscrew.base import units
+from feederscrew.base.errors import FeederError
 from feederscrew.bowl.friction_table import FAMILIES, LININGS
 from feederscrew.bowl.record import Machine, Unbalance
-from feederscrew.errors import FeederError
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,12 @@ import difflib
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, TypeAlias, TypedDict
 
-from feederscrew import check, units
+from feederscrew.base import check, units
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.units import Quantity
 from feederscrew.bowl.reading import adjust, checked, find_key
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BOWL_KEYS, Key
-from feederscrew.errors import ArgumentError
-from feederscrew.units import Quantity
 
 Value: TypeAlias = Quantity | None  # '2 mm', a number in SI units, of pint, a word; None: as the bowl has it
 Overrides: TypeAlias = str | Sequence[str] | Mapping[str, Quantity]  # or a dict, by the full name of a key

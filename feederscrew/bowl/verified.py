@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import documents, units
+from feederscrew.base import documents, units
+from feederscrew.base.columns import Column
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Column
 from feederscrew.part.record import Part
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.trade import Action
 
 VERIFIED_SECTION = "verified"
 SHARED = {field.name for field in fields(Device)}  # what every device has

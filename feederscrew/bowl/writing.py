@@ -4,8 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import units
-from feederscrew.bowl import devices, schema
+from feederscrew.base import units
+from feederscrew.base.errors import FeederError
+from feederscrew.bowl import device_list as devices
+from feederscrew.bowl import schema
 from feederscrew.bowl.reading import (
     Setting,
     effective,
@@ -15,7 +17,6 @@ from feederscrew.bowl.reading import (
 )
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BOWL_KEYS, Key
-from feederscrew.errors import FeederError
 
 NAME = "bowl.yaml"  # what the text is called in faults
 ALWAYS = ("drive.frequency", "drive.vibration_angle")  # a machine would set them otherwise

@@ -13,13 +13,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from feederscrew import documents, units
+from feederscrew.base import documents, units
+from feederscrew.base.errors import Faults, FeederError
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import HOUR, PER_MINUTE, counted
 from feederscrew.bowl.verified import AGREED_JAMS, PURE
 from feederscrew.designing import evidence
-from feederscrew.errors import Faults, FeederError
-from feederscrew.heavy import heavy
 from feederscrew.trials.fills import FilledQueue
-from feederscrew.units import HOUR, PER_MINUTE, counted
 
 stats = heavy("scipy.stats")
 

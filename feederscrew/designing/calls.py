@@ -3,11 +3,11 @@
 import shlex
 from collections.abc import Callable, Iterable, Sequence
 
-from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.base.units import DEG, HOUR, MINUTE, MM
+from feederscrew.bowl.device_list import DEVICES_SECTION
 from feederscrew.bowl.reading import Setting
 from feederscrew.designing.record import DesignRequest
 from feederscrew.part.record import Part
-from feederscrew.units import DEG, HOUR, MINUTE, MM
 
 PROGRAM, COMMAND = "feeder", "design"
 USUAL_UNITS = "mm"  # of a file, where the call says nothing
@@ -119,14 +119,31 @@ def call_of(
     tuple of str
         From 'feeder' on. Every option that is not changed stands in it as it was typed.
     """
-    changed = {name: text(request) for name, text in OPTIONS.items() if text(request) != text(former)}
-    switched = {name: is_asked(request) for name, is_asked in FLAGS.items()}
-    flags = [name for name, is_asked in switched.items() if is_asked != FLAGS[name](former)]
-    words = [PROGRAM, *_without(call, {*changed, *flags})]
-    words += [word for name, text in changed.items() if text is not None for word in (name, text)]
-    words += [name for name in flags if switched[name]]
+    changed = changed_options(request, former)
+    words = [PROGRAM, *_without(call, changed)]
+    words += [word for name, text in changed.items() if text is not None for word in (name, text) if word]
     words += [word for key, text in settings for word in ("--set", f"{key}={text}")]
     return (*words, *FOLDER)
+
+
+def changed_options(request: DesignRequest, former: DesignRequest) -> dict[str, str | None]:
+    """Return the options of the command in which two requests differ.
+
+    Parameters
+    ----------
+    request : DesignRequest
+        What is asked for.
+    former : DesignRequest
+        What was asked for.
+
+    Returns
+    -------
+    dict of str to str or None
+        The value of each in ``request``: None of one that is not given there, '' of a flag that is.
+    """
+    changed = {name: text(request) for name, text in OPTIONS.items() if text(request) != text(former)}
+    flags = (name for name, is_asked in FLAGS.items() if is_asked(request) != is_asked(former))
+    return changed | {name: "" if FLAGS[name](request) else None for name in flags}
 
 
 def _without(call: Sequence[str], options: Iterable[str]) -> list[str]:

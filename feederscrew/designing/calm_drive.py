@@ -9,15 +9,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew.arrivals.plate_test import throw_number
+from feederscrew.base.errors import ConfigError
 from feederscrew.bowl.reading import has_machine
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
-from feederscrew.conveying import answer
-from feederscrew.conveying.hop import hop
-from feederscrew.dropping.plate_test import throw_number
-from feederscrew.errors import ConfigError
 from feederscrew.machine import drive_sizing, sizing
 from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.machine.springs import analyse_springs, greatest_amplitude
+from feederscrew.motion import conveying as answer
+from feederscrew.motion.hop import hop
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 
@@ -163,7 +163,7 @@ def drive_at(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> B
     ``sizing.fastest``. Through tooling it is no slower than ``LEAST_VELOCITY_M_S``. What the user gave of the
     drive is kept.
 
-    The hop is the lower the higher the frequency, by its square (``conveying.hop``): twice the mains
+    The hop is the lower the higher the frequency, by its square (``motion.hop``): twice the mains
     frequency comes first where it is fast enough. Below the throw number of 1 a leaf-spring drive carries
     slowly; from 2.2 to 3 it is three to six times as fast, and friction hardly matters.
 

@@ -8,33 +8,34 @@ from typing import Any, TypedDict, Unpack, overload
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew import check, units
-from feederscrew.bowl import schema
-from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.arrivals.entry import Shares, the_shares
+from feederscrew.base import check, units
+from feederscrew.base.errors import ArgumentError, FeederError
+from feederscrew.bowl import arguments, schema
+from feederscrew.bowl.arguments import Quantity, former_keywords
+from feederscrew.bowl.device_list import DEVICES_SECTION
+from feederscrew.bowl.devices.kinds import cost_class
 from feederscrew.bowl.reading import Setting, of_device
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.verified import HELD, Status
+from feederscrew.cad import solid as solidbowl
+from feederscrew.cad.plan import ARC_CHORD_M, STEEL_NAME
 from feederscrew.designing import families, loop
 from feederscrew.designing.calls import call_words
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.nearest import nearest_from_study
 from feederscrew.designing.record import DesignRequest, DesignStudy, ProofKind
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.feeding.rate import MIN_POSITIVE
 from feederscrew.machine import checks, drive_sizing
+from feederscrew.machine import sheet as machines
 from feederscrew.machine.drive_sizing import is_two_axis, needed_angle
+from feederscrew.machine.sheet import MachineSheet
 from feederscrew.part.record import Part
-from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
-from feederscrew.sorting.devices.kinds import cost_class
 from feederscrew.sorting.isolating.chain import OutcomeKind
-from feederscrew.studies import arguments, solidbowl
-from feederscrew.studies import bowl as machines
-from feederscrew.studies.arguments import Quantity, former_keywords
-from feederscrew.studies.bowl import MachineSheet
-from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
-from feederscrew.studies.tooling import listed as names_of
-from feederscrew.studies.tooling import may_be_left_out
+from feederscrew.sorting.tooling import listed as names_of
+from feederscrew.sorting.tooling import may_be_left_out
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ rate beyond its bound gives such counts, or more extreme ones, with a chance of 
 
 import math
 
-from feederscrew.heavy import heavy
+from feederscrew.base.heavy import heavy
 
 special = heavy("scipy.special")
 

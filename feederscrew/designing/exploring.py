@@ -9,9 +9,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew.arrays import Floats
-from feederscrew.bowl.devices import check_written
+from feederscrew.arrivals.aspects_study import find_aspects
+from feederscrew.arrivals.entry import Shares, shares
+from feederscrew.arrivals.plate_test import throw_number
+from feederscrew.base.arrays import Floats
+from feederscrew.bowl.device_list import check_written
+from feederscrew.bowl.devices.base import ComparedValue
+from feederscrew.bowl.devices.kinds import cost_class as cost_class_of
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl, Track
+from feederscrew.cad import solid as solidbowl
 from feederscrew.designing import calm_drive, hanging, proposals, short_trials, texts
 from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.policy import SearchPolicy
@@ -19,20 +26,13 @@ from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import Attempt
 from feederscrew.designing.search import BankedTrack, Candidate, ChainKey, Place, Search
 from feederscrew.designing.short_trials import find_denials, robust_run
-from feederscrew.dropping.plate_test import throw_number
-from feederscrew.rates import stream
-from feederscrew.rates.stream import Orientations
-from feederscrew.rates.tipping import FLAT_KIND
+from feederscrew.feeding import stream
+from feederscrew.feeding.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.sorting.devices.base import ComparedValue
-from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.sorting.isolating.rails import find_head
 from feederscrew.sorting.orientations import Hanging, Orientation
-from feederscrew.studies import solidbowl
-from feederscrew.studies.aspects import find_aspects
-from feederscrew.studies.rate import Shares, shares
+from feederscrew.sorting.tipping import FLAT_KIND
 from feederscrew.trials.fills import JammedParts, LeavingPose, PoseKind
 from feederscrew.trials.wanted import equivalent_rows, leaves_hanging, wanted_rows
 

@@ -4,6 +4,11 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from feederscrew.arrivals.aspects_study import find_aspects
+from feederscrew.base.errors import FeederError
+from feederscrew.base.records import ReadableRecord
+from feederscrew.bowl.devices.kinds import KINDS
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import HELD, Status
 from feederscrew.designing import calm_drive, exploring, loop, proposals
@@ -12,13 +17,8 @@ from feederscrew.designing.loop import merit
 from feederscrew.designing.progress import Progress, SearchProgress
 from feederscrew.designing.record import DesignRequest, DesignStudy, ProofKind
 from feederscrew.designing.search import Search
-from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
-from feederscrew.records import ReadableRecord
-from feederscrew.sorting.devices.kinds import KINDS
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import Cut
-from feederscrew.studies.aspects import find_aspects
 
 PROPOSED = tuple(sorted(name for name, kind in KINDS.items() if kind.search.is_proposed))
 SHARED_TRACK_KEYS = ("track.radius", "track.width", "track.bank", "track.climb")

@@ -9,10 +9,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from feederscrew.base.columns import Column
+from feederscrew.base.heavy import heavy
 from feederscrew.bowl.verified import PURE, RATE_KEPT, SHOWN_PURITY
-from feederscrew.columns import Column
 from feederscrew.designing import evidence
-from feederscrew.heavy import heavy
 from feederscrew.trials.fills import BARE_TRACK, FilledQueue, LeavingPose, PoseKind
 
 stats = heavy("scipy.stats")

@@ -7,7 +7,7 @@ import enum
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from feederscrew.columns import Column
+from feederscrew.base.columns import Column
 from feederscrew.trials.course import Fate
 
 

@@ -10,19 +10,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats
+from feederscrew.base.arrays import Bools, Floats
+from feederscrew.base.geometry import vectors
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.blades import Wiper
+from feederscrew.bowl.devices.kinds import dearer
+from feederscrew.bowl.devices.ledges import Rails
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing import proposals
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.proposals import MARGINS, Proposal
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import SELDOM_SHARE, ShortTrial
-from feederscrew.geometry import vectors
-from feederscrew.rates.stream import Orientations
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.blades import Wiper
-from feederscrew.sorting.devices.kinds import dearer
-from feederscrew.sorting.devices.ledges import Rails
-from feederscrew.sorting.devices.trade import Action
+from feederscrew.feeding.stream import Orientations
 from feederscrew.sorting.isolating import chain, rails
 from feederscrew.sorting.isolating.chain import Design, DesignConstraints, DesignTask
 from feederscrew.sorting.isolating.design import design_around_rails

@@ -8,19 +8,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.arrivals.kernel import body
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import zero_rows
+from feederscrew.base.geometry.lattice import Cells, cells, chords, handles
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.base.units import MM, counted
 from feederscrew.bowl import default
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials, texts
 from feederscrew.designing.findings import Hooking, SeldomPart
 from feederscrew.designing.record import Pair, Risk, RiskKind
 from feederscrew.designing.short_trials import ShortTrial
-from feederscrew.dropping.kernel import body
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import zero_rows
-from feederscrew.geometry.lattice import Cells, cells, chords, handles
-from feederscrew.geometry.polygons import turned
 from feederscrew.part.record import Part
 from feederscrew.sorting.isolating.chain import in_mm
 from feederscrew.sorting.orientations import Orientation
@@ -28,7 +29,6 @@ from feederscrew.trials import part_poses, queue, runs, staging
 from feederscrew.trials.fills import FilledQueue
 from feederscrew.trials.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
 from feederscrew.trials.shape import solid_of
-from feederscrew.units import counted
 
 LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin
 CUBE_DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
@@ -156,7 +156,7 @@ def risks(
             continue
         text = (
             f"{other.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction "
-            f"holds it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
+            f"holds it between walls {between[0] / MM:.3g} mm to {between[1] / MM:.3g} mm apart"
         )
         c, s = math.cos(strut(other, width)), math.sin(strut(other, width))
         x, y, z = other.axes

@@ -21,14 +21,14 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check, units
-from feederscrew.arrays import Array, Ints
+from feederscrew.arrivals import simulation_cache
+from feederscrew.base import check, units
+from feederscrew.base.arrays import Array, Ints
+from feederscrew.base.errors import FeederError
+from feederscrew.base.processes import Process, ProcessEnded, server_context
+from feederscrew.base.running import RunSettings
 from feederscrew.designing import evidence
 from feederscrew.designing.queues import FILLS
-from feederscrew.errors import FeederError
-from feederscrew.processes import Process, ProcessEnded, server_context
-from feederscrew.running import RunSettings
-from feederscrew.studies import simulation_cache
 from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel
 from feederscrew.trials.queue_counts import QueuedParts
 

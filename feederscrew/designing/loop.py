@@ -8,9 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.arrivals.entry import Shares
+from feederscrew.arrivals.plate_test import throw_number
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.geometry import vectors
+from feederscrew.bowl.devices.kinds import cost_class as cost_class_of
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import HELD, Status
-from feederscrew.conveying.hop import hop
 from feederscrew.designing import (
     calm_drive,
     exploring,
@@ -39,16 +44,11 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.designing.short_trials import robust_run
-from feederscrew.dropping.plate_test import throw_number
-from feederscrew.errors import ArgumentError
-from feederscrew.geometry import vectors
+from feederscrew.motion.hop import hop
 from feederscrew.part.record import Part, refuse_many_facets
-from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating import chain as static
 from feederscrew.sorting.isolating.chain import DesignConstraints
-from feederscrew.studies.rate import Shares
-from feederscrew.studies.tooling import ToolingStudy, check_named
+from feederscrew.sorting.tooling import ToolingStudy, check_named
 from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel, PoseKind
 from feederscrew.trials.long_ride import long_ride
 from feederscrew.trials.result import TrialRun

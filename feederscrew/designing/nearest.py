@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import HELD
-from feederscrew.conveying.hop import hop
 from feederscrew.designing import calm_drive, exploring, proposals, queues, texts
 from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind, MoveKind
@@ -21,7 +21,7 @@ from feederscrew.designing.record import (
     NearestDesign,
 )
 from feederscrew.designing.search import Candidate, Search
-from feederscrew.dropping.plate_test import throw_number
+from feederscrew.motion.hop import hop
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.trials.wanted import wanted_states
 

@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from feederscrew.base.units import MINUTE, MM
 from feederscrew.bowl.verified import HELD, Status
 from feederscrew.designing.calm_drive import CALMER_SHARE, STROKES, DriveKind, slow_to, speed, velocity_kept
 from feederscrew.designing.findings import Cause
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
 from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.sorting.isolating.chain import OutcomeKind
-from feederscrew.units import MINUTE, MM
 
 MOST_TRIES = 3
 SHARE_OF_TRIAL_RATE = 0.5  # [1] of what a clean short trial promises: queues bring less

@@ -5,9 +5,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from feederscrew.base.running import RunSettings
 from feederscrew.designing import texts
 from feederscrew.designing.record import Attempt
-from feederscrew.running import RunSettings
 from feederscrew.trials import runs
 
 Progress = Callable[[str, int, int, float, float], None]

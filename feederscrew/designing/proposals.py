@@ -7,24 +7,24 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats
+from feederscrew.base.geometry import vectors
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.kinds import KINDS, CostClass, cost_class, dearer, leaning, names, shaped
+from feederscrew.bowl.devices.orientation_names import nearest
+from feederscrew.bowl.devices.orientation_names import rows as rows_of
+from feederscrew.bowl.devices.pneumatics import PULSE
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
 from feederscrew.designing.findings import Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import ShortTrial
-from feederscrew.geometry import vectors
+from feederscrew.feeding import stream
+from feederscrew.feeding.stream import Orientations
 from feederscrew.part.record import Part
-from feederscrew.rates import stream
-from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.kinds import KINDS, CostClass, cost_class, dearer, leaning, names, shaped
-from feederscrew.sorting.devices.orientation_names import nearest
-from feederscrew.sorting.devices.orientation_names import rows as rows_of
-from feederscrew.sorting.devices.pneumatics import PULSE
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import (
     DESIGN_KEY,
     Cut,
@@ -36,8 +36,8 @@ from feederscrew.sorting.isolating.chain import (
 )
 from feederscrew.sorting.isolating.rails import RAIL, RailSetting, find_head
 from feederscrew.sorting.orientations import SAME_HEAD_COSINE, Hanging, Orientation, neck
+from feederscrew.sorting.tooling import ToolingSearch, tooling
 from feederscrew.sorting.verdicts import DeviceEncounter
-from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.trials.fills import LeavingCounts, PoseKind
 from feederscrew.trials.wanted import aspects_at_any_heading, equivalent_rows, wanted_rows, wanted_states
 

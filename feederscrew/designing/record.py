@@ -7,12 +7,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats
-from feederscrew.bowl.devices import shank_remarks
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Column, in_unit, values
+from feederscrew.base.records import ReadableRecord
+from feederscrew.base.running import RunSettings
+from feederscrew.base.units import HOUR, MINUTE, counted
+from feederscrew.bowl.device_list import shank_remarks
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import AGREED_JAMS, DRAWS_HELD, HELD, PURE, RATE_KEPT, SHOWN_PURITY, Status
-from feederscrew.columns import Column, in_unit, values
 from feederscrew.designing import texts
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.evidence import rate_at_most, share_at_least
@@ -27,14 +32,10 @@ from feederscrew.designing.fill_verdicts import (
 from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Hooking, Move, SeldomPart
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part, small_part_remarks
-from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules.registry import require_rule
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.sorting.isolating.design import DESIGN_MARGIN_M
-from feederscrew.studies.tooling import ToolingStudy, listed
+from feederscrew.sorting.tooling import ToolingStudy, listed
 from feederscrew.trials.fills import (
     FedRow,
     FilledQueue,
@@ -45,7 +46,6 @@ from feederscrew.trials.fills import (
 )
 from feederscrew.trials.long_ride import LongRide
 from feederscrew.trials.result import TrialRun
-from feederscrew.units import HOUR, MINUTE, counted
 
 
 class ProofKind(enum.StrEnum):

@@ -7,7 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.arrivals.entry import Shares
+from feederscrew.base.arrays import Floats
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.base import ComparedValue
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.designing import calm_drive, proposals, short_trials
 from feederscrew.designing.findings import Fault
@@ -16,13 +19,10 @@ from feederscrew.designing.progress import SearchProgress, SearchStage, TrialBud
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import RATE_KEPT, Attempt, DesignRequest, RobustRun
 from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING
+from feederscrew.feeding import stream
+from feederscrew.feeding.stream import Orientations
 from feederscrew.part.record import Part
-from feederscrew.rates import stream
-from feederscrew.rates.stream import Orientations
 from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.base import ComparedValue
-from feederscrew.studies.rate import Shares
 from feederscrew.trials.fills import FillLevel
 from feederscrew.trials.queue import PartsQueue
 from feederscrew.trials.wanted import leaves_hanging

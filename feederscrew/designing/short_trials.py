@@ -11,26 +11,26 @@ from typing import Any
 import numpy as np
 import shapely
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrivals.pool import gather
+from feederscrew.arrivals.toss_runs import scattered
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.orientation_names import place_of
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import PURE
-from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.designing import calm_drive
 from feederscrew.designing.findings import End, Fault, FaultKind
 from feederscrew.designing.record import RobustRun
-from feederscrew.dropping.pool import gather
-from feederscrew.dropping.toss_runs import scattered
-from feederscrew.errors import FeederError
-from feederscrew.geometry import vectors
+from feederscrew.feeding import stream
+from feederscrew.motion.conveying import RESTITUTION_DOUBT
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
-from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.orientation_names import place_of
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.fates import at_entry
 from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.sorting.orientations import orientations as on_the_track

@@ -5,13 +5,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from feederscrew.base.units import counted
 from feederscrew.bowl.verified import PURE
 from feederscrew.designing.fill_verdicts import DifferenceKind, FillDifference
 from feederscrew.designing.findings import End, Fault, FaultKind, Hooking, Move, MoveKind, SeldomPart
 from feederscrew.sorting.isolating.chain import in_mm
 from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import JammedParts, LeavingCounts
-from feederscrew.units import counted
 
 
 def end_text(end: End) -> str:

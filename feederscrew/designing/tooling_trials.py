@@ -13,7 +13,14 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.arrivals.entry import Shares
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.errors import FeederError
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.kinds import CostClass, names
+from feederscrew.bowl.devices.kinds import cost_class as cost_class_of
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing import calm_drive, exploring, hanging, proposals, short_trials, texts
 from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.designing.policy import USUAL_POLICY
@@ -22,17 +29,10 @@ from feederscrew.designing.proposals import equivalent_rows
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import BankedTrack, Candidate, Search
 from feederscrew.designing.short_trials import SELDOM_SHARE, find_denials
-from feederscrew.dropping.ensemble import wilson
-from feederscrew.errors import FeederError
-from feederscrew.rates import stream
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.kinds import CostClass, names
-from feederscrew.sorting.devices.kinds import cost_class as cost_class_of
-from feederscrew.sorting.devices.trade import Action
+from feederscrew.feeding import stream
 from feederscrew.sorting.isolating import chain as static
 from feederscrew.sorting.isolating.chain import Design, DesignConstraints, OutcomeKind
-from feederscrew.studies.rate import Shares
-from feederscrew.studies.tooling import ToolingStudy
+from feederscrew.sorting.tooling import ToolingStudy
 from feederscrew.trials.wanted import aspects_at_any_heading
 
 PARTS_OF_EACH = 2  # parts of each orientation

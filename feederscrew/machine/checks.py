@@ -5,43 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import units
-from feederscrew.bowl.record import Sizing
-from feederscrew.conveying import hop
-from feederscrew.errors import FeederError
+from feederscrew.base import units
+from feederscrew.base.errors import FeederError
+from feederscrew.base.units import MM, MPA
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.machine.springs import fewest_leaves, greatest_amplitude
-from feederscrew.sorting.devices.trade import Action
-from feederscrew.units import MM, MM_S, MPA
+from feederscrew.motion import hop
+from feederscrew.motion.conveying import speed_remark
 
 VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
-
-
-def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
-    """Return what is odd about a conveying velocity: a line, or none.
-
-    Parameters
-    ----------
-    velocity : float [m/s]
-        NaN where there is no steady one.
-    rules : Sizing or None
-        The slowest and the fastest usual speed; a bowl made by hand has no rules.
-
-    Returns
-    -------
-    list of str
-        Empty where the speed is usual, not known or without rules.
-
-    References
-    ----------
-    Trade; the keys ``sizing.slowest`` and ``sizing.fastest``.
-    """
-    if rules is None or np.isnan(velocity) or rules.slowest <= velocity <= rules.fastest:
-        return []
-    between = f"{rules.slowest / MM_S:.4g} to {rules.fastest / MM_S:.4g} mm/s"
-    side = "slower" if velocity < rules.slowest else "faster"
-    return [
-        f"{velocity / MM_S:.3g} mm/s is {side} than bowls run ({between}): check stroke, angle and friction"
-    ]
 
 
 def remarks(sheet: Any) -> tuple[str, ...]:

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from feederscrew import units
+from feederscrew.base import units
+from feederscrew.base.columns import Column, values
+from feederscrew.base.errors import ArgumentError
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Column, values
-from feederscrew.conveying import answer
-from feederscrew.errors import ArgumentError
 from feederscrew.machine.springs import FULL_TURN_RAD, gain
+from feederscrew.motion import conveying as answer
 
 # word: dimension
 MEASURED_DIMENSIONS = {

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.base.columns import Column
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.units import MM_S, MPA, factor, listed
 from feederscrew.bowl import schema
 from feederscrew.bowl.reading import Setting, default
 from feederscrew.bowl.record import UNBALANCE_UNKNOWN, Bowl, Drive, Machine, Sizing, shares, vibration_angle
 from feederscrew.bowl.schema import BY_NAME
-from feederscrew.columns import Column
-from feederscrew.conveying import answer
-from feederscrew.errors import ArgumentError
+from feederscrew.bowl.size import Size
 from feederscrew.machine import sizing, springs
-from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import (
     analyse_springs,
     gain,
@@ -29,7 +29,7 @@ from feederscrew.machine.springs import (
     tuned_leaf_sets,
     upright_pull,
 )
-from feederscrew.units import MM_S, MPA, factor, listed
+from feederscrew.motion import conveying as answer
 
 RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
@@ -336,7 +336,7 @@ class DriveSearch:
     """A bowl whose drive is sought."""
 
     bowl: Bowl  # with its track
-    size: sizing.Size  # of it
+    size: Size  # of it
     settings: tuple[Setting, ...]  # that say what the user gave
     target: float  # [1/s] counted parts
     bulk: float  # [kg/m3] of the parts' hulls

@@ -6,34 +6,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.bowl.devices.orientation_names import nearest
 from feederscrew.bowl.record import (
     RIGHT_ANGLE_RAD,
-    UNBALANCE_UNKNOWN,
     Bowl,
     Machine,
     Sizing,
     Track,
-    Unbalance,
     shares,
 )
-from feederscrew.conveying import answer
-from feederscrew.errors import FeederError
-from feederscrew.geometry.polygons import turned
+from feederscrew.bowl.size import MIN_WALL_ABOVE_PART_M, Size
+from feederscrew.feeding import well_oriented
 from feederscrew.machine.springs import analyse_springs, gain, greatest_amplitude
-from feederscrew.mechanics.headings import headings
+from feederscrew.motion import conveying as answer
+from feederscrew.motion.headings import headings
 from feederscrew.part.record import Part
-from feederscrew.rates import well_oriented
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
-from feederscrew.sorting.devices.orientation_names import nearest
 
 STRAIGHT_TRACK = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
 MAX_SIZING_ITERATIONS = 200  # of a search that halves its error in each
 DIAMETER_TOLERANCE_M = 1e-12  # [m]
-# [m] of upright wall over a part on a track or below its rails, at least, where it steps out
-MIN_WALL_ABOVE_PART_M = 5e-3
 MAX_WALL_SLOPE = 0.9  # slope, a little over 40 deg, of a wall between two turns that lie beside each other
 
 
@@ -46,25 +43,6 @@ class Lying:
     length: float  # [m] along the wall, of the longest orientation that is wanted
     width: float  # [m] from the wall, of the widest orientation that is wanted
     hanging: float = 0.0  # [m] greatest length of a part that leaves hanging; 0 where none does
-
-
-@dataclass(frozen=True)
-class Size:
-    """Bowl and track."""
-
-    diameter: float  # [m]
-    least: dict[str, float]  # [m] diameter that each rule asks for
-    track_width: float  # [m]
-    clearance: float  # [m] play of the part across the track
-    bend: float  # [m] l^2 / (4 R): its sagitta on both sides
-    climb: float  # [rad]
-    depth: float  # [m] rise of the track
-    turns: float
-    pitch: float  # [m] rise of one turn
-    mass: float | None = None  # [kg] of the bowl, where it is known from its solid
-    inertia: float | None = None  # [kg m2] of the same about its axis
-    unbalance: Unbalance = UNBALANCE_UNKNOWN  # of the same
-    room: float | None = None  # [m] radius of its inside at the bottom, where its solid steps outwards
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +117,7 @@ def size_shape(
 
     References
     ----------
-    ``mechanics.headings``.
+    ``motion.headings``.
     """
     name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
     stood = posture(part, aspects, name)

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew.arrays import Floats
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Column
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry.vectors import cross, determinant, dot
+from feederscrew.base.units import MM
 from feederscrew.bowl.record import Bowl, Machine, Sizing, Track, direction, shares
-from feederscrew.columns import Column
-from feederscrew.errors import FeederError
-from feederscrew.geometry.vectors import cross, determinant, dot
 from feederscrew.part.mass import shift_inertia
-from feederscrew.units import MM
 
 BASE_DENSITY = 7850.0  # [kg/m3] of the base, taken as a round plate of it
 RIM_SAMPLES = 360  # round the bowl at which its stroke is computed

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.bowl.devices.base import room_of
+from feederscrew.bowl.devices.features import SAME_PLACE_M, Bore
+from feederscrew.bowl.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, TRIGGER, Sorter
 from feederscrew.bowl.record import Bowl
-from feederscrew.rates.stream import on_stretch
-from feederscrew.sorting.devices.base import room_of
-from feederscrew.sorting.devices.features import SAME_PLACE_M, Bore
-from feederscrew.sorting.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, TRIGGER, Sorter
+from feederscrew.feeding.stream import on_stretch
 from feederscrew.sorting.orientations import Orientation, travel_speed
 
 FIELD_MARGIN = 1.2  # [1] of the window: to align the camera (assumption)

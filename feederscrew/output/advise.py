@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.advising.advice import CLASS_WORDS, AdviceStudy, ChangedPart, Reason, Way
-from feederscrew.columns import Column, Frame, of_records, values
+from feederscrew.base.columns import Column, Frame, of_records, values
+from feederscrew.base.units import MINUTE
+from feederscrew.designing.advice import CLASS_WORDS, AdviceStudy, ChangedPart, Reason, Way
 from feederscrew.output import offers as offer
 from feederscrew.output import poses, solid_files
 from feederscrew.output.offers import RecordView
@@ -27,7 +28,6 @@ from feederscrew.output.page.blocks import (
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.posture import posture
-from feederscrew.units import MINUTE
 
 GAINS = {True: "easier to feed", False: "no gain"}
 SHOWN = 3  # changes with pictures of before and after, at least those that were tried

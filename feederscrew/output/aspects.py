@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Array, Floats, Points, Vector
-from feederscrew.columns import Frame
-from feederscrew.documents import hint, nearest
-from feederscrew.errors import ArgumentError
-from feederscrew.heavy import heavy
+from feederscrew.arrivals.aspects_study import AspectsStudy
+from feederscrew.base.arrays import Array, Floats, Points, Vector
+from feederscrew.base.columns import Frame
+from feederscrew.base.documents import hint, nearest
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM, quantity_text
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, style, tables
 from feederscrew.output.offers import RecordView
@@ -19,8 +21,6 @@ from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, names_text
 from feederscrew.resting.exact_tumbling import Transition
 from feederscrew.resting.rules.recommended import Recommended
-from feederscrew.studies.aspects import AspectsStudy
-from feederscrew.units import MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
 

@@ -5,8 +5,8 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
-from feederscrew.arrays import Array
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Array
+from feederscrew.base.heavy import heavy
 from feederscrew.output import style
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects

@@ -7,8 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.base.units import MM, MM_S
+from feederscrew.bowl.devices.pneumatics import SEEN_BY
 from feederscrew.bowl.verified import Verified
 from feederscrew.machine.after_outlet import InlineTrack, plan_inline_track
+from feederscrew.machine.sheet import MachineSheet
 from feederscrew.machine.vision_station import (
     STAND_OFF_M,
     STAND_THREAD,
@@ -17,9 +20,6 @@ from feederscrew.machine.vision_station import (
 )
 from feederscrew.output.outlet_poses import find_leaving
 from feederscrew.output.tables import Frame
-from feederscrew.sorting.devices.pneumatics import SEEN_BY
-from feederscrew.studies.bowl import MachineSheet
-from feederscrew.units import MM, MM_S
 
 MS = 1e-3  # [s]
 

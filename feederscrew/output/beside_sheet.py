@@ -3,12 +3,12 @@
 import math
 import textwrap
 
+from feederscrew.base.units import MM
+from feederscrew.bowl.devices.pneumatics import SEEN_BY
 from feederscrew.machine.after_outlet import InlineTrack
 from feederscrew.machine.vision_station import STAND_OFF_M, VisionStation
 from feederscrew.output.beside_bowl import Beside, rows, vision_rows
 from feederscrew.output.drafting import Drawing, scale_words
-from feederscrew.sorting.devices.pneumatics import SEEN_BY
-from feederscrew.units import MM
 
 SCALES = (2.0, 1.0, 0.5, 0.4, 0.2, 0.1, 0.05)  # ISO 5455, with 1:2.5
 ROW_MM = 4.6

@@ -14,9 +14,16 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from feederscrew.arrays import Floats
+from feederscrew.base.arrays import Floats
+from feederscrew.base.units import DEG, GRAM, LITRE, MM, PER_MINUTE
+from feederscrew.bowl.devices.pneumatics import SEEN_BY
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import Verified
+from feederscrew.cad import facets, segments, track
+from feederscrew.cad.closed_body import BowlSolid
+from feederscrew.cad.measuring import Measures, measures
+from feederscrew.cad.plan import DOME, BowlPlan, TrackPath
+from feederscrew.machine.sheet import MachineSheet, Order
 from feederscrew.output import beside_bowl, beside_sheet, pose_sheet, tooling_drawing
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import solidbowl_views as views
@@ -24,14 +31,7 @@ from feederscrew.output.drafting import FRAME, Drawing, scale_words
 from feederscrew.output.marking import SheetFields, of_trial
 from feederscrew.output.outlet_poses import OutletPoses, find_outlet_poses
 from feederscrew.output.tooling_drawing import EDGES, View
-from feederscrew.solidbowl import facets, segments, track
-from feederscrew.solidbowl.closed_body import BowlSolid
-from feederscrew.solidbowl.measuring import Measures, measures
-from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
-from feederscrew.sorting.devices.pneumatics import SEEN_BY
 from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack
-from feederscrew.studies.bowl import MachineSheet, Order
-from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
 VIEW_ROOM = 134.0, 56.0  # [mm] of paper for the bowl across, and upright in each of two views

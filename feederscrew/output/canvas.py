@@ -11,7 +11,7 @@ from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.image import imsave
 from matplotlib.patheffects import withStroke
 
-from feederscrew.arrays import Array
+from feederscrew.base.arrays import Array
 
 LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 letters, its middle left out
 HALO = [withStroke(linewidth=2.5, foreground="white")]  # of letters over hatching or colours

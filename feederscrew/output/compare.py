@@ -6,9 +6,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from feederscrew.arrays import Floats
-from feederscrew.columns import Frame, of_arrays, of_records, values
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Frame, of_arrays, of_records, values
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM_S, counted
+from feederscrew.feeding import compare as studies
 from feederscrew.output import offers as offer
 from feederscrew.output import style
 from feederscrew.output.offers import RecordView
@@ -17,8 +19,6 @@ from feederscrew.resting.deviation import PAIR_COLUMNS, Comparison
 from feederscrew.resting.profiles import PROFILE_COLUMNS
 from feederscrew.resting.rules import registry
 from feederscrew.resting.rules.recommended import RECOMMENDED_COLUMNS
-from feederscrew.studies import compare as studies
-from feederscrew.units import MM_S, counted
 
 mpl_patches = heavy("matplotlib.patches")
 

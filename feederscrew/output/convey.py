@@ -7,11 +7,16 @@ from typing import Any
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.arrays import Array, Bools, Floats
+from feederscrew.base.arrays import Array, Bools, Floats
+from feederscrew.base.columns import Frame, of_arrays, quantities, values
+from feederscrew.base.geometry.grids import Grid
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM_S, factor
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Frame, of_arrays, quantities, values
-from feederscrew.conveying import answer, steady
-from feederscrew.conveying.answer import (
+from feederscrew.motion import conveying as answer
+from feederscrew.motion import steady
+from feederscrew.motion.convey import ConveyCurve, ConveyMap, ConveyPhase, ConveyStudy
+from feederscrew.motion.conveying import (
     ANSWER_COLUMNS,
     BEST_PHASE_COLUMNS,
     NEIGHBOUR_COLUMNS,
@@ -19,18 +24,14 @@ from feederscrew.conveying.answer import (
     Neighbours,
     throw_of_flight,
 )
-from feederscrew.conveying.operating_point import PHASES
-from feederscrew.conveying.steady import MotionStatus
-from feederscrew.geometry.grids import Grid
-from feederscrew.heavy import heavy
-from feederscrew.mechanics.limits import Regime
+from feederscrew.motion.limits import Regime
+from feederscrew.motion.operating_point import PHASES
+from feederscrew.motion.steady import MotionStatus
 from feederscrew.output import offers as offer
 from feederscrew.output import style
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import convey_text
 from feederscrew.output.tables import PHASE_WORDS, regime_words
-from feederscrew.studies.convey import ConveyCurve, ConveyMap, ConveyPhase, ConveyStudy
-from feederscrew.units import MM_S, factor
 
 matplotlib = heavy("matplotlib")
 mpl_colors = heavy("matplotlib.colors")

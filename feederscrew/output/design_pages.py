@@ -1,13 +1,16 @@
 """The page and the files of ``feeder design``, of one part and of a family of parts."""
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import zip_longest
 from typing import Any
 
-from feederscrew import units
+from feederscrew.base import units
+from feederscrew.base.columns import ColumnHead, Frame, share_head
+from feederscrew.bowl.arguments import settings_of
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.verified import (
     AMONG,
@@ -20,12 +23,12 @@ from feederscrew.bowl.verified import (
     Status,
     Verified,
 )
-from feederscrew.columns import ColumnHead, Frame, share_head
 from feederscrew.designing import texts
 from feederscrew.designing.design import Built
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.next_tries import next_tries
 from feederscrew.designing.record import DesignStudy
+from feederscrew.machine.sheet import MachineSheet
 from feederscrew.output import (
     beside_bowl,
     designs,
@@ -55,6 +58,7 @@ from feederscrew.output.page.blocks import (
     Notes,
     Page,
     Picture,
+    Pose,
     Table,
     Text,
     Tile,
@@ -65,9 +69,6 @@ from feederscrew.output.style import png
 from feederscrew.output.trial import rides
 from feederscrew.output.trial.tables import queues_table
 from feederscrew.resting.aspects import find
-from feederscrew.sorting.devices.trade import Action
-from feederscrew.studies.arguments import settings_of
-from feederscrew.studies.bowl import MachineSheet
 
 MEASURE = (
     "Stroke: a stroke gauge, a printed sticker on the bowl's rim, shows it peak to peak; if it is below the "
@@ -538,17 +539,21 @@ def family_page(study: FamilyStudy) -> str:
     else:
         status = "One track and one chain of devices were tried with all parts, and do not hold for each."
     machines, warned, risks, rows = [], dict[str, None](), [], []
+    views, pose_of = list[Views](), dict[str, Callable[[str], Pose | None]]()
     for member in study.members:
         name, d = member.part.name, designs.document(member)
+        aspects = find(member.part) if member.tooling is None else member.tooling.aspects
+        views += poses.opening(member.part, aspects, first_seen(member)[:1], of=name)
+        pose_of[name] = poses.pose_finder(member.part, aspects)
         facts = d["machine"]
         machines.append(f"{name}: {'no bowl' if facts is None else designs.machine_text(facts)}")
-        warned |= dict.fromkeys(f"{name}: {line}" for line in member.warnings)
-        risks += [f"{name}: {risk.text}" for risk in member.risks]
+        warned |= dict.fromkeys(f"{name}: {poses.name_part(line, name)}" for line in member.warnings)
+        risks += [f"{name}: {poses.name_part(risk.text, name)}" for risk in member.risks]
         rows.append(
             {
                 "part": name,
                 "status": d["status"],
-                "leaves as": d["wanted"] or "-",
+                "leaves as": poses.name_part(d["wanted"] or "-", name),
                 "asked_per_minute": d["target_per_minute"],
                 "delivered_per_minute": d["delivered_per_minute"],
                 "at_least_per_minute": d["delivered_low"],
@@ -572,19 +577,24 @@ def family_page(study: FamilyStudy) -> str:
     )
     blocks: list[Block] = [Text("Nothing is changed from one part to the next.")]
     if changes:
+        named = {
+            column: [poses.name_part(text, column) if column in pose_of else text for text in texts]
+            for column, texts in changeover(study).items()
+        }
         sheet = CsvSheet("changeover.csv", tables.text(changed, "csv"), on_page=False)
         how = (
             "set: at the controller of the drive.",
             "taught: the sensor is shown the part that comes next.",
             "swapped: by hand, with the bowl at rest.",
         )
-        blocks = [Table(changed), sheet, Heading("How"), Notes(how)]
+        blocks = [Table(Frame.of(named)), sheet, Heading("How"), Notes(how)]
     chapters = (
         Chapter(tuple(answer), tiles, anchor="answer", title="The answer"),
         Chapter(tuple(blocks), anchor="changeover", title="Changeover"),
     )
     names = " and ".join(member.part.name for member in study.members)
-    return html(Page(names, f"one bowl for several parts: {study.status}", chapters, kind="design"))
+    subtitle = f"one bowl for several parts: {study.status}"
+    return html(Page(names, subtitle, chapters, "design", tuple(views), pose_of=pose_of))
 
 
 def family_offers(study: FamilyStudy) -> list[offer.Offer]:

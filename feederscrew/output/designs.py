@@ -2,17 +2,27 @@
 
 import datetime
 import textwrap
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
 
-from feederscrew import __version__, units
+from feederscrew import __version__
 from feederscrew import bowl as bowls
-from feederscrew.arrays import Floats, Ints
-from feederscrew.bowl import devices, reading, schema
-from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.base import units
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.columns import ColumnHead, Frame, heads, of_records, values
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import DEG, MM, MM_S, PER_MINUTE
+from feederscrew.bowl import device_list as devices
+from feederscrew.bowl import reading, schema
+from feederscrew.bowl.device_list import DEVICES_SECTION
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.record import (
     DRIVE_PHASE_COLUMNS,
@@ -23,10 +33,7 @@ from feederscrew.bowl.record import (
     Sizing,
     Track,
 )
-from feederscrew.bowl.verified import HELD, NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
-from feederscrew.columns import ColumnHead, Frame, heads, of_records, values
-from feederscrew.conveying.answer import answer, throw_number
-from feederscrew.conveying.hop import HOP_COLUMNS, hop
+from feederscrew.bowl.verified import NOTHING_LEFT, Status, Verified, body_fingerprint, fingerprint
 from feederscrew.designing import acceptance_sheet, texts
 from feederscrew.designing.acceptance_sheet import SheetLine
 from feederscrew.designing.fill_verdicts import DIFFERENCE_COLUMNS
@@ -45,19 +52,15 @@ from feederscrew.designing.record import (
     Pair,
     Risk,
 )
-from feederscrew.errors import FeederError
-from feederscrew.geometry import vectors
-from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
+from feederscrew.machine.sheet import MachineSheet
+from feederscrew.motion.conveying import answer, throw_number
+from feederscrew.motion.hop import HOP_COLUMNS, hop
 from feederscrew.output import next_tries, part_facts, style, tables
 from feederscrew.output.tooling import settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
-from feederscrew.studies.bowl import MachineSheet
-from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
 
@@ -71,11 +74,11 @@ SAID_FIRST = {  # or elsewhere
     "peak_to_peak_mm",
     "throw_number",
 }
-CAMERAS = {  # by what a sensor sees
-    "outline": "camera from above",
-    "side": "camera from the side",
-    "height": "height sensor",
-    "relief": "laser line",
+CAMERAS = {  # by what a sensor sees: one, and several
+    "outline": ("camera from above", "cameras from above"),
+    "side": ("camera from the side", "cameras from the side"),
+    "height": ("height sensor", "height sensors"),
+    "relief": ("laser line", "laser lines"),
 }
 PROOF = (  # what a design has shown: none of it of one that is not proved
     "delivered_per_minute",
@@ -207,12 +210,19 @@ def _condition(study: DesignStudy) -> dict[str, Any] | None:
 
 
 def _alternative(option: Alternative) -> dict[str, Any]:
-    cameras = [CAMERAS[view] for view in option.sees]
+    needs = [*NEEDS[option.cost_class]]  # beside steel
+    if option.sees:
+        needs = [_cameras(option.sees), units.counted(len(option.sees), "valve"), *NEEDS[3][2:]]
     return {
         **values(ALTERNATIVE_COLUMNS, option),
-        "needs": [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[option.cost_class]),  # beside steel
+        "needs": needs,
         "why": option.why or None,
     }
+
+
+def _cameras(views: Sequence[str]) -> str:
+    """Cameras and sensors by what they see, each kind with its number: '2 cameras from above'."""
+    return ", ".join(units.counted(number, *CAMERAS[view]) for view, number in Counter(views).items())
 
 
 def alternatives(study: DesignStudy) -> Frame:
@@ -366,15 +376,12 @@ def _machine_words(facts: Mapping[str, Any]) -> tuple[str, str, str]:
     led = f", phase {facts['phase_deg']:.4g} deg" if two_axis else ""
     at_springs, at_track = (facts[f"vibration_angle_at_the_{place}_deg"] for place in ("springs", "track"))
     drawn = "" if at_springs is None or two_axis else f"{at_springs:.3g} deg at the springs, "
-    views = f" ({', '.join(CAMERAS[view] for view in facts['cameras_see'])})" if facts["cameras"] else ""
-    cameras, valves = (
-        units.counted(facts[f"{name}s"], name) if facts[f"{name}s"] else f"no {name}"
-        for name in ("camera", "valve")
-    )
+    cameras = _cameras(facts["cameras_see"]) or "no camera"
+    valves = units.counted(facts["valves"], "valve") if facts["valves"] else "no valve"
     return (
         f"{facts['drive']}{led}: {facts['drive_needs']}",
         f"{drawn}{at_track:.3g} deg to the track",
-        f"{cameras}{views}, {valves}, {'compressed air' if facts['air'] else 'no air'}",
+        f"{cameras}, {valves}, {'compressed air' if facts['air'] else 'no air'}",
     )
 
 
@@ -434,9 +441,9 @@ def summary(study: DesignStudy) -> Frame:
         rows.append((f"with {kind}", "; ".join(words)))
     rows.append(("trials, parts", f"{len(study.attempts)}, {d['trial_parts']}"))
     wrapped = [line for row in rows for line in wrap_row(*row)]
-    labels = next_tries.CALMER if d["status"] in HELD else next_tries.LABELS
-    for label, entry in zip(labels, d["next"], strict=False):
-        wrapped += [(label, entry["command"]), *wrap_row("", entry["why"])]  # a command stands in one line
+    for entry in d["next"]:
+        # a command stands in one line
+        wrapped += [(entry["label"], entry["command"]), *wrap_row("", entry["why"])]
     return tables.quantities(wrapped)
 
 

@@ -18,8 +18,8 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import ArrayLike
 
-from feederscrew import dxf
-from feederscrew.arrays import Floats
+from feederscrew.base import dxf
+from feederscrew.base.arrays import Floats
 from feederscrew.output import marking, style
 
 A3 = 420.0, 297.0  # [mm]

@@ -5,21 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points
-from feederscrew.columns import values
-from feederscrew.conveying.answer import RESTITUTION_DOUBT
-from feederscrew.dropping import toss_runs
-from feederscrew.dropping.drop_test import DropTrace, chosen
-from feederscrew.dropping.toss_runs import FACE_NAMES
-from feederscrew.heavy import heavy
-from feederscrew.output import offers as offer
-from feederscrew.output import part_facts, style
-from feederscrew.output.aspects import MARKS, PROBABILITIES
-from feederscrew.output.offers import RecordView
-from feederscrew.output.record_lines import shares_text
-from feederscrew.part.record import Part
-from feederscrew.resting.aspects import Aspects
-from feederscrew.studies.drop import (
+from feederscrew.arrivals import toss_runs
+from feederscrew.arrivals.drop import (
     AGREEMENT_COLUMNS,
     DROP_TEST_COLUMNS,
     DROP_TRACE_COLUMNS,
@@ -27,7 +14,20 @@ from feederscrew.studies.drop import (
     DropStudy,
     TossStudy,
 )
-from feederscrew.units import MM
+from feederscrew.arrivals.drop_test import DropTrace, chosen
+from feederscrew.arrivals.toss_runs import FACE_NAMES
+from feederscrew.base.arrays import Floats, Ints, Points
+from feederscrew.base.columns import values
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM
+from feederscrew.motion.conveying import RESTITUTION_DOUBT
+from feederscrew.output import offers as offer
+from feederscrew.output import part_facts, style
+from feederscrew.output.aspects import MARKS, PROBABILITIES
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import shares_text
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 
 mpl_ticker = heavy("matplotlib.ticker")
 ndimage = heavy("scipy.ndimage")

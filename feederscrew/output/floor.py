@@ -6,31 +6,31 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Array, Bools, Floats, Ints, Points, Vector
+from feederscrew.arrivals.floor import FLOOR_COLUMNS, FloorStudy
+from feederscrew.base.arrays import Array, Bools, Floats, Ints, Points, Vector
+from feederscrew.base.columns import Frame, quantities, values
+from feederscrew.base.geometry.grids import Grid
+from feederscrew.base.geometry.polygons import centroid, turned
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import DEGREE, MM
 from feederscrew.bowl import texts
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Frame, quantities, values
-from feederscrew.geometry.grids import Grid
-from feederscrew.geometry.polygons import centroid, turned
-from feederscrew.heavy import heavy
-from feederscrew.mechanics import floor_balance
-from feederscrew.mechanics.cycle import Cycle
-from feederscrew.mechanics.floor_balance import (
+from feederscrew.motion import floor_balance
+from feederscrew.motion.cycle import Cycle
+from feederscrew.motion.floor_balance import (
     FLOOR_CYCLE_COLUMNS,
     FLOOR_LINE_COLUMNS,
     HOP,
     MOTION_STATES,
     FloorMotion,
 )
-from feederscrew.mechanics.track_balance import TrackMotion
+from feederscrew.motion.track_balance import TrackMotion
 from feederscrew.output import offers as offer
 from feederscrew.output import style
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import figure, motion_text
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.floor import FLOOR_COLUMNS, FloorStudy
-from feederscrew.studies.track import TrackStudy
-from feederscrew.units import DEGREE, MM
+from feederscrew.sorting.track import TrackStudy
 
 mpl_lines = heavy("matplotlib.lines")
 mpl_patches = heavy("matplotlib.patches")

@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from feederscrew import __version__
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
 from feederscrew.output import tables
 
 RECORD, ANOTHER = "run.json", "give another folder to `directory`"

@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM
 from feederscrew.bowl import texts
 from feederscrew.bowl.record import Track
-from feederscrew.geometry.polygons import turned
-from feederscrew.heavy import heavy
-from feederscrew.mechanics.headings import Headings
+from feederscrew.motion.headings import Headings
 from feederscrew.output import offers as offer
 from feederscrew.output import style
 from feederscrew.output.floor import CONTACT, polygon
@@ -17,8 +18,7 @@ from feederscrew.output.record_lines import headings_text
 from feederscrew.output.track import wall_and_edge
 from feederscrew.part.record import small_part_remarks
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.headings import HeadingsStudy
-from feederscrew.units import MM
+from feederscrew.sorting.headings import HeadingsStudy
 
 mpl_ticker = heavy("matplotlib.ticker")
 shading = heavy("feederscrew.output.shading")

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Vector
-from feederscrew.columns import Column, ColumnHead, Frame, UnitName, of_records, quantities, values
+from feederscrew.base.arrays import Vector
+from feederscrew.base.columns import Column, ColumnHead, Frame, UnitName, of_records, quantities, values
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import inertia_text
 from feederscrew.part.density import MATERIAL_COLUMNS, MATERIALS
-from feederscrew.studies.aspects import INERTIA_COLUMNS, InertiaStudy
+from feederscrew.part.inertia import INERTIA_COLUMNS, InertiaStudy
 
 
 def document(study: InertiaStudy) -> dict[str, Any]:

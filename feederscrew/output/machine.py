@@ -4,17 +4,12 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from feederscrew.base.columns import Frame, of_records, values
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import DEG, MM, MM_S
 from feederscrew.bowl.verified import Verified
-from feederscrew.columns import Frame, of_records, values
-from feederscrew.heavy import heavy
 from feederscrew.machine.condition import CONDITION_COLUMNS, MeasuredMachine
-from feederscrew.machine.springs import LEAF_SET_COLUMNS, ROCKING_COLUMNS, LeafSet, Rocking
-from feederscrew.output import beside_bowl, marking, proof, solidbowl
-from feederscrew.output import machine_sheet as sheets
-from feederscrew.output import offers as offer
-from feederscrew.output.offers import RecordView
-from feederscrew.output.record_lines import machine_text
-from feederscrew.studies.bowl import (
+from feederscrew.machine.sheet import (
     DRIVE_COLUMNS,
     FULL_BOWL_COLUMNS,
     MACHINE_COLUMNS,
@@ -23,7 +18,12 @@ from feederscrew.studies.bowl import (
     MachineSheet,
     Order,
 )
-from feederscrew.units import DEG, MM, MM_S
+from feederscrew.machine.springs import LEAF_SET_COLUMNS, ROCKING_COLUMNS, LeafSet, Rocking
+from feederscrew.output import beside_bowl, marking, proof, solidbowl
+from feederscrew.output import machine_sheet as sheets
+from feederscrew.output import offers as offer
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import machine_text
 
 figures = heavy("feederscrew.output.machine_figures")
 

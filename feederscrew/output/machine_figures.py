@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
-from feederscrew.arrays import Vector
+from feederscrew.base.arrays import Vector
+from feederscrew.base.units import DEG, MM, PER_MINUTE
 from feederscrew.bowl.verified import Verified
+from feederscrew.machine.sheet import MachineSheet
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import style
-from feederscrew.studies.bowl import MachineSheet
-from feederscrew.units import DEG, MM, PER_MINUTE
 
 MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX = 1760, 1500  # [px] of the page
 SHEET_EDGE = "#22303c"

@@ -7,18 +7,18 @@ from typing import cast
 
 import numpy as np
 
-from feederscrew import units
-from feederscrew.arrays import Points
+from feederscrew.base import units
+from feederscrew.base.arrays import Points
+from feederscrew.base.units import DEG, GRAM, LITRE, MM, MM_S, MPA, PER_MINUTE
 from feederscrew.bowl.record import Bowl, Drive, Machine
 from feederscrew.bowl.verified import Verified
-from feederscrew.conveying.hop import hop
 from feederscrew.machine import drive_sizing
+from feederscrew.machine.sheet import MachineSheet, Order
 from feederscrew.machine.springs import MAINS, fewest_leaves, mean_pull
+from feederscrew.motion.hop import hop
 from feederscrew.output.tables import regime_words
 from feederscrew.part.density import DEFAULT_MATERIAL
 from feederscrew.part.record import Part
-from feederscrew.studies.bowl import MachineSheet, Order
-from feederscrew.units import DEG, GRAM, LITRE, MM, MM_S, MPA, PER_MINUTE
 
 Pairs = Iterator[tuple[str, str]]
 N_MM, GRAM_CM3 = units.factor("N/mm", "stiffness"), units.factor("g/cm3", "density")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew.arrays import Vector
+from feederscrew.base.arrays import Vector
 from feederscrew.bowl.verified import Status, Verified
 from feederscrew.output import offers
 

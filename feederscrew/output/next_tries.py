@@ -2,11 +2,12 @@
 
 from typing import Any
 
+from feederscrew.base.units import PER_MINUTE, counted, listed
+from feederscrew.bowl.verified import HELD
 from feederscrew.designing import next_tries as decisions
-from feederscrew.designing.calls import call_of, call_text, call_words
+from feederscrew.designing.calls import call_of, call_text, call_words, changed_options
 from feederscrew.designing.next_tries import Evidence, NextTry, TryKind
 from feederscrew.designing.record import DesignStudy
-from feederscrew.units import PER_MINUTE, counted, listed
 
 LABELS = ("try first", "then", "or")  # of the commands, the likeliest first
 CALMER = ("calmer", "or")  # of those after a design that holds
@@ -22,18 +23,24 @@ def entries(study: DesignStudy) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        Of each ``change`` (what is changed), ``evidence`` (what is known of it), ``why`` (a sentence),
-        ``words`` of the call, and ``command``, the same as one types it.
+        Of each ``label`` ('try first'), ``change`` (what is changed), ``evidence`` (what is known of it),
+        ``why`` (a sentence), ``options`` of the call that are changed with their values (None of one that is
+        left out), ``settings`` of the bowl beside them, ``words`` of the call, and ``command``, the same as
+        one types it.
     """
     rows = []
+    labels = CALMER if study.status in HELD else LABELS
     call = study.call or call_words(study.request, study.part)
-    for one in decisions.next_tries(study):
+    for label, one in zip(labels, decisions.next_tries(study), strict=False):
         words = call_of(one.request, study.request, call, one.settings)
         rows.append(
             {
+                "label": label,
                 "change": one.kind.value,
                 "evidence": one.evidence.value,
                 "why": reason(one),
+                "options": changed_options(one.request, study.request),
+                "settings": dict(one.settings),
                 "words": list(words),
                 "command": call_text(words),
             }

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
-from feederscrew.columns import Frame
-from feederscrew.heavy import heavy
+from feederscrew.base.columns import Frame
+from feederscrew.base.heavy import heavy
 from feederscrew.output import tables
 
 futures = heavy("concurrent.futures")
@@ -198,7 +198,7 @@ def _make_in_parallel(files: Sequence[Offer]) -> Iterator[Callable[[Offer], str 
     if not files or not sys.platform.startswith("linux") or threading.active_count() > 1:
         yield lambda offer: None
         return
-    from feederscrew import processes  # and all of multiprocessing with it
+    from feederscrew.base import processes  # and all of multiprocessing with it
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of threads that BLAS keeps, and that sleep

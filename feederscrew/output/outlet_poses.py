@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.base.arrays import Floats
+from feederscrew.bowl.devices.orientation_names import nearest, split_name
 from feederscrew.bowl.verified import AMONG, Verified
-from feederscrew.rates.stream import Orientations
+from feederscrew.feeding.stream import Orientations
+from feederscrew.machine.sheet import MachineSheet, Order
 from feederscrew.sorting.device_poses import DevicePoses, find_device_poses
-from feederscrew.sorting.devices.orientation_names import nearest, split_name
 from feederscrew.sorting.orientations import HANGING, Hanging, Orientation
 from feederscrew.sorting.pose_words import describe_pose
-from feederscrew.studies.bowl import MachineSheet, Order
 
 
 @dataclass(frozen=True, eq=False)

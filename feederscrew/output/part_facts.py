@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 from typing import Any
 
-from feederscrew.columns import values
+from feederscrew.base.columns import values
+from feederscrew.base.units import factor
 from feederscrew.part.record import CONDITION_COLUMNS, PART_COLUMNS, Part
-from feederscrew.units import factor
 
 UJ = factor("uJ", "energy")
 

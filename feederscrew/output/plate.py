@@ -5,24 +5,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats
-from feederscrew.bowl import Bowl
-from feederscrew.columns import Frame, of_arrays, values
-from feederscrew.dropping.plate_test import MIN_TRANSITIONS, Occupancy, PlateResult
-from feederscrew.heavy import heavy
-from feederscrew.output import offers as offer
-from feederscrew.output import style
-from feederscrew.output.offers import RecordView
-from feederscrew.output.record_lines import plate_text
-from feederscrew.resting.rules import registry
-from feederscrew.studies.drop import (
+from feederscrew.arrivals.drop import (
     PLATE_COLUMNS,
     PLATE_RATE_COLUMNS,
     PLATE_TEST_COLUMNS,
     PlateOf,
     PlateStudy,
 )
-from feederscrew.units import MM, MM_S, counted
+from feederscrew.arrivals.plate_test import MIN_TRANSITIONS, Occupancy, PlateResult
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Frame, of_arrays, values
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM, MM_S, counted
+from feederscrew.bowl import Bowl
+from feederscrew.output import offers as offer
+from feederscrew.output import style
+from feederscrew.output.offers import RecordView
+from feederscrew.output.record_lines import plate_text
+from feederscrew.resting.rules import registry
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

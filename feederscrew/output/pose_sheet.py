@@ -6,8 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Floats, Points, Triangles
-from feederscrew.geometry import vectors
+from feederscrew.base.arrays import Floats, Points, Triangles
+from feederscrew.base.geometry import vectors
+from feederscrew.base.units import MM
 from feederscrew.output import shading
 from feederscrew.output import solidbowl_views as views
 from feederscrew.output.drafting import Drawing, scale_words
@@ -15,7 +16,6 @@ from feederscrew.output.shading import Camera
 from feederscrew.sorting.device_poses import DevicePoses, SharedPose
 from feederscrew.sorting.orientations import HANGING, Hanging, Orientation
 from feederscrew.sorting.pose_words import describe_pose
-from feederscrew.units import MM
 
 SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)  # ISO 5455
 MOST_FACETS = 6_000  # of a part that is drawn as lines

@@ -8,21 +8,23 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.arrays import Floats
-from feederscrew.geometry.polygons import turned
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM
 from feederscrew.output import batch
 from feederscrew.output.page.blocks import Pose, Views
 from feederscrew.output.shading import Mesh
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
-from feederscrew.units import MM
 
 shading = heavy("feederscrew.output.shading")
 tooling_views = heavy("feederscrew.output.tooling_views")
 
 ORIENTATION = re.compile(r"([^@\s]+)@(\d{1,3})")  # 'A@188': an aspect, a heading in whole degrees
+IN_TEXT = re.compile(r"\b[^\W\d_][\w-]*@\d{1,3}(?![\w@])")  # the same, within words
+ASPECT = re.compile(r"[A-Z]{1,2}")
 NAMED = re.compile(r"([^@\s]+?)(?:@(\d{1,3}))?")  # the same, or an aspect alone
 WIDTH_PX, HEIGHT_PX = 240, 180
 MOST_FACETS = 20_000  # of a part that is drawn so small
@@ -158,7 +160,28 @@ def _slab(low: Sequence[float], high: Sequence[float]) -> Mesh:
     return np.asarray(low) + corners * np.subtract(high, low), SLAB
 
 
-def opening(part: Part, aspects: Aspects, named: Sequence[tuple[str, str]]) -> tuple[Views, ...]:
+def name_part(text: str, part: str) -> str:
+    """Return a text in which each orientation is told of what part it is: 'A@188 of nut'.
+
+    Parameters
+    ----------
+    text : str
+        An aspect alone, 'A', or any text with orientations in it.
+    part : str
+        Its name.
+
+    Returns
+    -------
+    str
+    """
+    if ASPECT.fullmatch(text):
+        return f"{text} of {part}"
+    return IN_TEXT.sub(lambda name: f"{name[0]} of {part}", text)
+
+
+def opening(
+    part: Part, aspects: Aspects, named: Sequence[tuple[str, str]], of: str = ""
+) -> tuple[Views, ...]:
     """Return the view that a page opens with: orientations on the bare track, to be turned.
 
     Parameters
@@ -169,6 +192,8 @@ def opening(part: Part, aspects: Aspects, named: Sequence[tuple[str, str]]) -> t
     named : sequence of (str, str)
         Names of orientations, 'A@188', or of aspects, 'A', each with what becomes of it; a name that is
         unknown is left out. An aspect lies as its posture does, at no heading of its own.
+    of : str, optional
+        The name of the part, which the captions tell where a page is of several.
 
     Returns
     -------
@@ -194,10 +219,19 @@ def opening(part: Part, aspects: Aspects, named: Sequence[tuple[str, str]]) -> t
             }
         )
         tracks.append(shading.track(*bare_track(on_track(lying, heading))))
-        captions.append((name, words, ()))
+        captions.append((f"{name} of {of}" if of else name, words, ()))
     if not poses:
         return ()
     scene = shading.scene_of_part(part, tooling_views.TO_VIEWER)
     scene |= {"reach": 1.55, "tracks": tracks, "poses": poses}
     hint = "On the track, parts move to the arrow. Drag to turn; double-click sets it back."
-    return (Views(scene, tuple(captions), "opening", "Orientation", hint=hint, printed=True),)
+    return (
+        Views(
+            scene,
+            tuple(captions),
+            f"opening-{of}" if of else "opening",
+            "Orientation",
+            hint=hint,
+            printed=True,
+        ),
+    )

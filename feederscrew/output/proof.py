@@ -3,6 +3,7 @@
 from typing import Any, TypeGuard
 
 from feederscrew import __version__
+from feederscrew.base.columns import values
 from feederscrew.bowl import Bowl
 from feederscrew.bowl.verified import (
     VERIFIED_COLUMNS,
@@ -11,7 +12,6 @@ from feederscrew.bowl.verified import (
     Verified,
     VoidTrial,
 )
-from feederscrew.columns import values
 from feederscrew.part.record import Part
 
 FileTrial = Verified | VoidTrial | None  # that a bowl file tells of

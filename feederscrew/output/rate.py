@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import units
-from feederscrew.columns import ColumnHead, Frame, quantities, values
+from feederscrew.base import units
+from feederscrew.base.columns import ColumnHead, Frame, quantities, values
+from feederscrew.base.units import MM, PER_MINUTE
+from feederscrew.bowl.devices.leans import Separation
+from feederscrew.feeding.drive_settings import ACCEPTED_RATE_ERROR
+from feederscrew.feeding.rate import RATE_COLUMNS, RateStudy
+from feederscrew.feeding.tune import TuneStudy
+from feederscrew.feeding.well_oriented import entering
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts, tables
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import rate_text, tune_text
-from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
-from feederscrew.rates.tipping import remark
-from feederscrew.rates.well_oriented import entering
-from feederscrew.sorting.devices.leans import Separation
-from feederscrew.studies.rate import RATE_COLUMNS, RateStudy
-from feederscrew.studies.tune import TuneStudy
-from feederscrew.units import MM, PER_MINUTE
+from feederscrew.sorting.tipping import remark
 
 TOLD = {  # columns that stand in rows of the printed table with words of their own
     "parts_per_minute",

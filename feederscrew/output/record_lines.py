@@ -10,31 +10,31 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feederscrew.arrays import Array, Floats
+from feederscrew.base.arrays import Array, Floats
+from feederscrew.base.units import DEGREE, GRAM, MINUTE, MM, counted, listed
 from feederscrew.bowl import Bowl
-from feederscrew.mechanics.floor_balance import MOTION_STATES
+from feederscrew.motion.floor_balance import MOTION_STATES
 from feederscrew.output.offers import RecordView
 from feederscrew.part.record import Part
-from feederscrew.units import DEGREE, GRAM, MINUTE, MM, counted, listed
 
 if TYPE_CHECKING:
-    from feederscrew.conveying.answer import Answer
+    from feederscrew.arrivals.drop import PlateStudy
+    from feederscrew.arrivals.floor import FloorStudy
     from feederscrew.designing.families import FamilyStudy
     from feederscrew.designing.record import DesignStudy
-    from feederscrew.rates.well_oriented import Rate
+    from feederscrew.feeding.compare import CalibrateStudy
+    from feederscrew.feeding.tune import TuneStudy
+    from feederscrew.feeding.well_oriented import Rate
+    from feederscrew.machine.sheet import MachineSheet
+    from feederscrew.motion.conveying import Answer
+    from feederscrew.motion.slide import SlideStudy
+    from feederscrew.part.inertia import InertiaStudy
     from feederscrew.resting.aspects import Aspects
+    from feederscrew.sorting.headings import HeadingsStudy
     from feederscrew.sorting.orientations import Orientation
-    from feederscrew.studies.aspects import InertiaStudy
-    from feederscrew.studies.bowl import MachineSheet
-    from feederscrew.studies.compare import CalibrateStudy
-    from feederscrew.studies.drop import PlateStudy
-    from feederscrew.studies.floor import FloorStudy
-    from feederscrew.studies.headings import HeadingsStudy
-    from feederscrew.studies.slide import SlideStudy
-    from feederscrew.studies.tooling import ToolingStudy
-    from feederscrew.studies.track import TrackStudy
-    from feederscrew.studies.trial import TrialStudy
-    from feederscrew.studies.tune import TuneStudy
+    from feederscrew.sorting.tooling import ToolingStudy
+    from feederscrew.sorting.track import TrackStudy
+    from feederscrew.trials.trial import TrialStudy
 
 PERCENT = 0.01  # [SI]
 MOST_SHARES = 8  # aspects in a line

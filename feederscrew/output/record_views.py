@@ -16,19 +16,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew import check
+from feederscrew.base import check
+from feederscrew.base.columns import Frame
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import listed, printable
 from feederscrew.bowl import Bowl
-from feederscrew.columns import Frame
-from feederscrew.errors import ArgumentError
-from feederscrew.heavy import heavy
+from feederscrew.bowl.arguments import settings_of
 from feederscrew.output import offers, style, tables
 from feederscrew.output.folder import ResultFolder, safe_name
 from feederscrew.output.offers import RecordView
 from feederscrew.output.part_facts import conditions
 from feederscrew.output.record_lines import part_text
 from feederscrew.part.record import Part
-from feederscrew.studies.arguments import settings_of
-from feederscrew.units import listed, printable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -167,10 +167,10 @@ class ShownPart:
 
 def part_page(part: Part) -> str:
     """Return the page of a part on each of its aspects, to be turned: HTML that needs no other file."""
-    from feederscrew.output import report
+    from feederscrew.arrivals.aspects_study import aspects
+    from feederscrew.output import report_page as report
     from feederscrew.output.page.as_html import html as page_of
     from feederscrew.output.page.blocks import Chapter, Page
-    from feederscrew.studies.aspects import aspects
 
     views = Chapter(tuple(report.aspect_views(part, aspects(part, drops=0))))
     return page_of(Page(part.name, part_text(part), (views,), "part"))

@@ -12,10 +12,10 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
-from feederscrew.arrays import Array, Bools, Floats, Points, Triangles, Vector
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Array, Bools, Floats, Points, Triangles, Vector
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM
 from feederscrew.output import style
-from feederscrew.units import MM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

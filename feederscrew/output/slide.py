@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Frame, of_records
+from feederscrew.base.heavy import heavy
 from feederscrew.bowl import texts
 from feederscrew.bowl.reading import SETTING_COLUMNS, Setting
-from feederscrew.columns import Frame, of_records
-from feederscrew.heavy import heavy
-from feederscrew.mechanics.limits import Regime
+from feederscrew.motion.limits import Regime
+from feederscrew.motion.slide import SlideMap, SlideStudy
 from feederscrew.output import offers as offer
 from feederscrew.output import style
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import slide_text
 from feederscrew.output.tables import regime_words
-from feederscrew.studies.slide import SlideMap, SlideStudy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

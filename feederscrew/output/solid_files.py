@@ -7,13 +7,13 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Points, Triangles
+from feederscrew.base.arrays import Floats, Points, Triangles
+from feederscrew.base.units import MM
+from feederscrew.cad.closed_body import BowlSolid
+from feederscrew.cad.section import triangles
+from feederscrew.cad.segments import Segment
 from feederscrew.output import marking
-from feederscrew.solidbowl.closed_body import BowlSolid
-from feederscrew.solidbowl.section import triangles
-from feederscrew.solidbowl.segments import Segment
 from feederscrew.sorting.tooled_track import TooledTrack
-from feederscrew.units import MM
 
 TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'

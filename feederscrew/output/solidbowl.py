@@ -5,18 +5,18 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from feederscrew.columns import values
+from feederscrew.base.columns import values
+from feederscrew.base.units import MM
+from feederscrew.cad import segments
+from feederscrew.cad.closed_body import SOLID_COLUMNS
+from feederscrew.cad.segments import SEGMENTS_COLUMNS
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
-from feederscrew.solidbowl import segments
-from feederscrew.solidbowl.closed_body import SOLID_COLUMNS
-from feederscrew.solidbowl.segments import SEGMENTS_COLUMNS
-from feederscrew.units import MM
 
 if TYPE_CHECKING:
     from feederscrew.bowl.verified import Verified
-    from feederscrew.solidbowl.closed_body import BowlSolid
-    from feederscrew.studies.bowl import MachineSheet
+    from feederscrew.cad.closed_body import BowlSolid
+    from feederscrew.machine.sheet import MachineSheet
 
 
 def offers(

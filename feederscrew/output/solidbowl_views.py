@@ -4,14 +4,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feederscrew.arrays import Array, Floats, Ints, Points, Triangles
+from feederscrew.base.arrays import Array, Floats, Ints, Points, Triangles
+from feederscrew.base.units import MM
+from feederscrew.cad import riding
+from feederscrew.cad.closed_body import BowlSolid
 from feederscrew.output import marking, shading, style
 from feederscrew.output.page.blocks import Block, Notes, Views
 from feederscrew.output.shading import Camera, Mesh, Rays, join_meshes
 from feederscrew.part.record import Part
-from feederscrew.solidbowl import riding
-from feederscrew.solidbowl.closed_body import BowlSolid
-from feederscrew.units import MM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew.arrays import Array, Floats
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Array, Floats
+from feederscrew.base.heavy import heavy
 from feederscrew.output import DPI
 from feederscrew.resting.rules import registry
 

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew import units
-from feederscrew.arrays import Array
-from feederscrew.columns import Column as DeclaredColumn
-from feederscrew.columns import ColumnHead
-from feederscrew.columns import Frame as Frame
-from feederscrew.columns import quantities as quantities
-from feederscrew.mechanics.limits import Regime
+from feederscrew.base import units
+from feederscrew.base.arrays import Array
+from feederscrew.base.columns import Column as DeclaredColumn
+from feederscrew.base.columns import ColumnHead
+from feederscrew.base.columns import Frame as Frame
+from feederscrew.base.columns import quantities as quantities
+from feederscrew.motion.limits import Regime
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -5,20 +5,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats
-from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import ColumnHead, Frame, heads, share_head, values
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM, counted
+from feederscrew.bowl.arguments import settings_of
+from feederscrew.bowl.device_list import DEVICES_SECTION, check_written, value_text
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.kinds import CostClass
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting
-from feederscrew.columns import ColumnHead, Frame, heads, share_head, values
 from feederscrew.designing import texts
-from feederscrew.heavy import heavy
+from feederscrew.feeding.rate import PassagesStudy
 from feederscrew.output import marking, part_facts
 from feederscrew.output import offers as offer
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import tooling_text
 from feederscrew.sorting import device_passages
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.kinds import CostClass
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import (
     CUT_COLUMNS,
     DESIGN_COLUMNS,
@@ -34,10 +37,7 @@ from feederscrew.sorting.orientations import (
     Orientation,
 )
 from feederscrew.sorting.tooled_track import TooledTrack, lay_out
-from feederscrew.studies.arguments import settings_of
-from feederscrew.studies.rate import PassagesStudy
-from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.units import MM, counted
+from feederscrew.sorting.tooling import ToolingStudy
 
 if TYPE_CHECKING:
     from feederscrew.designing.tooling_trials import TriedDesign
@@ -660,7 +660,7 @@ def _draw_section(
 
 
 def _step(section: Callable[[], TooledTrack], mark: str) -> bytes:
-    from feederscrew.solidbowl.exact import exact_file
+    from feederscrew.cad.exact import exact_file
 
     return marking.mark_step(exact_file.section_file(section()), mark)
 

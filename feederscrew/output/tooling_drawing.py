@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew.arrays import Floats
+from feederscrew.base.arrays import Floats
+from feederscrew.base.units import DEG, MM
+from feederscrew.bowl.devices.features import Bore, box_ring
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
 from feederscrew.output.tables import Frame
-from feederscrew.sorting.devices.features import Bore, box_ring
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, bend_ring
-from feederscrew.units import DEG, MM
 
 VIEW_GAP_MM = 20.0  # [mm] between the views
 DRAWN_WALL_M = 2e-3  # [m] thickness the wall is drawn with

@@ -13,17 +13,17 @@ from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 from shapely import affinity
 
-from feederscrew.arrays import Floats
+from feederscrew.base.arrays import Floats
+from feederscrew.base.units import MM
+from feederscrew.bowl.devices.base import Device, Verdict
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing import texts
 from feederscrew.output import style
 from feederscrew.sorting import device_passages
 from feederscrew.sorting.device_passages import Passage
-from feederscrew.sorting.devices.base import Device, Verdict
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import LEAST_SHARE  # what comes less often has no row
 from feederscrew.sorting.orientations import Hanging, Orientation
-from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.units import MM
+from feederscrew.sorting.tooling import ToolingStudy
 
 LIMITS_PAGE_WIDTH_PX = 1200  # pixels
 # pixels

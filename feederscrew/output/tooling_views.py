@@ -10,16 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from feederscrew.arrays import Floats, Points, Vector
+from feederscrew.base.arrays import Floats, Points, Vector
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.record import Track
-from feederscrew.geometry.polygons import turned
+from feederscrew.cad import section as printed
 from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera, Mesh
 from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, left_words, margin_words
-from feederscrew.solidbowl import section as printed
 from feederscrew.sorting import device_passages
 from feederscrew.sorting.device_passages import Passage
-from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.isolating.chain import LEAST_SHARE
 from feederscrew.sorting.orientations import Orientation
 from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, lay_out

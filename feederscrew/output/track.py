@@ -9,23 +9,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from feederscrew import bowl as bowls
-from feederscrew.arrays import Bools, Floats, Vector
+from feederscrew.base.arrays import Bools, Floats, Vector
+from feederscrew.base.columns import Frame, heads, values
+from feederscrew.base.geometry.grids import Grid
+from feederscrew.base.geometry.polygons import outline, turned
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM
 from feederscrew.bowl.record import Track
-from feederscrew.columns import Frame, heads, values
-from feederscrew.geometry.grids import Grid
-from feederscrew.geometry.polygons import outline, turned
-from feederscrew.heavy import heavy
-from feederscrew.mechanics.cycle import Cycle
-from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, regime
-from feederscrew.mechanics.track_balance import TRACK_CYCLE_COLUMNS, TrackAxes, TrackMotion, frame
-from feederscrew.mechanics.track_contacts import OPENING_COLUMNS, TIPPING_AXIS_COLUMNS
+from feederscrew.motion.cycle import Cycle
+from feederscrew.motion.floor_balance import HOP, MOTION_STATES, regime
+from feederscrew.motion.track_balance import TRACK_CYCLE_COLUMNS, TrackAxes, TrackMotion, frame
+from feederscrew.motion.track_contacts import OPENING_COLUMNS, TIPPING_AXIS_COLUMNS
 from feederscrew.output import floor, style
 from feederscrew.output import offers as offer
 from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, drop_rounding, polygon
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import track_text
-from feederscrew.studies.track import TRACK_COLUMNS, TrackStudy
-from feederscrew.units import MM
+from feederscrew.sorting.track import TRACK_COLUMNS, TrackStudy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

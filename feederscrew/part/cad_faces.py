@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import units
-from feederscrew.arrays import Floats, Vector
-from feederscrew.errors import MeshError
-from feederscrew.geometry import vectors
-from feederscrew.heavy import heavy
+from feederscrew.base import units
+from feederscrew.base.arrays import Floats, Vector
+from feederscrew.base.errors import MeshError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import counted
 from feederscrew.part import glb, topology
 from feederscrew.part.formats import CadFaces, Soup
 from feederscrew.part.gate import Crossings
-from feederscrew.units import counted
 
 spatial = heavy("scipy.spatial")
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check, documents, units
-from feederscrew.arrays import Floats
-from feederscrew.documents import Entry, Node
-from feederscrew.errors import ConfigError, FeederError
+from feederscrew.base import check, documents, units
+from feederscrew.base.arrays import Floats
+from feederscrew.base.documents import Entry, Node
+from feederscrew.base.errors import ConfigError, FeederError
 from feederscrew.part import mass
 from feederscrew.part.formats import PartFile
 from feederscrew.part.record import AspectNames, CardAspect, Part
@@ -22,7 +22,7 @@ class CardKey:
     """One key of a part card."""
 
     word: str
-    dimension: str  # of feederscrew.units, or 'text', 'section', 'rows'
+    dimension: str  # of feederscrew.base.units, or 'text', 'section', 'rows'
     example: str
     is_required: bool = False
     shape: tuple[int, ...] = ()  # of a list; () for one value

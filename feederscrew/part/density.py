@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from feederscrew import documents, units
-from feederscrew.columns import Column
-from feederscrew.errors import ArgumentError
+from feederscrew.base import documents, units
+from feederscrew.base.columns import Column
+from feederscrew.base.errors import ArgumentError
 
 LIGHTEST_SOLID_KG_M3, HEAVIEST_SOLID_KG_M3 = 10.0, 23_000.0  # rigid foams; osmium has 22,590
 DEFAULT_MATERIAL_NAME = "steel"

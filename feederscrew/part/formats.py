@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
-from feederscrew.documents import POINTER, POINTER_HEAD
-from feederscrew.geometry import vectors
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Bools, Floats, Ints, Points, Triangles
+from feederscrew.base.documents import POINTER, POINTER_HEAD
+from feederscrew.base.geometry import vectors
+from feederscrew.base.heavy import heavy
 
 manifold3d = heavy("manifold3d")
 

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points, Triangles, Vector
-from feederscrew.errors import MeshError, SeveralBodiesError
-from feederscrew.geometry import vectors
-from feederscrew.geometry.graphs import components
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats, Ints, Points, Triangles, Vector
+from feederscrew.base.errors import MeshError, SeveralBodiesError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.graphs import components
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import counted
 from feederscrew.part import mass, mending, topology
 from feederscrew.part.mending import EXPORT_SOLID
 from feederscrew.part.topology import MeshEdges
-from feederscrew.units import counted
 
 manifold3d = heavy("manifold3d")
 shapely = heavy("shapely")

@@ -9,9 +9,9 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew.errors import ArgumentError, printable
+from feederscrew.base.errors import ArgumentError, printable
+from feederscrew.base.records import ReadableRecord
 from feederscrew.part.formats import PartFile, Soup
-from feederscrew.records import ReadableRecord
 
 CAD_UNIT = "mm"  # both CAD libraries model in it, and write it without saying so
 CAD_TOLERANCE_MM = 5e-3  # of a facet from the curved surface that it stands for

@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points, Triangles
-from feederscrew.errors import MeshError
-from feederscrew.geometry import vectors
+from feederscrew.base.arrays import Floats, Ints, Points, Triangles
+from feederscrew.base.errors import MeshError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.units import counted, quantity_text
 from feederscrew.part.formats import MAX_READ_CORNERS, DamageError, Soup, refuse_size
-from feederscrew.units import counted, quantity_text
 
 MAX_SCENE_BYTES = 1 << 24  # [bytes] of the JSON of a GLB: names of nodes and buffers, not their numbers
 MAX_SCENE_NODES, MAX_NODE_DEPTH = 20_000, 50  # instances; nodes within nodes

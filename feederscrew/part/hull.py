@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints, Points, Triangles, Vector
-from feederscrew.errors import MeshError
-from feederscrew.geometry import vectors
-from feederscrew.geometry.vectors import solid_angles
-from feederscrew.heavy import heavy
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints, Points, Triangles, Vector
+from feederscrew.base.errors import MeshError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.vectors import solid_angles
+from feederscrew.base.heavy import heavy
 
 spatial = heavy("scipy.spatial")
 

@@ -14,19 +14,19 @@ from typing import IO, Any, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew import check, documents
-from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
-from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
-from feederscrew.geometry import graphs
-from feederscrew.heavy import heavy
+from feederscrew.base import check, documents
+from feederscrew.base.arrays import Bools, Floats, Ints, Points, Triangles
+from feederscrew.base.errors import ArgumentError, MeshError, SeveralBodiesError, printable
+from feederscrew.base.geometry import graphs
+from feederscrew.base.heavy import heavy
+from feederscrew.base.signatures import with_shown_signature
+from feederscrew.base.units import Quantity, QuantityError, factor, from_quantity, quantity, quantity_text
 from feederscrew.part import card, formats, gate, given, glb, mass, mesh_formats, step, threemf, topology
 from feederscrew.part.cad_faces import refuse_wrong_sides
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, find_density
 from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, PartFile, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.record import AspectNames, Part
-from feederscrew.signatures import with_shown_signature
-from feederscrew.units import Quantity, QuantityError, factor, from_quantity, quantity, quantity_text
 
 spatial = heavy("scipy.spatial")
 

@@ -7,9 +7,9 @@ from math import factorial
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints
-from feederscrew.geometry import vectors
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.geometry import vectors
 from feederscrew.part.record import Part
 
 EQUAL_MOMENTS_TOLERANCE = 1e-6  # [1] principal moments closer than this, by the largest, count as equal

@@ -9,13 +9,13 @@ from itertools import chain, combinations, pairwise
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points, Triangles, Vector
-from feederscrew.errors import MeshError
-from feederscrew.geometry import graphs, vectors
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats, Ints, Points, Triangles, Vector
+from feederscrew.base.errors import MeshError
+from feederscrew.base.geometry import graphs, vectors
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import counted
 from feederscrew.part import mass, topology
 from feederscrew.part.topology import MeshEdges, edge_table
-from feederscrew.units import counted
 
 spatial = heavy("scipy.spatial")
 

@@ -11,11 +11,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from feederscrew.arrays import Ints, Triangles
-from feederscrew.errors import MeshError
+from feederscrew.base.arrays import Ints, Triangles
+from feederscrew.base.errors import MeshError
+from feederscrew.base.units import counted, quantity_text
 from feederscrew.part import formats
 from feederscrew.part.formats import DamageError, Decimals, Soup, mask_non_ascii, refuse_size, split_facets
-from feederscrew.units import counted, quantity_text
 
 ANNOUNCES_MORE = "it announces more than it holds"
 

@@ -2,18 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Points, Triangles
-from feederscrew.columns import Column
-from feederscrew.errors import FeederError, MeshError
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats, Points, Triangles
+from feederscrew.base.columns import Column
+from feederscrew.base.errors import FeederError, MeshError
+from feederscrew.base.heavy import heavy
+from feederscrew.base.records import ReadableRecord
+from feederscrew.base.units import MM
+from feederscrew.base.views import views
 from feederscrew.part.hull import Hull
-from feederscrew.records import VIEWS_MODULE, ReadableRecord
-from feederscrew.units import MM
 
 trimesh = heavy("trimesh")
 
@@ -109,7 +109,7 @@ class Part(ReadableRecord, view="record_lines.PART_VIEW"):
         """
         if self.vertices is None:
             raise MeshError(self.source, "is a part card, it has no shape", "give a mesh")
-        return import_module(VIEWS_MODULE).shown(self)
+        return views().shown(self)
 
     @property
     def inputs(self) -> dict[str, str]:

@@ -10,11 +10,11 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from feederscrew import units
-from feederscrew.errors import MeshError
+from feederscrew.base import units
+from feederscrew.base.errors import MeshError
+from feederscrew.base.units import listed, quantity_text
 from feederscrew.part import cad_faces, glb
 from feederscrew.part.formats import MESH_FORMATS, DamageError, Soup, open_archive, unpack_pieces
-from feederscrew.units import listed, quantity_text
 
 TESSELLATION_MM, TESSELLATION_RAD = 0.01, 0.1  # between a curved face and its facets, and from facet to facet
 STEP_TIMEOUT_S = 60  # [s]

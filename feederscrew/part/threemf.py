@@ -16,13 +16,13 @@ from xml.parsers import expat
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Points, Triangles
-from feederscrew.errors import MeshError
-from feederscrew.geometry import vectors
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats, Points, Triangles
+from feederscrew.base.errors import MeshError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import counted, listed, quantity_text
 from feederscrew.part import formats, topology
 from feederscrew.part.formats import MAX_MESH_BYTES, MAX_READ_FACETS, DamageError, Soup, refuse_size
-from feederscrew.units import counted, listed, quantity_text
 
 manifold3d = heavy("manifold3d")
 

@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from feederscrew.arrays import Array, Floats, Ints, Points, Triangles
-from feederscrew.geometry import graphs, vectors
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Array, Floats, Ints, Points, Triangles
+from feederscrew.base.geometry import graphs, vectors
+from feederscrew.base.heavy import heavy
 
 spatial = heavy("scipy.spatial")
 

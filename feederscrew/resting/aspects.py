@@ -16,23 +16,23 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints, Points
-from feederscrew.errors import ArgumentError, ConfigError, Detail, FeederError, MeshError
-from feederscrew.geometry import compiled, vectors
-from feederscrew.geometry.graphs import component_of
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints, Points
+from feederscrew.base.errors import ArgumentError, ConfigError, Detail, FeederError, MeshError
+from feederscrew.base.geometry import compiled, vectors
+from feederscrew.base.geometry.graphs import component_of
+from feederscrew.base.records import ReadableRecord
+from feederscrew.base.signatures import with_shown_signature
+from feederscrew.base.units import MM, one_line
 from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.mass import Moments
 from feederscrew.part.record import PART_MEND, AspectNames, Part
-from feederscrew.records import ReadableRecord
 from feederscrew.resting import exact_tumbling, lying, walks
 from feederscrew.resting.faces import EQUAL_HEIGHT_SHARE, ONE_PLANE, Face, stable_faces, unstable_faces
 from feederscrew.resting.landscape import SMOOTH_ANGLE, Landscape, angle, landscape
 from feederscrew.resting.rules import formulas, recommended, registry
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.rules.registry import ClassQuantities
-from feederscrew.signatures import with_shown_signature
-from feederscrew.units import MM, one_line
 
 FLAT = "flat"
 CYLINDER = "cylinder"

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints, Points
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import fitting
-from feederscrew.geometry.vectors import solid_angles
-from feederscrew.heavy import heavy
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints, Points
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import fitting
+from feederscrew.base.geometry.vectors import solid_angles
+from feederscrew.base.heavy import heavy
 from feederscrew.resting import landscape
 
 sparse = heavy("scipy.sparse")

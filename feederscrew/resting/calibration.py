@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import optimize, stats
 
-from feederscrew import check
-from feederscrew.arrays import Floats
-from feederscrew.errors import FeederError
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats
+from feederscrew.base.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, require_ground
 from feederscrew.resting.deviation import ChiSquare, chi_square, chi_square_passes

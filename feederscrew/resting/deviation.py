@@ -7,10 +7,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew import check
-from feederscrew.arrays import Floats
-from feederscrew.columns import Column
-from feederscrew.heavy import heavy
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Column
+from feederscrew.base.heavy import heavy
 from feederscrew.resting.profiles import AspectProfile
 
 special = heavy("scipy.special")

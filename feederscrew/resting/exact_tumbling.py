@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints
-from feederscrew.geometry import compiled, vectors
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints
+from feederscrew.base.geometry import compiled, vectors
+from feederscrew.base.units import GRAVITY
 from feederscrew.part.hull import Hull
 from feederscrew.part.record import Part
 from feederscrew.resting import barriers, walks
@@ -18,7 +19,6 @@ from feederscrew.resting.barriers import Tumbling
 from feederscrew.resting.faces import Face
 from feederscrew.resting.rules import formulas, registry
 from feederscrew.resting.rules.registry import FaceQuantities
-from feederscrew.units import GRAVITY
 
 SHARE_SUM_TOLERANCE = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
 FACET_UNEVENNESS = 1e-7  # [1] of the radius: corners of a facet merged from needles lie so far off its plane

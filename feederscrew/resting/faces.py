@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats, Ints, Points
-from feederscrew.geometry import vectors
-from feederscrew.geometry.graphs import (
+from feederscrew.base.arrays import Bools, Floats, Ints, Points
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.graphs import (
     component_of,
     components,
     group_starts,
@@ -14,7 +14,7 @@ from feederscrew.geometry.graphs import (
     join_groups,
     split_groups,
 )
-from feederscrew.heavy import heavy
+from feederscrew.base.heavy import heavy
 from feederscrew.part.hull import Hull
 from feederscrew.resting.landscape import (
     GENTLE_COSINE,

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints, Points
-from feederscrew.geometry import vectors
-from feederscrew.geometry.graphs import components
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints, Points
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.graphs import components
 from feederscrew.part.hull import Hull
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet

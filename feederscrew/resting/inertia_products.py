@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Floats
-from feederscrew.geometry import vectors
+from feederscrew.base.arrays import Floats
+from feederscrew.base.geometry import vectors
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules import formulas
 

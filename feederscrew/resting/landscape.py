@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats, Ints
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import compiled, fitting
+from feederscrew.base.arrays import Bools, Floats, Ints
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import compiled, fitting
 from feederscrew.part.hull import Hull
 
 NAMELESS = -1  # a sink of no face

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feederscrew.arrays import Vector
-from feederscrew.geometry import vectors
-from feederscrew.geometry.graphs import component_of
-from feederscrew.geometry.polygons import outline, sides
+from feederscrew.base.arrays import Vector
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.graphs import component_of
+from feederscrew.base.geometry.polygons import outline, sides
 from feederscrew.part.hull import Hull
 from feederscrew.part.record import Part
 from feederscrew.resting.faces import ONE_PLANE, Face

@@ -7,18 +7,18 @@ from typing import Any, cast
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
-from feederscrew.errors import ArgumentError
-from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints, Points, Triangles
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.polygons import centroid, outline, sides, surrounds
+from feederscrew.base.records import ReadableRecord
+from feederscrew.base.signatures import with_shown_signature
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import PART_MEND, Part
-from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import ASPECTS_MEND, Aspects
 from feederscrew.resting.aspects import find as find_aspects
 from feederscrew.resting.lying import TOUCHING_SHARE
-from feederscrew.signatures import with_shown_signature
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 SIDE_TOLERANCE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long

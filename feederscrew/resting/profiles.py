@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check, documents
-from feederscrew.arrays import Floats
-from feederscrew.columns import Column
-from feederscrew.documents import hint
-from feederscrew.errors import Faults, FeederError
+from feederscrew.base import check, documents
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Column
+from feederscrew.base.documents import hint
+from feederscrew.base.errors import Faults, FeederError
+from feederscrew.base.units import counted, quantity_text
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules.recommended import LAUNCH_NAMES
-from feederscrew.units import counted, quantity_text
 
 HEAD_LINE = re.compile(r"#\s*([A-Za-z_ -]{1,30}?)\s*:\s*(.*)")
 DIGEST = re.compile(r"(?:sha256:)?([0-9a-f]{8,64})", re.IGNORECASE)
@@ -572,3 +572,15 @@ def device_counts(table: CountSheet, where: str, sha256: str) -> DeviceCounts:
     counts = np.array([[float(cell) for cell in row[1:]] for _, row in table.rows])
     passed, rejected = (check.frozen(counts[:, columns.index(name)]) for name in (PASSED, REJECTED))
     return DeviceCounts(where, sha256, tuple(lines.values()), tuple(lines), passed, rejected, table.head)
+
+
+def one_profile(measured: CountFile) -> AspectProfile:
+    """Return the only column of counts of a file.
+
+    Raises FeederError where it has several.
+    """
+    if len(measured.profiles) != 1:
+        names = ", ".join(profile.name for profile in measured.profiles[:5])
+        what = f"has {len(measured.profiles)} columns of shares ({names})"
+        raise FeederError(measured.source, what, "leave one of them in the file")
+    return measured.profiles[0]

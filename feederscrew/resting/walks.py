@@ -7,8 +7,8 @@ the arc between the normals of its two facets.
 
 import math
 
-from feederscrew.arrays import Bools, Floats, Ints, Points
-from feederscrew.geometry.compiled import compiled
+from feederscrew.base.arrays import Bools, Floats, Ints, Points
+from feederscrew.base.geometry.compiled import compiled
 from feederscrew.resting.half_edges import Edges
 
 Triple = tuple[float, float, float]

@@ -7,12 +7,12 @@ from functools import reduce
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Points
+from feederscrew.base.arrays import Points
+from feederscrew.bowl.devices.base import Device, Verdict, opening_at
+from feederscrew.bowl.devices.features import TrackOpening
+from feederscrew.bowl.devices.openings import hole_edges, through_the_wall
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.sorting import footprints
-from feederscrew.sorting.devices.base import Device, Verdict, opening_at
-from feederscrew.sorting.devices.features import TrackOpening
-from feederscrew.sorting.devices.openings import hole_edges, through_the_wall
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.fates import stand_astride
 from feederscrew.sorting.orientations import Orientation, hang
 from feederscrew.sorting.tooled_track import PlacedDevice, bend_ring

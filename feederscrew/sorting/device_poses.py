@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.base.arrays import Floats
+from feederscrew.bowl.devices.base import Device
 from feederscrew.sorting.device_passages import until_returned
-from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.isolating.chain import LEAST_SHARE
 from feederscrew.sorting.orientations import Orientation
 

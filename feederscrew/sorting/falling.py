@@ -13,14 +13,14 @@ import numpy as np
 import shapely
 import shapely.affinity
 
-from feederscrew.arrays import Bools, Floats, Points, Vector
+from feederscrew.base.arrays import Bools, Floats, Points, Vector
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry.polygons import cross, outline, sides, turned
+from feederscrew.bowl.devices.base import Device, opening_at
+from feederscrew.bowl.devices.openings import WALL_OVERCUT_M
 from feederscrew.bowl.record import Bowl
-from feederscrew.errors import FeederError
-from feederscrew.geometry.polygons import cross, outline, sides, turned
 from feederscrew.resting.posture import Posture
 from feederscrew.sorting import footprints
-from feederscrew.sorting.devices.base import Device, opening_at
-from feederscrew.sorting.devices.openings import WALL_OVERCUT_M
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M, Neck, Orientation, neck, shoulder_margin
 
 FOREMOST_TOLERANCE = 1e-6  # of the part's height: places so near to the foremost one are met with it

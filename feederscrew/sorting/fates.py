@@ -6,12 +6,12 @@ from functools import cached_property
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats
-from feederscrew.bowl.devices import unfit
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats
+from feederscrew.bowl.device_list import unfit
+from feederscrew.bowl.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.sorting import footprints
-from feederscrew.sorting.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.orientations import Hanging, Orientation, hang, may_hang
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict

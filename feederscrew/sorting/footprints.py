@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
-from feederscrew.geometry import polygons, shaded
-from feederscrew.geometry.compiled import zero_rows
-from feederscrew.geometry.polygons import turned
-from feederscrew.heavy import heavy
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints, Points, Triangles
+from feederscrew.base.geometry import polygons, shaded
+from feederscrew.base.geometry.compiled import zero_rows
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.base.heavy import heavy
+from feederscrew.bowl.devices.openings import WALL_OVERCUT_M, HoleEdges, gap
 from feederscrew.resting.lying import TOUCHING_SHARE
 from feederscrew.resting.posture import Posture
-from feederscrew.sorting.devices.openings import WALL_OVERCUT_M, HoleEdges, gap
 
 if TYPE_CHECKING:
     from feederscrew.sorting.kernel import Buffers, Foot

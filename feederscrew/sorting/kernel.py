@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points
-from feederscrew.geometry.compiled import compiled, entry, outlined, record_type
-from feederscrew.sorting.devices.openings import HoleEdges
+from feederscrew.base.arrays import Floats, Ints, Points
+from feederscrew.base.geometry.compiled import compiled, entry, outlined, record_type
+from feederscrew.bowl.devices.openings import HoleEdges
 
 POINT_TOLERANCE_M = 1e-12  # [m] points nearer to each other are one
 LINE_TOLERANCE_M = 1e-12  # [m] of a point from the line of two others: nearer it lies on it

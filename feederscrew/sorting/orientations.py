@@ -6,29 +6,29 @@ Source, where no other is named: own; docs/tooling.md, "1. The method".
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 import shapely
 import shapely.affinity
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints, Points, Vector
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints, Points, Vector
+from feederscrew.base.columns import Column
+from feederscrew.base.errors import ConfigError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.polygons import convex, cross, outline, sides, turned
+from feederscrew.base.units import GRAVITY
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.columns import Column
-from feederscrew.conveying import answer
-from feederscrew.conveying.hop import Hop, hop
-from feederscrew.errors import ConfigError
-from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import convex, cross, outline, sides, turned
-from feederscrew.mechanics import sameness
-from feederscrew.mechanics.headings import Headings, headings
+from feederscrew.motion import conveying as answer
+from feederscrew.motion import sameness
+from feederscrew.motion.headings import Headings, headings
+from feederscrew.motion.hop import Hop, hop
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.sorting import footprints
 from feederscrew.sorting.footprints import Footprint, silhouette, visible_area
-from feederscrew.units import GRAVITY
 
 if TYPE_CHECKING:
     from feederscrew.sorting.kernel import Foot
@@ -83,6 +83,21 @@ class Orientation:
     def name(self) -> str:
         """Return 'D@179': aspect and heading in whole degrees, from 0 to 359."""
         return f"{self.aspect}@{round(np.degrees(self.heading)) % 360}"
+
+    def on_track(self, track: Track, **changes: Any) -> Self:
+        """Return it on another stretch of track, with changes of its own fields.
+
+        Parameters
+        ----------
+        track : Track
+        **changes : any
+            Of fields: ``groove=0.0``.
+
+        Returns
+        -------
+        Orientation
+        """
+        return replace(self, track=track, **changes)
 
     @property
     def solid(self) -> Part:

@@ -3,12 +3,12 @@
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Vector
-from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import centroid, sides, turned
+from feederscrew.base.arrays import Vector
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.polygons import centroid, sides, turned
+from feederscrew.base.units import DEG
 from feederscrew.sorting.footprints import visible_area
 from feederscrew.sorting.orientations import HANGING, Hanging, Orientation, head_first, neck
-from feederscrew.units import DEG
 
 LONG_SHARE = 1.15  # [1] sides of the outline whose lengths differ by less are not told
 ALIGNED_RAD = np.radians(15.0)  # so near to the track's direction, or to square across it, a side is along it

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Floats, Points
-from feederscrew.geometry.polygons import turned
-from feederscrew.geometry.vectors import product
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Floats, Points
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.base.geometry.vectors import product
+from feederscrew.base.heavy import heavy
 from feederscrew.resting.posture import Posture
 from feederscrew.sorting.footprints import visible_area
 from feederscrew.sorting.orientations import Orientation

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Points, Triangles
-from feederscrew.heavy import heavy
+from feederscrew.base.arrays import Points, Triangles
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM
 from feederscrew.sorting.tooled_track import DRAWN_SAGITTA_M
-from feederscrew.units import MM
 
 if TYPE_CHECKING:
     from manifold3d import Manifold

@@ -17,10 +17,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Floats, Points, Values
+from feederscrew.base.arrays import Floats, Points, Values
+from feederscrew.bowl.devices.base import Device, room_of, size_of
+from feederscrew.bowl.devices.features import Drop, Features, ShopWork, TrackOpening
 from feederscrew.bowl.record import Track
-from feederscrew.sorting.devices.base import Device, room_of, size_of
-from feederscrew.sorting.devices.features import Drop, Features, ShopWork, TrackOpening
 from feederscrew.sorting.fates import leading_devices
 from feederscrew.sorting.orientations import Orientation
 

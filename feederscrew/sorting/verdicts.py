@@ -12,20 +12,21 @@ from typing import Any, cast
 import numpy as np
 import shapely
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Points, Vector
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import fitting
-from feederscrew.geometry.polygons import barrier, cross, outline
-from feederscrew.mechanics import headings as wall
-from feederscrew.mechanics import sameness
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Points, Vector
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import fitting
+from feederscrew.base.geometry.polygons import barrier, cross, outline
+from feederscrew.bowl.devices.asked import PlaceShares
+from feederscrew.bowl.devices.base import GRIP, UNSURE, Device, Verdict, share
+from feederscrew.bowl.devices.ledges import below_ledge
+from feederscrew.motion import headings as wall
+from feederscrew.motion import sameness
 from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.resting import half_edges as tumbling
 from feederscrew.resting import walks
 from feederscrew.resting.posture import Posture
 from feederscrew.sorting import falling, footprints, sensor_views
-from feederscrew.sorting.devices.base import GRIP, UNSURE, Device, Verdict, share
-from feederscrew.sorting.devices.ledges import below_ledge
 from feederscrew.sorting.orientations import Hanging, Orientation, head_first, neck, shoulder_margin
 
 BARRIER_OVERSHOOT_RAD = 1e-7  # [rad] past the barrier a part rolls down by itself
@@ -180,7 +181,6 @@ def _force_to_shift(orientation: Orientation, wide: float) -> float:
 
 
 Frame = tuple[Vector, Vector, Vector]  # [1] in the file's axes: to the side, along the turn's axis, down
-PlaceShares = tuple[tuple[int, float], ...]  # places of orientations, and the share [1] of each
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints, Points, Triangles
-from feederscrew.errors import FeederError
-from feederscrew.geometry.graphs import components
-from feederscrew.units import MM
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints, Points, Triangles
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry.graphs import components
+from feederscrew.base.units import MM
 
 SIMPLER = 0.0, 1e-5, 2e-4, 2e-3  # [mm] corners nearer than this become one: the first that closes
 MIN_VOID_VOLUME_MM3 = 1.0  # [mm3] a film of air that closes in itself, or a piece, smaller is left out

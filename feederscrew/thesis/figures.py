@@ -11,10 +11,10 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats
-from feederscrew.columns import Frame
-from feederscrew.mechanics import limits
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats
+from feederscrew.base.columns import Frame
+from feederscrew.motion import limits
 from feederscrew.output import compare, slide, style
 from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import parts

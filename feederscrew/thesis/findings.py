@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from feederscrew import bowl
-from feederscrew.columns import Column
-from feederscrew.mechanics import limits
+from feederscrew.base.columns import Column
+from feederscrew.motion import limits
 from feederscrew.resting.deviation import deviation, total_variation
 from feederscrew.thesis import figures, parts
 from feederscrew.thesis.motion import floor, track

@@ -5,17 +5,17 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Array
+from feederscrew.arrivals import floor as floor_study
+from feederscrew.base.arrays import Array
+from feederscrew.base.columns import Column, Frame, of_records
+from feederscrew.base.geometry import vectors
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Column, Frame, of_records
-from feederscrew.geometry import vectors
-from feederscrew.mechanics.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL, drive_force
-from feederscrew.mechanics.limits import acceleration_ratio, published_limit
-from feederscrew.mechanics.track_balance import Seat, TrackMotion, frame
+from feederscrew.motion.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL, drive_force
+from feederscrew.motion.limits import acceleration_ratio, published_limit
+from feederscrew.motion.track_balance import Seat, TrackMotion, frame
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
-from feederscrew.studies import floor as floor_study
-from feederscrew.studies import track as track_study
+from feederscrew.sorting import track as track_study
 
 Quantity = float | Array
 FLOOR_TERMS = {  # quantity: what parts the printed from the complete value
@@ -145,11 +145,11 @@ def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.
     Raises
     ------
     FeederError
-        As of ``studies.floor.floor``.
+        As of ``arrivals.floor.floor``.
 
     References
     ----------
-    ``studies.floor.floor`` and ``solve_floor``, each with its equations.
+    ``arrivals.floor.floor`` and ``solve_floor``, each with its equations.
     """
     study = floor_study.floor(part, bowl, aspect, heading=heading)
     return FloorAsPublished(**vars(study), printed=solve_floor(study.posture, bowl, heading))
@@ -167,7 +167,7 @@ def track(
     aspect : str, optional
         Its name; the likeliest without it.
     heading : float [rad], optional
-        As of ``studies.track.track``.
+        As of ``sorting.track.track``.
 
     Returns
     -------
@@ -176,11 +176,11 @@ def track(
     Raises
     ------
     FeederError
-        As of ``studies.track.track``.
+        As of ``sorting.track.track``.
 
     References
     ----------
-    ``studies.track.track`` and ``solve_track``, each with its equations.
+    ``sorting.track.track`` and ``solve_track``, each with its equations.
     """
     study = track_study.track(part, bowl, aspect, heading=heading)
     posture, seat = study.posture, study.seat

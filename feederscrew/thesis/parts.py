@@ -9,16 +9,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints
-from feederscrew.geometry import vectors
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.geometry import vectors
+from feederscrew.base.units import MM, factor
 from feederscrew.part import mass
 from feederscrew.part.record import CardAspect, Part
 from feederscrew.resting.aspects import find
 from feederscrew.resting.deviation import deviation
 from feederscrew.resting.rules import formulas
 from feederscrew.thesis.tables import TOTAL, Cell, PrintedTable, chapter_4, is_number, last_digit, table
-from feederscrew.units import MM, factor
 
 TABLES_OF = {  # of each part that is known by its tables only
     "arc_chute": {"csa": "3-2", "stability": "3-3", "experiment": "3-4", "pmi": "3-10", "deviation": "3-12"},

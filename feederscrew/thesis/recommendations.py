@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from feederscrew.columns import Column
+from feederscrew.base.columns import Column
 from feederscrew.resting.aspects import find
 from feederscrew.resting.inertia_products import find_products
 from feederscrew.thesis import parts
@@ -63,7 +63,7 @@ def recommendations() -> tuple[Recommendation, ...]:
             4,
             "systems of screws: one part on several contacts",
             "Extend the analysis by screws to systems of screws, for several bodies.",
-            "`feederscrew.screw`: reactions and tipping twists of one part on any number of contacts "
+            "`feederscrew.motion.screws`: reactions and tipping twists of one part on any number of contacts "
             "(docs/method/screws.md). `feeder trial --queue` computes parts that touch, push and climb each "
             "other, by impulses at their contacts.",
             "A system of screws of several bodies: parts that touch are simulated, not reduced to screws.",

@@ -7,27 +7,27 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from feederscrew.columns import Frame, of_records
-from feederscrew.errors import ArgumentError
+from feederscrew.base.columns import Frame, of_records
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.records import ReadableRecord
+from feederscrew.base.units import listed
 from feederscrew.output import style
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page, Picture, Text
 from feederscrew.output.tables import data_frame, text
-from feederscrew.records import ReadableRecord
 from feederscrew.thesis import figures
 from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
 from feederscrew.thesis.findings import FINDING_COLUMNS, FINDING_OF, FINDINGS
 from feederscrew.thesis.parts import cells
 from feederscrew.thesis.recommendations import RECOMMENDATION_COLUMNS, recommendations
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED, TABLES, Cell, table
-from feederscrew.units import listed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from feederscrew.records import DataFrame
-    from feederscrew.records import Figure as DrawnFigure
+    from feederscrew.base.records import DataFrame
+    from feederscrew.base.records import Figure as DrawnFigure
 
 BEARS_ON = {  # findings that no single cell carries
     "table 3-1": ("drawings-lost",),

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.base.arrays import Floats
 
 TABLES = tuple(f"3-{n}" for n in range(1, 14))
 ROW_NAME_COLUMNS = ("aspect", "quantity", "first", "second")

@@ -11,19 +11,19 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrivals.launch_conditions import named
+from feederscrew.arrivals.plate_test import EXACT_PACE
+from feederscrew.arrivals.pool import gather
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints
+from feederscrew.base.columns import Column
+from feederscrew.base.geometry import vectors
+from feederscrew.base.running import USUAL_RUN, RunSettings
+from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Column
-from feederscrew.conveying import answer
-from feederscrew.dropping.launch_conditions import named
-from feederscrew.dropping.plate_test import EXACT_PACE
-from feederscrew.dropping.pool import gather
-from feederscrew.geometry import vectors
+from feederscrew.motion import conveying as answer
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
-from feederscrew.running import USUAL_RUN, RunSettings
-from feederscrew.sorting.devices.base import Device
 from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.trials import part_poses, runs, staging
@@ -459,7 +459,7 @@ def landing(
     poses : sequence of Orientation
         The S in which a part may leave.
     launch : str
-        A key of ``dropping.launch_conditions.PRESETS``, which gives height, spin and speed.
+        A key of ``arrivals.launch_conditions.PRESETS``, which gives height, spin and speed.
     parts : int
         To let fall.
     run : RunSettings, optional

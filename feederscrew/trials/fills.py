@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.base.arrays import Bools, Floats
+from feederscrew.base.columns import Column
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Column
-from feederscrew.dropping.ensemble import wilson
+from feederscrew.feeding.stream import Orientations
 from feederscrew.part.record import Part
-from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.orientations import Hanging
 from feederscrew.trials.queue import PartsQueue

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints
+from feederscrew.base.running import USUAL_RUN, RunSettings
 from feederscrew.bowl.record import Bowl
-from feederscrew.conveying import answer
-from feederscrew.dropping.ensemble import wilson
+from feederscrew.motion import conveying as answer
 from feederscrew.part.record import Part
-from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.sorting.orientations import Orientation
 from feederscrew.trials import course, part_poses, runs, staging
 from feederscrew.trials.looks import OTHER, Looks

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints
-from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
-from feederscrew.dropping.rounded_hull import shape_of_part
-from feederscrew.geometry import vectors
+from feederscrew.arrivals.kernel.one_drop import UNSETTLED, face_below
+from feederscrew.arrivals.rounded_hull import shape_of_part
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.geometry import vectors
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, require_ground

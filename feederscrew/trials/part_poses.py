@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points
+from feederscrew.arrivals.kernel import body
+from feederscrew.arrivals.launch_conditions import Launch, sample
+from feederscrew.arrivals.rounded_hull import Shape
+from feederscrew.base.arrays import Floats, Ints, Points
+from feederscrew.base.geometry import vectors
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.dropping.kernel import body
-from feederscrew.dropping.launch_conditions import Launch, sample
-from feederscrew.dropping.rounded_hull import Shape
-from feederscrew.geometry import vectors
 from feederscrew.sorting.orientations import Orientation
 from feederscrew.trials.kernel.workspace import TrueSolid
 

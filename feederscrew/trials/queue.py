@@ -8,18 +8,18 @@ from enum import Enum, auto
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrivals.kernel import body
+from feederscrew.base import check
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import zero_rows
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
-from feederscrew.dropping.kernel import body
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import zero_rows
+from feederscrew.feeding import stream
 from feederscrew.part.record import Part
-from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.sorting.tooled_track import lay_out, size_of_part
 from feederscrew.trials import course, part_poses, runs, staging

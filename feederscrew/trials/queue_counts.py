@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints
-from feederscrew.columns import Column
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.columns import Column
 from feederscrew.trials.staging import Stage
 
 

@@ -9,20 +9,20 @@ from functools import cached_property
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints
+from feederscrew.base.columns import Column
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
-from feederscrew.columns import Column
-from feederscrew.conveying import answer
-from feederscrew.conveying.hop import hop
-from feederscrew.dropping.ensemble import wilson
-from feederscrew.rates import stream
-from feederscrew.rates.tipping import is_surely_gone, steady
+from feederscrew.feeding import stream
+from feederscrew.motion import conveying as answer
+from feederscrew.motion.hop import hop
 from feederscrew.resting import deviation
 from feederscrew.resting.profiles import AspectProfile
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import too_near
 from feederscrew.sorting.orientations import Orientation, neck
+from feederscrew.sorting.tipping import is_surely_gone, steady
 from feederscrew.trials import course
 from feederscrew.trials.course import Landing
 from feederscrew.trials.fills import FilledQueue

@@ -5,21 +5,22 @@ With it what a sensor along the track sees of a part that comes by, and the puls
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Array, Floats, Ints
+from feederscrew.arrivals import plate_test
+from feederscrew.arrivals.kernel import body
+from feederscrew.arrivals.kernel.floor_motion import Floor
+from feederscrew.arrivals.pool import in_batches
+from feederscrew.base import check
+from feederscrew.base.arrays import Array, Floats, Ints
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import on_disk, zero_rows
+from feederscrew.bowl.devices.features import Sensor
 from feederscrew.bowl.record import Bowl
-from feederscrew.dropping import plate_test
-from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.floor_motion import Floor
-from feederscrew.dropping.pool import in_batches
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import on_disk, zero_rows
 from feederscrew.sorting import sensor_views
-from feederscrew.sorting.devices.features import Sensor
+from feederscrew.sorting.orientations import Orientation
 from feederscrew.trials import part_poses, staging
 from feederscrew.trials.kernel import travel, workspace
 from feederscrew.trials.kernel.plate_views import BLOCK
@@ -516,7 +517,7 @@ def blows_off(sensor: Sensor, part_in_bowl: BowlOfPart, states: States, level: f
         return all(abs(top - view.height) > sensor.play for view in sensor.wanted)
     faces = np.concatenate([solid.triangles + k * len(solid.vertices) for k in range(len(states))])
     spots = np.concatenate(parts) - [0.0, 0.0, level]
-    for view in sensor.wanted:
+    for view in cast(tuple[Orientation, ...], sensor.wanted):
         area = sensor_views.visible_area(spots, faces, sensor.sees, fine, view.distance)
         wanted = sensor_views.outline(view, sensor.sees, view.distance)
         if sensor.sees == "outline":

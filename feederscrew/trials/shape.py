@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints, Points
-from feederscrew.dropping.rounded_hull import principal_axes
-from feederscrew.errors import FeederError
-from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import frozen_rows
+from feederscrew.arrivals.rounded_hull import principal_axes
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Ints, Points
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import frozen_rows
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.trials.kernel.plate_views import BLOCK

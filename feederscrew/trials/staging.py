@@ -10,12 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Floats
-from feederscrew.bowl.record import Track
-from feederscrew.geometry.compiled import frozen_rows
-from feederscrew.geometry.polygons import cross
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.features import (
+from feederscrew.base.arrays import Floats
+from feederscrew.base.geometry.compiled import frozen_rows
+from feederscrew.base.geometry.polygons import cross
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.features import (
     LONGEST_RAMP_SINE,
     Blade,
     Drop,
@@ -25,7 +24,8 @@ from feederscrew.sorting.devices.features import (
     TrackOpening,
     box_ring,
 )
-from feederscrew.sorting.devices.openings import beyond_borders
+from feederscrew.bowl.devices.openings import beyond_borders
+from feederscrew.bowl.record import Track
 from feederscrew.sorting.fates import leading_devices
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M, Orientation
 from feederscrew.sorting.tooled_track import (

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Points
-from feederscrew.dropping.kernel import body
+from feederscrew.arrivals.kernel import body
+from feederscrew.base.arrays import Floats, Points
 from feederscrew.sorting.orientations import Orientation
 from feederscrew.trials import part_poses, runs
 from feederscrew.trials.part_poses import State

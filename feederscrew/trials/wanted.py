@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from feederscrew.arrays import Floats, Ints
+from feederscrew.base.arrays import Floats, Ints
 from feederscrew.bowl.verified import AMONG
-from feederscrew.mechanics.headings import rests
-from feederscrew.rates import stream
+from feederscrew.feeding import stream
+from feederscrew.motion.headings import rests
 from feederscrew.sorting.orientations import Hanging, Orientation
 
 

@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from feederscrew import bowl, units
+from feederscrew import bowl
+from feederscrew.base import units
+from feederscrew.base.errors import FeederError
 from feederscrew.bowl import documentation, schema
-from feederscrew.conveying import answer
-from feederscrew.errors import FeederError
-from feederscrew.mechanics import limits
+from feederscrew.motion import conveying as answer
+from feederscrew.motion import limits
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 LOWER = "lower the kinetic coefficient or raise the static one"

@@ -11,9 +11,9 @@ import shapely
 import shapely.affinity
 
 from feederscrew import bowl as bowls
-from feederscrew import dxf
-from feederscrew.errors import ConfigError
-from feederscrew.units import MM
+from feederscrew.base import dxf
+from feederscrew.base.errors import ConfigError
+from feederscrew.base.units import MM
 
 RING = [(0.0, 0.0), (0.01, 0.0), (0.01, 0.004), (0.002, 0.006)]
 POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:%s\nsize 120484\n" % (b"0" * 64)

@@ -6,11 +6,10 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl import friction_table, schema
+from feederscrew.base.errors import FeederError
+from feederscrew.bowl import arguments, friction_table, schema
 from feederscrew.bowl.friction_table import FAMILIES, LININGS, Lining, PartMaterial
-from feederscrew.errors import FeederError
 from feederscrew.part.density import MATERIALS
-from feederscrew.studies import arguments
 
 
 def bowl(*lines):

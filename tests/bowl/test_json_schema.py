@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from feederscrew import units
+from feederscrew.base import units
+from feederscrew.base.errors import Faults, FeederError
 from feederscrew.bowl import documentation, settings
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS
-from feederscrew.errors import Faults, FeederError
 
 jsonschema = pytest.importorskip("jsonschema")
 VALIDATOR = jsonschema.Draft7Validator(documentation.json_schema())

@@ -10,19 +10,19 @@ import shapes
 
 from feederscrew import __version__ as VERSION
 from feederscrew import bowl as bowls
-from feederscrew import documents
-from feederscrew.bowl import devices
-from feederscrew.bowl.devices import value_text
+from feederscrew.base import documents
+from feederscrew.base.errors import FeederError
+from feederscrew.bowl import device_list as devices
+from feederscrew.bowl.device_list import value_text
+from feederscrew.bowl.devices.kinds import KINDS
+from feederscrew.bowl.devices.pneumatics import SENSOR_VIEWS
 from feederscrew.bowl.reading import settings_of_text
 from feederscrew.bowl.verified import SHARED, body_fingerprint, fingerprint
 from feederscrew.designing import proposals
 from feederscrew.designing.record import DesignRequest, DesignStudy
-from feederscrew.errors import FeederError
 from feederscrew.output import designs, proof
 from feederscrew.part.record import AspectNames
 from feederscrew.resting.aspects import find
-from feederscrew.sorting.devices.kinds import KINDS
-from feederscrew.sorting.devices.pneumatics import SENSOR_VIEWS
 from feederscrew.sorting.isolating.chain import Cut
 
 BOWL, PART = bowls.default(), shapes.part(shapes.box(10, 10, 10))

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from command_lines import NUT, names
 
-from feederscrew import __version__, caches
-from feederscrew.studies import simulation_cache
+from feederscrew import __version__
+from feederscrew.arrivals import simulation_cache
+from feederscrew.base import caches
 
 
 def test_the_version_has_a_short_option_and_help_names_glossary_and_samples(run):

@@ -10,7 +10,7 @@ import sys
 import pytest
 from command_lines import NUT, PARTS, names, rows
 
-from feederscrew import batch as batches
+from feederscrew.jobs import batch as batches
 from feederscrew_cli import progress
 
 WASHER = PARTS / "washer_m6.stl"

@@ -9,7 +9,7 @@ import pytest
 import shapes
 from command_lines import CARD, ROOT, names, rows
 
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
 from feederscrew.part import load
 from feederscrew.resting import profiles
 from feederscrew.resting.aspects import find, require_ground

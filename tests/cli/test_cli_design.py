@@ -13,8 +13,8 @@ from command_lines import called, rows
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import design, fill_verdicts, loop
-from feederscrew.output import report
-from feederscrew.output.report import CHAPTERS
+from feederscrew.output import report_page as report
+from feederscrew.output.report_page import CHAPTERS
 from feederscrew.trials import fills
 
 FIELDS = {

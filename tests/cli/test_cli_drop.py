@@ -15,9 +15,9 @@ import shapes
 from command_lines import ROOT, names, rows
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.drop import shake as plate_study
 from feederscrew.output import plate as plate_output
 from feederscrew.output.tables import data_frame
-from feederscrew.studies.drop import shake as plate_study
 from feederscrew_cli import interrupt
 
 COLUMNS = [

@@ -14,8 +14,8 @@ from click.testing import CliRunner
 from command_lines import NUT, ROOT
 
 from feederscrew import __version__
-from feederscrew.columns import ColumnHead, Frame
-from feederscrew.errors import Faults, FeederError, MeshError
+from feederscrew.base.columns import ColumnHead, Frame
+from feederscrew.base.errors import Faults, FeederError, MeshError
 from feederscrew.output import style
 from feederscrew_cli import interrupt, options
 from feederscrew_cli.main import Fence

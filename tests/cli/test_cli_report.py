@@ -6,8 +6,8 @@ from pathlib import Path
 
 from command_lines import BRACKET, names
 
-from feederscrew.output import report
-from feederscrew.output.report import CHAPTERS
+from feederscrew.output import report_page as report
+from feederscrew.output.report_page import CHAPTERS
 
 ON_OCCASION = ("bowl", "tooling", "trial")  # chapters of a target or a machine, of devices, of parts sent
 LIGHT = [chapter for chapter in CHAPTERS if chapter[0] in ("aspects", "part", "headings", "repeat")]

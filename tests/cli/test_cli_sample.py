@@ -8,7 +8,7 @@ import pytest
 from command_lines import PARTS, names, rows
 
 from feederscrew.bowl import read
-from feederscrew.samples import catalogue
+from feederscrew.jobs.samples import catalogue
 from feederscrew_cli.main import feeder
 
 FILE = re.compile(r"[\w./-]+\.(?:stl|step|yaml|csv)")

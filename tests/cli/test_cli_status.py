@@ -186,7 +186,7 @@ design NUT --target 5/min --aspect Z --launch drop | --aspect
 
 @pytest.mark.parametrize("line", BEFORE_WORK.strip().splitlines())
 def test_a_wrong_name_or_place_is_refused_before_anything_is_simulated(run, files, monkeypatch, line):
-    monkeypatch.setattr("feederscrew.studies.simulation_cache.once", None)  # a part that is dropped fails
+    monkeypatch.setattr("feederscrew.arrivals.simulation_cache.once", None)  # a part that is dropped fails
     call, option = line.split(" | ")
     done = run(*words(call))
     assert done.exit_code == 2 and option in done.stderr, done.stderr
@@ -199,7 +199,7 @@ def test_a_wrong_name_or_place_is_refused_before_anything_is_simulated(run, file
     [f"compare {COUNTS}", f"design NUT {PARTS}/washer_m6.stl --target 5/min", "design --batch designs.csv"],
 )
 def test_a_place_for_results_is_refused_before_anything_is_computed(run, files, monkeypatch, call):
-    for work in ("studies.compare.compare_sets", "designing.families.family", "designing.loop.design"):
+    for work in ("feeding.compare.compare_sets", "designing.families.family", "designing.loop.design"):
         monkeypatch.setattr(f"feederscrew.{work}", None)
     done = run(*words(f"{call} -o c.csv"), *["--target", "9/min"] * ("batch" in call))
     assert done.exit_code == 1 and "c.csv: is a file, not a folder" in done.stderr.splitlines()[-1]

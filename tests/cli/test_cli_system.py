@@ -13,8 +13,8 @@ import pytest
 from click.testing import CliRunner
 from command_lines import NUT, names, rows
 
-from feederscrew.batch import batch_run as batches
-from feederscrew.columns import Frame
+from feederscrew.base.columns import Frame
+from feederscrew.jobs.batch import batch_run as batches
 from feederscrew.output import offers, tables
 from feederscrew_cli.main import feeder
 from feederscrew_cli.progress import Progress

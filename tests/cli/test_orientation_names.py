@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 import pytest
 
-from feederscrew.sorting.devices.orientation_names import NAMED
+from feederscrew.bowl.devices.orientation_names import NAMED
 from feederscrew_cli import options
 
 BRACKET = Path(__file__).parents[2] / "parts/lbracket_30x20x15.stl"

@@ -5,9 +5,9 @@ import pytest
 from design_counts import queue
 from scipy.stats import binom, poisson
 
+from feederscrew.base.errors import FeederError
 from feederscrew.designing import acceptance_sheet, evidence
 from feederscrew.designing.acceptance_sheet import Judgement, Quantity, SheetLine
-from feederscrew.errors import FeederError
 
 HEAD = "quantity,fill,computed,low,high,unit,measured,sample\n"  # without a plan, as older ones were
 NO_NUMBERS = "nan", "inf", "-inf", "1_0", "\u0663", "many", "1e999"

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying.hop import hop
+from feederscrew.arrivals.plate_test import throw_number
+from feederscrew.base.errors import ArgumentError
 from feederscrew.designing import calm_drive
 from feederscrew.designing.calm_drive import DriveKind
 from feederscrew.designing.record import DesignRequest
-from feederscrew.dropping.plate_test import throw_number
-from feederscrew.errors import ArgumentError
 from feederscrew.machine.springs import greatest_amplitude
+from feederscrew.motion.hop import hop
 
 
 def plain(*overrides, drive=DriveKind.LEAF_SPRING):

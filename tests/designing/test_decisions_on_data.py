@@ -13,13 +13,13 @@ import pytest
 from design_counts import design_study, short_trial
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import Shares
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing import exploring, loop, nearest, proposals, queues, short_trials, texts
 from feederscrew.designing.findings import End, Fault, FaultKind
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.designing.search import Search
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.trade import Action
-from feederscrew.studies.rate import Shares
 from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
 from feederscrew.trials.long_ride import LongRide, RideOfTrack

@@ -8,18 +8,18 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.arrivals.entry import Shares
+from feederscrew.base.errors import FeederError
+from feederscrew.base.running import RunSettings
 from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.designing.short_trials import robust_run
-from feederscrew.dropping.ensemble import wilson
-from feederscrew.errors import FeederError
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
-from feederscrew.studies.rate import Shares
-from feederscrew.studies.trial import TrialQueue, trial
 from feederscrew.trials import fills, long_ride
 from feederscrew.trials.long_ride import LEFT, RideOfTrack
+from feederscrew.trials.trial import TrialQueue, trial
 from feederscrew.trials.wanted import states_of_name
 
 NAMES = ("A@0", "A@180", "B@0")

@@ -1,5 +1,6 @@
 """Several parts for one bowl: one chain where one suits all, else what is changed."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -8,11 +9,11 @@ import shapes
 from design_counts import design_study
 
 from feederscrew import bowl as bowls
+from feederscrew.base.errors import FeederError
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.designing import families
 from feederscrew.designing.record import DesignRequest
-from feederscrew.errors import FeederError
 from feederscrew.output import design_pages
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.isolating.chain import Cut
 
 SMALL, LARGE = shapes.part(shapes.box(10, 8, 4), "small"), shapes.part(shapes.box(14, 11, 6), "large")
@@ -86,6 +87,9 @@ def test_what_is_swapped_is_listed_device_by_device_and_on_the_page():
     ):  # fmt: skip
         assert text in page
     assert page.partition("<footer>")[0].lower().count("throw number") == 2
+    # each part can be turned, and each name is of its part
+    for name in ("small", "large"):
+        assert f'id="opening-{name}"' in page and re.search(rf'class="pose [^>]*>A@\d+ of {name}<', page)
     same = design_pages.family_page(families.FamilyStudy((first, replace(first, part=LARGE))))
     assert "Nothing is changed from one part to the next." in same
     assert "One track and one chain of devices suit all parts" in same

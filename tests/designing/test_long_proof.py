@@ -17,15 +17,15 @@ import shapes
 from design_counts import design_study, queue
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals import simulation_cache
+from feederscrew.base.running import RunSettings
+from feederscrew.base.units import HOUR
 from feederscrew.designing import acceptance_sheet, evidence, families, long_proof, loop
 from feederscrew.designing.long_proof import LongPlan, RunCounts, follow_long
 from feederscrew.designing.progress import SearchProgress, SearchStage
 from feederscrew.designing.record import ProofKind
-from feederscrew.running import RunSettings
-from feederscrew.studies import simulation_cache
 from feederscrew.trials import fills
 from feederscrew.trials.fills import FedRow, FillLevel
-from feederscrew.units import HOUR
 
 PART = shapes.part(shapes.box(10, 10, 10))
 PLAN = LongPlan(3, 0.2)
@@ -143,7 +143,7 @@ KILLED = """
     from feederscrew import bowl
     from feederscrew.designing import long_proof, proposals
     from feederscrew.resting.aspects import find
-    from feederscrew.running import RunSettings
+    from feederscrew.base.running import RunSettings
     from feederscrew.trials import fills
     fills.TOUCHING_PARTS = 3
     part = shapes.part(shapes.box(20, 12, 5))

@@ -21,6 +21,8 @@ from design_counts import (
 )
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.plate_test import throw_number
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.designing import calm_drive, exploring, loop, nearest, proposals, queues
 from feederscrew.designing.findings import Cause, Move, MoveKind
 from feederscrew.designing.loop import alternatives
@@ -28,10 +30,8 @@ from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.progress import SearchProgress, SearchStage
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, RobustRun
 from feederscrew.designing.search import BankedTrack, Candidate, Search
-from feederscrew.dropping.plate_test import throw_number
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.isolating.chain import Cut
 from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import FillLevel, LeavingPose, PoseKind
@@ -388,7 +388,7 @@ def test_each_class_has_its_best_design_the_cheapest_first():
     assert rows[2].sees == ("outline",) and "tells" in rows[1].why
     found = designs.document(study_with(GAP, alternatives=rows))["alternatives"]
     assert found[0]["delivered_per_minute"] == pytest.approx(45.0) and found[0]["needs"] == []
-    assert found[2]["needs"] == ["camera from above", "a valve", "compressed air"]
+    assert found[2]["needs"] == ["1 camera from above", "1 valve", "compressed air"]
     printed = tables_of.text(designs.summary(study_with(GAP, alternatives=rows)), "table")
     assert "with steel alone" in printed and "yield 90 %" in " ".join(printed.split())
     tried = [

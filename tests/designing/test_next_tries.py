@@ -1,5 +1,6 @@
 """A design that does not hold ends in commands to paste: each asks for what it says, the likeliest first."""
 
+import functools
 import re
 import shlex
 from dataclasses import fields, replace
@@ -9,46 +10,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
-from design_counts import design_study, end_at, heading_off, lost, queue
+from command_lines import asked_by
+from design_counts import attempt, design_of_nothing, design_study, heading_off, queue
 
 from feederscrew.bowl.verified import Status
 from feederscrew.designing import calm_drive
 from feederscrew.designing.calls import call_of, call_words
-from feederscrew.designing.findings import Cause, Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.next_tries import Evidence, TryKind, next_tries, rounded_down
-from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, NearestDesign
+from feederscrew.designing.record import DesignRequest, NearestDesign
 from feederscrew.output import design_pages, designs, tables
-from feederscrew.trials.course import Fate
-from feederscrew_cli.design import design as design_command
 
 PART = shapes.part(shapes.box(20, 12, 5))
-ARRIVALS = (("A", 0.6), ("B", 0.3), ("C", 0.08), ("D", 0.02))
-NOTHING = Fault(FaultKind.NOTHING_LEAVES)
 TYPED = ("design", "my part.stl", "--target=60/min", "--set", "drive.frequency=50 Hz", "-o", "out")
 
 
-def attempt(wanted="A@270", rate=0.0, faults=None, **more):
-    ended = (NOTHING, lost(wanted, end_at(Fate.RETURNED, "gap"))) if faults is None else faults
-    made = Attempt(
-        wanted, wanted.partition("@")[0], ("gap: 9 mm",), Move(MoveKind.PROPOSED), 0.0, 0.1, 8,
-        0.0 if ended else 0.4, 1.0, 0.0, rate / 60.0, ended, Cause.DEVICE,
-    )  # fmt: skip
-    return replace(made, **more)
-
-
-def nothing(*attempts, request=None, **more):
-    """A design of which no chain got through its trial."""
-    asked = request or DesignRequest(1.0)
-    made = attempts or (attempt(),) * 4 + (attempt("A@54"), attempt("B@184"))
-    return DesignStudy(PART, asked, None, None, None, attempts=made, **{"arrivals": ARRIVALS} | more)
-
-
-def asked_by(words):
-    """The request that a call of the command asks for, as the command reads it."""
-    assert words[:2] == ["feeder", "design"]
-    params = design_command.make_context("design", words[2:]).params
-    names = {field.name for field in fields(DesignRequest)} & {*params}
-    return DesignRequest(**{name: params[name] for name in names - {"jobs"}})
+nothing = functools.partial(design_of_nothing, PART)
 
 
 def near(rate=0.25, **request):

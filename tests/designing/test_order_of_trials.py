@@ -10,11 +10,11 @@ import shapes
 from design_counts import end_at, lost
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.designing import calm_drive, exploring, proposals
 from feederscrew.designing.findings import Cause, Move, MoveKind
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.search import BankedTrack, Candidate, Search
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.trials.course import Fate
 
 PART = shapes.part(shapes.box(20, 12, 5))

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.bowl.devices.kinds import CostClass, make_device
 from feederscrew.designing import short_trials, tooling_trials
 from feederscrew.designing.findings import Fault, FaultKind
-from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling as tables
-from feederscrew.sorting.devices.kinds import CostClass, make_device
 from feederscrew.sorting.isolating import chain
-from feederscrew.studies.tooling import ToolingSearch, tooling, tooling_without
+from feederscrew.sorting.tooling import ToolingSearch, tooling, tooling_without
 
 
 @pytest.fixture(scope="module")

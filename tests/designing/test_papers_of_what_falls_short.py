@@ -14,10 +14,10 @@ from design_counts import design_study, queue
 from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
+from feederscrew.base.errors import FeederError
 from feederscrew.designing import design as designing
 from feederscrew.designing import loop
 from feederscrew.designing.record import DesignRequest, DesignStudy
-from feederscrew.errors import FeederError
 from feederscrew.output import design_pages, designs, machine_figures, marking, solidbowl, tooling_drawing
 from feederscrew.part import load
 from feederscrew.resting.aspects import find

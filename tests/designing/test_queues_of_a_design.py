@@ -12,6 +12,9 @@ from design_counts import carried, design_study, lost, orientation, queue, stays
 from scipy.stats import binom, hypergeom
 
 from feederscrew import bowl as bowls
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing import (
     calm_drive,
     evidence,
@@ -33,13 +36,10 @@ from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import DesignRequest, DesignStudy, RobustRun
 from feederscrew.designing.search import Search
+from feederscrew.feeding import stream
 from feederscrew.output import design_pages, designs
 from feederscrew.output import tables as tables_of
-from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.kinds import make_device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.trials import fills
 from feederscrew.trials.fills import FillLevel, share_interval
 from feederscrew.trials.queue_counts import QueuedParts

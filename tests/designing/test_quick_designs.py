@@ -8,10 +8,10 @@ import shapes
 from design_counts import design_study
 
 import feederscrew as fs
+from feederscrew.base.errors import ArgumentError
 from feederscrew.bowl.verified import Status
 from feederscrew.designing import exploring, loop, queues
 from feederscrew.designing.record import QuickAnswer
-from feederscrew.errors import ArgumentError
 from feederscrew.output import design_pages, designs, tables
 from feederscrew_cli.design import design as design_command
 

@@ -9,12 +9,12 @@ import trimesh
 from design_counts import end_at, short_trial, stopped_at
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing import calm_drive, exploring, hanging, proposals
 from feederscrew.designing.findings import MoveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import Search
 from feederscrew.resting.aspects import find
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.sorting.isolating.rails import find_head
 from feederscrew.sorting.orientations import hang, may_hang

@@ -10,10 +10,10 @@ import trimesh
 from design_counts import queue
 
 from feederscrew import bowl as bowls
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.lattice import cells, chords, handles
 from feederscrew.bowl.record import Track
 from feederscrew.designing import hazards
-from feederscrew.geometry import vectors
-from feederscrew.geometry.lattice import cells, chords, handles
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations

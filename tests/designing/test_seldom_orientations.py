@@ -8,13 +8,13 @@ import shapes
 from design_counts import design_study, queue, short_trial
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import Shares
 from feederscrew.designing import exploring, hazards, short_trials
 from feederscrew.designing.findings import FaultKind
 from feederscrew.designing.record import DesignRequest, RiskKind
 from feederscrew.designing.search import Search
 from feederscrew.designing.short_trials import break_even, find_denials
 from feederscrew.output import designs
-from feederscrew.studies.rate import Shares
 
 
 @pytest.mark.parametrize(

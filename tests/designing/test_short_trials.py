@@ -16,19 +16,19 @@ from design_counts import carried, end_at, orientation, short_trial, stays, stop
 from scipy import stats
 
 from feederscrew import bowl as bowls
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.bowl.devices.pneumatics import PULSE
 from feederscrew.bowl.record import Friction
 from feederscrew.designing import exploring, proposals, short_trials, texts
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.proposals import PULSE_RESERVE, PULSE_STEP_S, SHORTEST_PULSE_STEPS, lengthen_pulse
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.search import Search
+from feederscrew.feeding import stream
 from feederscrew.part import load
-from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
 from feederscrew.sorting import sensor_views
-from feederscrew.sorting.devices.kinds import make_device
-from feederscrew.sorting.devices.pneumatics import PULSE
 from feederscrew.sorting.isolating.chain import Cut, judge_cut
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 from feederscrew.trials.course import Fate

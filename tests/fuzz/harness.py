@@ -138,8 +138,8 @@ def computed_ticks(pid):
 @functools.cache
 def _warm():
     """Import before the first process is forked what every one needs; drop and feed few parts."""
-    from feederscrew.dropping import arrival
-    from feederscrew.studies import aspects
+    from feederscrew.arrivals import arrival
+    from feederscrew.arrivals import aspects_study as aspects
 
     aspects.MAX_DROPS = arrival.FIRST_PARTS = arrival.MAX_ARRIVALS = arrival.LONGER_TIME_PARTS = 20
     for kind in (*PLAN, *readers.READERS, *valid.MAKERS):

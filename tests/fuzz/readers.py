@@ -79,8 +79,8 @@ def _verified(name):
 
 def _cache(name):
     """Read a damaged entry of the cache, under a digest that fits it where it is still JSON."""
-    from feederscrew import caches
-    from feederscrew.studies import simulation_cache
+    from feederscrew.arrivals import simulation_cache
+    from feederscrew.base import caches
 
     damaged, key = Path(name).read_bytes(), {"part": "of the fuzzer"}
     with unittest.mock.patch.dict(os.environ, {caches.SIMULATIONS_VARIABLE: "kept"}):
@@ -95,7 +95,7 @@ def _cache(name):
         assert arrays is None or all(array.dtype.kind in "fib" for array in arrays.values())
 
 
-HOLE = _read("dxf", "outlines", "CUT", "bowl.yaml:3", of=Path)
+HOLE = _read("base.dxf", "outlines", "CUT", "bowl.yaml:3", of=Path)
 CUBES = ("tests/fuzz/cube.stl", "tests/fuzz/text.stl")
 BOWLS = ("docs/measured/example/bowl.yaml", "configs/thesis.yaml")
 READERS = {  # seeds, how the damaged file is called, and what reads it
@@ -113,8 +113,12 @@ READERS = {  # seeds, how the damaged file is called, and what reads it
     "read cache": (("tests/fuzz/entry.json",), "entry.json", _cache),
     "read names": (("tests/fuzz/names.yaml",), "names.yaml", _read("part.card", "read_aspect_names")),
     "read counts": (COUNTED, "counts.csv", _read("resting.profiles", "read_profile", tuple("ABCDE"))),
-    "read list": (("tests/fuzz/list.csv",), "list.csv", _read("batch", "gather", of=lambda name: [name])),
-    "read launches": (("tests/fuzz/tosses.csv",), "tosses.csv", _read("dropping.toss_runs", "read_launches")),
+    "read list": (
+        ("tests/fuzz/list.csv",),
+        "list.csv",
+        _read("jobs.batch", "gather", of=lambda name: [name]),
+    ),
+    "read launches": (("tests/fuzz/tosses.csv",), "tosses.csv", _read("arrivals.toss_runs", "read_launches")),
     "read dxf": (("tests/fuzz/hole.dxf", "tests/fuzz/few.dxf"), "hole.dxf", lambda name: HOLE(name).rings),
 }
 
@@ -126,7 +130,7 @@ def fault(kind, name):
 
 def outcome(read, argument):
     """What is wrong with a call: what it says, a traceback, or a warning of Python's; '' if nothing is."""
-    from feederscrew.errors import FeederError
+    from feederscrew.base.errors import FeederError
 
     said = ""
 

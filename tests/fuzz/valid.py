@@ -363,7 +363,7 @@ def read(name):
 
 def fault(file):
     """What is wrong with how a file is read; '' if nothing is."""
-    from feederscrew.errors import FeederError
+    from feederscrew.base.errors import FeederError
     from feederscrew.part import load
 
     try:

@@ -11,17 +11,17 @@ import shapes
 import track_views as views
 from shapely import affinity
 
+from feederscrew.bowl.devices.kinds import KINDS, make_device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import effective, record
 from feederscrew.bowl.record import Track
+from feederscrew.cad import facets
+from feederscrew.cad import section as printed
+from feederscrew.cad.closed_body import body, pieces
+from feederscrew.cad.exact import exact_body, exact_file
+from feederscrew.cad.plan import SolidOptions, material, plan
+from feederscrew.cad.track import groove_spans
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl import facets
-from feederscrew.solidbowl import section as printed
-from feederscrew.solidbowl.closed_body import body, pieces
-from feederscrew.solidbowl.exact import exact_body, exact_file
-from feederscrew.solidbowl.plan import SolidOptions, material, plan
-from feederscrew.solidbowl.track import groove_spans
-from feederscrew.sorting.devices.kinds import KINDS, make_device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.orientations import orientations
 from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.trials import queue, staging

@@ -14,9 +14,9 @@ import numpy as np
 import shapely
 from shapely import affinity
 
+from feederscrew.cad import facets
+from feederscrew.cad import section as printed
 from feederscrew.output import tooling_drawing
-from feederscrew.solidbowl import facets
-from feederscrew.solidbowl import section as printed
 
 MM = 1e-3
 UNDER = 6e-5  # [m] below a surface, where it is cut

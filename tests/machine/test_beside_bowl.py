@@ -8,15 +8,15 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.bowl.devices.pneumatics import REACTION
 from feederscrew.bowl.record import Track
-from feederscrew.conveying.answer import answer
+from feederscrew.feeding.stream import follow_orientations
 from feederscrew.machine import after_outlet, vision_station
 from feederscrew.machine.vision_station import CAMERAS, choose_lens, plan_vision_stations
+from feederscrew.motion.conveying import answer
 from feederscrew.output import beside_bowl
-from feederscrew.rates.stream import follow_orientations
 from feederscrew.resting.aspects import find
-from feederscrew.sorting.devices.kinds import make_device
-from feederscrew.sorting.devices.pneumatics import REACTION
 
 TRACK = Track(climb=np.radians(3.0), bank=0.0, radius=0.15, width=0.016)
 

@@ -16,18 +16,20 @@ from design_counts import proved
 from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.plate_test import throw_number
+from feederscrew.base.errors import ArgumentError, FeederError
 from feederscrew.bowl import reading
 from feederscrew.bowl.reading import settings_of_text
 from feederscrew.bowl.record import shares, vibration_angle
+from feederscrew.bowl.size import Size
 from feederscrew.bowl.verified import Status
-from feederscrew.conveying import answer
 from feederscrew.designing import calm_drive, design
 from feederscrew.designing.record import Alternative
-from feederscrew.dropping.plate_test import throw_number
-from feederscrew.errors import ArgumentError, FeederError
-from feederscrew.machine import drive_sizing, sizing, springs
+from feederscrew.machine import drive_sizing, springs
+from feederscrew.machine import sheet as machines
 from feederscrew.machine.drive_sizing import can_make
 from feederscrew.machine.springs import analyse_springs, greatest_amplitude, leaf_stress, stroke
+from feederscrew.motion import conveying as answer
 from feederscrew.output import (
     bowl_sheet,
     design_pages,
@@ -39,7 +41,6 @@ from feederscrew.output import (
 )
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
-from feederscrew.studies import bowl as machines
 
 STEEL_PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 ABS = 1050.0  # [kg/m3]
@@ -106,7 +107,7 @@ NEAR = 0.02  # relative; the rate of a bowl left alone hangs on hops, and on the
 
 def sized(bowl):
     rise = np.pi * 0.3 * np.tan(bowl.track.climb)
-    return sizing.Size(0.3, {}, 0.014, 1e-3, 1e-3, bowl.track.climb, 0.09, 0.09 / rise, rise)
+    return Size(0.3, {}, 0.014, 1e-3, 1e-3, bowl.track.climb, 0.09, 0.09 / rise, rise)
 
 
 def at_track(machine):

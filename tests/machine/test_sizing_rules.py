@@ -6,11 +6,11 @@ import awkward
 import numpy as np
 import pytest
 
-from feederscrew.conveying import answer
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
+from feederscrew.feeding import stream
 from feederscrew.machine import sizing
-from feederscrew.mechanics.headings import headings
-from feederscrew.rates import stream
+from feederscrew.motion import conveying as answer
+from feederscrew.motion.headings import headings
 from feederscrew.resting.posture import posture
 
 LYING = sizing.Lying(longest=0.031, tallest=0.026, length=0.03, width=0.0175)

@@ -11,8 +11,8 @@ from scipy.optimize import minimize
 from two_masses import GIVEN, amplitude, driven
 
 from feederscrew import bowl as bowls
+from feederscrew.base.errors import FeederError
 from feederscrew.bowl.record import Unbalance, direction, vibration_angle
-from feederscrew.errors import FeederError
 from feederscrew.machine import drive_sizing, sizing, springs
 from feederscrew.machine.springs import analyse_springs, gain, leaf_stiffness, leaf_stress, rocking
 

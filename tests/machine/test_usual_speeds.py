@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying.answer import answer
 from feederscrew.designing import calm_drive
-from feederscrew.machine import checks
 from feederscrew.machine.drive_sizing import STROKES_M
+from feederscrew.motion import conveying
+from feederscrew.motion.conveying import answer
 
 ANGLES = np.radians((15.0, 20.0, 25.0, 30.0))
 
@@ -24,8 +24,8 @@ def test_the_greatest_usual_speed_is_that_of_the_strokes_that_makers_state():
     greatest = max(speeds.values())
     assert greatest == speeds[50.0] and plain.sizing.fastest == pytest.approx(greatest, rel=0.02)
     for chosen in (0.127, 0.146, 0.179, 0.204):  # that designs have chosen
-        assert checks.speed_remark(chosen, plain.sizing) == []
-    assert checks.speed_remark(1.1 * greatest, plain.sizing)
+        assert conveying.speed_remark(chosen, plain.sizing) == []
+    assert conveying.speed_remark(1.1 * greatest, plain.sizing)
 
 
 @pytest.mark.parametrize(
@@ -36,7 +36,7 @@ def test_a_design_takes_no_drive_beyond_the_usual_speeds(line):
     plain, rules = calm_drive.PlainBowl(bowl, frozenset((line.partition("=")[0],))), bowl.sizing
     for velocity in (0.001, 0.08, np.inf):
         made = calm_drive.drive_at(plain, velocity, hops=True)
-        assert checks.speed_remark(calm_drive.speed(made), rules) == []
+        assert conveying.speed_remark(calm_drive.speed(made), rules) == []
     fastest = calm_drive.speed(calm_drive.drive_at(plain, np.inf, hops=True))
     assert fastest > 0.8 * rules.fastest  # and none is slower for it than need be
 

@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 
 import feederscrew
-from feederscrew.columns import UNITS, Column, ColumnHead, Frame, of_arrays, of_pieces, of_records, values
+from feederscrew.base.columns import (
+    UNITS,
+    Column,
+    ColumnHead,
+    Frame,
+    of_arrays,
+    of_pieces,
+    of_records,
+    values,
+)
 from feederscrew.output import tables
 
 ROOT = Path(feederscrew.__file__).parent

@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl
-from feederscrew.studies.headings import headings
+from feederscrew.sorting.headings import headings
 
 
 def test_partners_of_a_heading_are_half_a_turn_on_or_its_mirror_image():

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
 from feederscrew.output import folder as result_folder
 from feederscrew.output import offers
 from feederscrew.output.folder import ResultFolder, safe_name

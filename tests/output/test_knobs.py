@@ -10,18 +10,19 @@ from browser import probed
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
-from feederscrew.conveying import answer, steady
-from feederscrew.conveying.answer import sweep
+from feederscrew.feeding.well_oriented import fed
+from feederscrew.motion import conveying as answer
+from feederscrew.motion import steady
+from feederscrew.motion.conveying import sweep
 from feederscrew.output.page import blocks
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Knobs, Page
-from feederscrew.output.report import bowl_values, knobs
-from feederscrew.rates.well_oriented import fed
-from feederscrew.studies.report import report
+from feederscrew.output.report import report
+from feederscrew.output.report_page import bowl_values, knobs
 
 SETTINGS = 200
-PROBE = "<script>document.title = JSON.stringify(BOWLS.map(conveying.answer));</script></body>"
+PROBE = "<script>document.title = JSON.stringify(BOWLS.map(motion.conveying));</script></body>"
 MOVED = """<script>
 (() => {
   const block = document.querySelector(".knobs"), own = OWN, top = TOP;

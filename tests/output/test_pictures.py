@@ -13,11 +13,16 @@ import trimesh
 from matplotlib.colors import to_rgba_array
 from scipy.spatial.transform import Rotation
 
-from feederscrew.batch import summary
+from feederscrew.arrivals.aspects_study import aspects as aspects_study
+from feederscrew.arrivals.floor import floor
 from feederscrew.bowl import read, settings
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.bowl.reading import key_ranges
 from feederscrew.designing.record import Alternative
-from feederscrew.mechanics.limits import published_ratio
+from feederscrew.jobs.batch import summary
+from feederscrew.motion import convey as convey_study
+from feederscrew.motion.limits import published_ratio
+from feederscrew.motion.slide import sliding_map
 from feederscrew.output import aspects, batch, designs, plate, shading, style, tooling_views
 from feederscrew.output import compare as compare_output
 from feederscrew.output import convey as convey_output
@@ -33,13 +38,8 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.exact_tumbling import Transition
 from feederscrew.resting.rules import registry
-from feederscrew.sorting.devices.kinds import make_device
-from feederscrew.studies import convey as convey_study
-from feederscrew.studies.aspects import aspects as aspects_study
-from feederscrew.studies.floor import floor
-from feederscrew.studies.headings import headings
-from feederscrew.studies.slide import sliding_map
-from feederscrew.studies.track import track
+from feederscrew.sorting.headings import headings
+from feederscrew.sorting.track import track
 from feederscrew.trials.course import Fate
 
 LOOKED_AT = True

@@ -5,7 +5,7 @@ import re
 import browser
 import numpy as np
 import pytest
-from command_lines import BRACKET, CARD
+from command_lines import BRACKET, CARD, NUT
 
 from feederscrew import bowl as bowls
 from feederscrew.output import poses
@@ -30,7 +30,7 @@ def aspects(part):
 
 @pytest.fixture(scope="module")
 def text(part, aspects):
-    lines = Text("A@90 leaves; A@90 and Z@1 do not, nor does b@2 <A@0>.")
+    lines = Text("A@90 leaves; A@90 and Z@1 do not, nor does b@2 <A@0>. A part is B up.")
     table = Table(Frame.of({"aspect": ["A", "none"], "share": [0.5, 0.5]}))
     chapter = Chapter((lines, table), warnings=("A@90 rocks",), title="X", anchor="x")
     named = [("A@90", "leaves"), ("hanging", "is unknown here")]
@@ -60,12 +60,35 @@ def test_the_track_is_under_a_part_and_the_wall_beside_it_the_arrow_ahead(part, 
 
 def test_a_name_has_its_picture_once_and_what_is_no_pose_stays_text(text):
     marked = re.findall(r'<span class="pose pose-(\d+)( first)?"[^>]*data-words="([^"]*)">([^<]*)<', text)
-    assert [name for *_, name in marked] == ["A@90", "A@90", "A@90", "A@90", "A@0", "A"]
-    assert [bool(first) for _, first, _, _ in marked] == [True, False, True, False, True, True]
+    assert [name for *_, name in marked] == ["A@90", "A@90", "A@90", "A@90", "A@0", "B", "A"]
+    assert [bool(first) for _, first, _, _ in marked] == [True, False, True, False, True, True, True]
     assert "turned 90 deg" in marked[0][2]
     pictures = re.findall(r'\.pose-(\d+) \{ --pose: url\("data:image/png;base64,([^"]+)"\)', text)
-    assert [number for number, _ in pictures] == ["0", "1", "2"] and len({data for _, data in pictures}) == 3
+    assert [number for number, _ in pictures] == ["0", "1", "2", "3"] and len(
+        {data for _, data in pictures}
+    ) == 4
     assert "<td>none</td>" in text and "Z@1 do not" in text
+
+
+def test_names_of_several_parts_show_the_pose_of_their_own_part(part, aspects):
+    nut = load(str(NUT))
+    finders = {
+        each.name: poses.pose_finder(each, resting) for each, resting in ((part, aspects), (nut, find(nut)))
+    }
+    told = [poses.name_part("sees A@90, not A@0", name) for name in finders] + [
+        poses.name_part("A", nut.name)
+    ]
+    assert told[0] == f"sees A@90 of {part.name}, not A@0 of {part.name}" and told[2] == f"A of {nut.name}"
+    table = Table(Frame.of({"a": told, "b": ["A", f"A@90 of {part.name}_2", "A@90 of all"]}))
+    written = html(Page("two", "", (Chapter((table,)),), pose_of=finders))
+    marked = re.findall(r'<span class="pose pose-(\d+)[^>]*>([^<]*)<', written)
+    assert [name for _, name in marked] == [
+        f"A@90 of {part.name}", f"A@0 of {part.name}", f"A@90 of {nut.name}", f"A@0 of {nut.name}",
+        f"A of {nut.name}",
+    ]  # fmt: skip
+    pictures = dict(re.findall(r'\.pose-(\d+) \{ --pose: url\("data:image/png;base64,([^"]+)"\)', written))
+    assert len(set(pictures.values())) == 5
+    assert "A@90 of all" in re.sub("<[^>]*>", "", written)
 
 
 def test_a_part_card_has_no_poses(aspects):

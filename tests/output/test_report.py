@@ -15,20 +15,20 @@ from scipy.spatial.transform import Rotation
 
 import feederscrew as fs
 from feederscrew import bowl as bowls
-from feederscrew.columns import ColumnHead, Frame, share_head
+from feederscrew.arrivals.aspects_study import AspectsStudy
+from feederscrew.arrivals.entry import Shares
+from feederscrew.base.columns import ColumnHead, Frame, share_head
 from feederscrew.output import DPI, style
-from feederscrew.output import report as report_output
+from feederscrew.output import report_page as report_output
 from feederscrew.output.page import as_html, blocks
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Page, Picture, Table
-from feederscrew.output.report import BESIDE, CHAPTERS, THROWN, aspect_views, on_track, page
+from feederscrew.output.report import ReportStudy, report
+from feederscrew.output.report_page import BESIDE, CHAPTERS, THROWN, aspect_views, on_track, page
 from feederscrew.output.shading import reduced_mesh
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.studies.aspects import AspectsStudy
-from feederscrew.studies.rate import Shares
-from feederscrew.studies.report import ReportStudy, report
 from feederscrew.trials.course import FATES
 from feederscrew_cli.report import repeat_command
 

@@ -11,17 +11,17 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.columns import Frame
+from feederscrew.base.columns import Frame
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.output import tooling_views
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Table, Views
-from feederscrew.output.report import CHAPTERS, over_cuts, page
+from feederscrew.output.report import report
+from feederscrew.output.report_page import CHAPTERS, over_cuts, page
 from feederscrew.output.trial import rides
 from feederscrew.part import load
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.orientations import orientations
-from feederscrew.studies.report import report
-from feederscrew.studies.trial import trial
+from feederscrew.trials.trial import trial
 
 LOOKED_AT = True
 

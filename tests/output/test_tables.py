@@ -10,16 +10,16 @@ import pytest
 
 import feederscrew as fs
 from feederscrew import bowl as bowls
-from feederscrew.columns import ColumnHead, Frame, quantities
-from feederscrew.geometry.polygons import centroid
+from feederscrew.base.columns import ColumnHead, Frame, quantities
+from feederscrew.base.geometry.polygons import centroid
+from feederscrew.base.records import ReadableRecord
 from feederscrew.output import record_views, tables
 from feederscrew.output.offers import RecordView
 from feederscrew.output.page.as_html import escape, texts_of
 from feederscrew.output.tables import heading_note
-from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations
-from feederscrew.studies.tooling import ToolingSearch, tooling
+from feederscrew.sorting.tooling import ToolingSearch, tooling
 
 PARTS = Path(__file__).parents[2] / "parts"
 COLUMNS = {"aspect": ["A", "BB"], "stable": np.array([True, False]), "faces": np.array([1, 12])}

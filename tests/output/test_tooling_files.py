@@ -17,19 +17,19 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
+from feederscrew.bowl.devices.base import UNSURE, Verdict
+from feederscrew.bowl.devices.features import Bore, Features, ShopWork
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.cad import section as printed
+from feederscrew.feeding.rate import rate
 from feederscrew.output import shading, solid_files, tooling_drawing, tooling_figures, tooling_views
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl import section as printed
 from feederscrew.sorting import device_passages
-from feederscrew.sorting.devices.base import UNSURE, Verdict
-from feederscrew.sorting.devices.features import Bore, Features, ShopWork
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.orientations import add_travel, orientations
 from feederscrew.sorting.tooled_track import bend_ring, lay_out
+from feederscrew.sorting.tooling import ToolingSearch, ToolingStudy, tooling
 from feederscrew.sorting.verdicts import verdict
-from feederscrew.studies.rate import rate
-from feederscrew.studies.tooling import ToolingSearch, ToolingStudy, tooling
 
 LOOKED_AT = True
 

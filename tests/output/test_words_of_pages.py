@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from feederscrew.errors import Detail
+from feederscrew.base.errors import Detail
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Folded, Page, Text

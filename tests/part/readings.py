@@ -7,7 +7,7 @@ import part_files as files
 import pytest
 import trimesh
 
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
 from feederscrew.part import load
 
 AGAIN = "export the part again"

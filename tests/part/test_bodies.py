@@ -10,8 +10,8 @@ import trimesh
 from readings import loaded, mm3, refused
 
 import feederscrew
-from feederscrew.batch import inputs
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
+from feederscrew.jobs.batch import inputs
 from feederscrew.part import load
 
 DATA = Path(__file__).parents[1] / "data"

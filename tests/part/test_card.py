@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from readings import loaded
 
-from feederscrew.errors import ConfigError, FeederError
+from feederscrew.base.errors import ConfigError, FeederError
 from feederscrew.part import load
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, MATERIALS, find_density
 

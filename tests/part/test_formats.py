@@ -16,7 +16,7 @@ import trimesh
 from readings import AGAIN, BOX, archived, exported, loaded, mm3, refused, zipped
 
 from feederscrew import bowl
-from feederscrew.errors import FeederError, MeshError
+from feederscrew.base.errors import FeederError, MeshError
 from feederscrew.part import load, loading, step
 from feederscrew.part.formats import detect_format
 

@@ -12,7 +12,7 @@ import shapes
 import trimesh
 from readings import BOX, loaded, mm3, refused
 
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
 from feederscrew.part import gate, load, mass, topology
 
 BROKEN = Path(__file__).parents[1] / "data" / "broken"

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from readings import loaded, refused
 from scipy.spatial.transform import Rotation
 
-from feederscrew.errors import MeshError
+from feederscrew.base.errors import MeshError
 from feederscrew.part import load, mass
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.mass import mass_balance

@@ -8,7 +8,7 @@ import pytest
 import step_files
 from readings import loaded, mm3, refused
 
-from feederscrew.errors import MeshError
+from feederscrew.base.errors import MeshError
 from feederscrew.part.cad_faces import refuse_wrong_sides
 from feederscrew.part.formats import CadFaces, Soup
 from feederscrew.part.gate import Crossings

@@ -126,13 +126,13 @@ def rows(heading):
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
 
 
-def test_the_rooms_and_doors_are_those_of_the_layers_in_their_order():
-    assert [name for cells in rows("Rooms") for name in re.findall(r"`([\w.]+)`", cells[0])] == ORDER
+def test_the_stages_and_doors_are_those_of_the_layers_in_their_order():
+    assert [name for cells in rows("Stages") for name in re.findall(r"`([\w.]+)`", cells[0])] == ORDER
     for libraries, door in rows("One door a library"):
         for library in libraries.split(", "):
             places = [place.removeprefix("feederscrew/") for place in DOORS[library]]
-            for room in re.findall(r"`(\w+)`", door):
-                assert any(place.startswith(room) for place in places), (library, places)
+            for stage in re.findall(r"`(\w+)`", door):
+                assert any(place.startswith(stage) for place in places), (library, places)
 
 
 def test_the_functions_folders_and_modules_that_the_pages_name_are_there():
@@ -148,7 +148,7 @@ def test_the_functions_folders_and_modules_that_the_pages_name_are_there():
 
 
 def test_a_release_knows_its_version_and_its_changes():
-    version = re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/version.py").read_text())[1]
+    version = re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/base/version.py").read_text())[1]
     assert re.search(r"^## (\S+?),", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1] == version
     _, said, fault = program("docs/release.py")
     assert f"git tag v{version}" in said and not fault

@@ -53,8 +53,8 @@ def test_a_function_counts_once_it_is_entered(tmp_path, monkeypatch):
 
 def test_every_function_of_the_program_is_counted_but_those_that_numba_reads():
     functions = entered.everything()
-    assert {"feederscrew/units.py:quantity_text", "cli/options.py:part"} & functions
-    assert not [name for name in functions if "/kernel/" in name or "feederscrew/conveying/" in name]
+    assert {"feederscrew/base/units.py:quantity_text", "cli/options.py:part"} & functions
+    assert not [name for name in functions if "/kernel/" in name or "feederscrew/motion/" in name]
     assert entered.ENTERED & functions and set(entered.WAITING) <= functions
 
 
@@ -73,7 +73,7 @@ def test_what_is_hidden_by_make_test_without_is_not_found_and_its_tests_skip():
     )
     assert without("lxml,sh", "-c", asked) == "[True, False] None False\n"
     assert without("", "-c", asked).startswith("[False, False] /")
-    body = "tests/solidbowl/test_leans.py::test_a_step_higher_than_the_plate_is_one_exact_body"
+    body = "tests/cad/test_leans.py::test_a_step_higher_than_the_plate_is_one_exact_body"
     said = without("OCP", "-m", "pytest", "-m", "extra", "-rs", "-p", "no:cacheprovider", body)
     assert "1 skipped" in said and "needs OCP: pip install 'feederscrew[cad]'" in said
 

@@ -12,7 +12,7 @@ import io
 from pathlib import Path
 
 import feederscrew as fs
-from feederscrew.sorting.devices.base import Device
+from feederscrew.bowl.devices.base import Device
 
 part: fs.Part = fs.load("p.stl", units="mm", density="abs", centre_of_mass=(0.0, 0.0, 1.0), allow_open=True)
 piped = fs.load("-", density=7850, names=Path("names.yaml"), stdin=io.BytesIO())

@@ -83,7 +83,7 @@ def test_all_files_of_the_packages_land_in_site_packages_under_our_own_names(pla
     landed = names(packages) - {"libraries.pth", "__pycache__"}
     assert {name for name in landed if not name.endswith(".dist-info")} == {"feederscrew", "feederscrew_cli"}
     parts = [path.name for path in (ROOT / "parts").iterdir() if path.suffix in (".stl", ".step", ".yaml")]
-    assert names(packages / "feederscrew/samples/parts") >= set(parts)
+    assert names(packages / "feederscrew/jobs/samples/parts") >= set(parts)
     for folder, name in (("feederscrew", "feederscrew"), ("cli", "feederscrew_cli")):
         ours, there = (
             {path.relative_to(root) for path in root.rglob("*") if path.is_file()}

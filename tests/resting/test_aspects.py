@@ -11,9 +11,9 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from feederscrew.errors import FeederError
-from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import centroid, inset, outline
+from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.polygons import centroid, inset, outline
 from feederscrew.part import load
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from feederscrew.arrivals.drop import drop
+from feederscrew.feeding.compare import compare_sets
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.deviation import total_variation
 from feederscrew.resting.rules import recommended
-from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.drop import drop
 
 MEASURED = Path(__file__).parents[2] / "docs/measured"
 

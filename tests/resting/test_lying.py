@@ -8,13 +8,13 @@ import round_bodies
 import shapes
 import trimesh
 
+from feederscrew.arrivals.aspects_study import aspects as study_of
 from feederscrew.output import aspects as aspects_output
 from feederscrew.part import load
 from feederscrew.resting import lying
 from feederscrew.resting.aspects import find
 from feederscrew.resting.lying import Lies
 from feederscrew.resting.posture import posture
-from feederscrew.studies.aspects import aspects as study_of
 
 ROOT = Path(__file__).parents[2]
 LARGEST, FACE, END, EDGES, ROLLS = Lies

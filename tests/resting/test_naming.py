@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import shapes
 
-from feederscrew import batch, load, write_names
-from feederscrew.batch import task, work
-from feederscrew.errors import FeederError
+from feederscrew import load, write_names
+from feederscrew.base.errors import FeederError
+from feederscrew.jobs import batch
+from feederscrew.jobs.batch import task, work
 from feederscrew.part.card import read_aspect_names
 from feederscrew.resting import aspects
 from feederscrew.resting.aspects import find

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
 from feederscrew.resting import deviation as measure
 from feederscrew.resting import profiles
 from feederscrew.resting.profiles import AspectProfile

@@ -16,7 +16,7 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from feederscrew import bowl
-from feederscrew.mechanics import floor_balance
+from feederscrew.motion import floor_balance
 from feederscrew.part import load, mass
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find

@@ -9,7 +9,8 @@ import pytest
 import shapes
 from drop_bodies import cuboids
 
-from feederscrew.dropping import ensemble
+from feederscrew.arrivals import ensemble
+from feederscrew.arrivals.aspects_study import aspects
 from feederscrew.output import style
 from feederscrew.part import load
 from feederscrew.resting import profiles
@@ -19,7 +20,6 @@ from feederscrew.resting.calibration import HIGHEST, calibrate
 from feederscrew.resting.rules import formulas, recommended, registry
 from feederscrew.resting.rules.formulas import EXPONENTS, hop_shares, surface_shares, surface_weights
 from feederscrew.resting.rules.registry import ClassQuantities
-from feederscrew.studies.aspects import aspects
 
 BRACKET = Path(__file__).parents[2] / "parts/lbracket_30x20x15.stl"
 SHARES, HEIGHTS, TOPS = np.array([0.5, 0.3, 0.2]), np.array([0.3, 0.45, 0.6]), np.array([0.62, 0.8])

@@ -8,9 +8,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from feederscrew.errors import MeshError
-from feederscrew.geometry import compiled
-from feederscrew.geometry.vectors import solid_angles
+from feederscrew.arrivals.aspects_study import AspectsStudy
+from feederscrew.base.errors import MeshError
+from feederscrew.base.geometry import compiled
+from feederscrew.base.geometry.vectors import solid_angles
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output import tables
 from feederscrew.part.hull import convex_hull
@@ -21,7 +22,6 @@ from feederscrew.resting.barriers import UNNAMED, adopted_shares, balance, barri
 from feederscrew.resting.exact_tumbling import transitions, tumble, tumble_classes
 from feederscrew.resting.half_edges import half_edges, sinks
 from feederscrew.resting.landscape import MIN_BARRIER_SHARE, RIPPLE_OF_RADIUS, landscape
-from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.thesis import parts
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2.0

@@ -8,10 +8,10 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.bowl.record import Track
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.orientations import add_travel, orientations
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"

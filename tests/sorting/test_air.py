@@ -14,17 +14,17 @@ from on_track import PARTS, WIDE, block, coming, device, load, lying, pick, read
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.base.units import GRAVITY
+from feederscrew.bowl.devices.kinds import KINDS
+from feederscrew.bowl.devices.pneumatics import Nozzles
 from feederscrew.bowl.verified import fingerprint
-from feederscrew.geometry.polygons import turned
-from feederscrew.rates import stream
+from feederscrew.feeding import stream
 from feederscrew.sorting import sensor_views, verdicts
-from feederscrew.sorting.devices.kinds import KINDS
-from feederscrew.sorting.devices.pneumatics import Nozzles
+from feederscrew.sorting import tooling as tooling_study
 from feederscrew.sorting.fates import at_entry
 from feederscrew.sorting.orientations import travel_speed
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
-from feederscrew.studies import tooling as tooling_study
-from feederscrew.units import GRAVITY
 
 BOWL, EVERY = WIDE, coming(block())
 FLAT, TALL = pick(EVERY, 20, 5), pick(EVERY, 12, 20)

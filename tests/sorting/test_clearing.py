@@ -10,13 +10,12 @@ import shapes
 from on_track import block, coming, device, load, lying, named, pick
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import ArgumentError
-from feederscrew.rates.tipping import is_surely_gone
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices import openings
+from feederscrew.bowl.devices.base import UNSURE
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
 from feederscrew.sorting import falling, footprints
-from feederscrew.sorting.devices import openings
-from feederscrew.sorting.devices.base import UNSURE
 from feederscrew.sorting.falling import falls_through, fits_as_it_lies, lets_go, may_rest, surely_gone
 from feederscrew.sorting.fates import course
 from feederscrew.sorting.footprints import Footprint
@@ -24,8 +23,9 @@ from feederscrew.sorting.isolating import chain, hole_search
 from feederscrew.sorting.isolating.chain import design_task, propose
 from feederscrew.sorting.isolating.design import DESIGN_MARGIN_M
 from feederscrew.sorting.orientations import add_travel, orientations
+from feederscrew.sorting.tipping import is_surely_gone
+from feederscrew.sorting.tooling import ToolingSearch, tooling
 from feederscrew.sorting.verdicts import verdict
-from feederscrew.studies.tooling import ToolingSearch, tooling
 from feederscrew.trials.course import SentParts
 from feederscrew.trials.course import course as run_course
 

@@ -9,12 +9,12 @@ import shapes
 from on_track import load
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.entry import shares
+from feederscrew.bowl.devices.kinds import KINDS, CostClass, cheaper, dearer
 from feederscrew.designing import tooling_trials
 from feederscrew.designing.tooling_trials import TriedDesign, try_designs
 from feederscrew.output import tooling as tables
-from feederscrew.sorting.devices.kinds import KINDS, CostClass, cheaper, dearer
-from feederscrew.studies.rate import shares
-from feederscrew.studies.tooling import ToolingSearch, next_class, tooling, tooling_without
+from feederscrew.sorting.tooling import ToolingSearch, next_class, tooling, tooling_without
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from on_track import LEVEL, block, device, lying, pick, read
 
-from feederscrew.errors import ConfigError, Faults
+from feederscrew.base.errors import ConfigError, Faults
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 
 

@@ -11,15 +11,15 @@ import trimesh
 from on_track import block, coming, device, load, lying, named, slanted
 
 from feederscrew import bowl as bowls
+from feederscrew.feeding.rate import rate
 from feederscrew.output import tooling as tables
-from feederscrew.rates.tipping import steady
 from feederscrew.sorting.isolating import chain, design, hole_search
 from feederscrew.sorting.isolating.chain import DesignConstraints, design_task, propose
 from feederscrew.sorting.isolating.hole_search import HoleSearch
 from feederscrew.sorting.orientations import name_mirror_images
+from feederscrew.sorting.tipping import steady
+from feederscrew.sorting.tooling import ToolingSearch, tooling
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
-from feederscrew.studies.rate import rate
-from feederscrew.studies.tooling import ToolingSearch, tooling
 
 MARGIN = 2.5e-4
 BY_ONE_NUMBER = {"wiper", "narrowed track", "canyon", "gap", "cut-out"}

@@ -9,18 +9,19 @@ import pytest
 import trimesh
 from on_track import WIDE, block, coming, device, load, named, read, slanted
 
-from feederscrew.errors import Faults
+from feederscrew.arrivals.entry import shares
+from feederscrew.base.errors import Faults
+from feederscrew.cad import section as printed
+from feederscrew.feeding import stream
+from feederscrew.feeding.rate import rate
+from feederscrew.feeding.well_oriented import velocity
 from feederscrew.output import tooling_figures
 from feederscrew.output.rate import remarks
-from feederscrew.rates import stream
-from feederscrew.rates.well_oriented import velocity
-from feederscrew.solidbowl import section as printed
 from feederscrew.sorting import solid
 from feederscrew.sorting.device_passages import worst_passage
 from feederscrew.sorting.fates import at_entry, course, leading_devices
 from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.sorting.verdicts import becomes_in_groove, groove_height, settled_in_groove, verdict
-from feederscrew.studies.rate import rate, shares
 
 DEG = math.radians(1.0)
 

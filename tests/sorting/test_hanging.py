@@ -11,19 +11,19 @@ from on_track import device, load, lying, named, read
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
-from feederscrew.bowl.devices import THREADED_SHANK
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
+from feederscrew.bowl.device_list import THREADED_SHANK
+from feederscrew.bowl.devices.base import opening_at
+from feederscrew.bowl.devices.trade import Action
+from feederscrew.sorting import tooling as tooling_study
 from feederscrew.sorting.device_passages import until_returned
-from feederscrew.sorting.devices.base import opening_at
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.falling import hangs_free
 from feederscrew.sorting.fates import course
 from feederscrew.sorting.isolating.chain import design_task, judge_cut, propose
 from feederscrew.sorting.orientations import Hanging, neck
 from feederscrew.sorting.verdicts import verdict
-from feederscrew.studies import tooling as tooling_study
-from feederscrew.studies import trial
 from feederscrew.trials import course as trial_course
+from feederscrew.trials import trial
 
 HEAD, SHANK, UNDER = 5e-3, 2e-3, 4e-3  # [m] radii, height of the head
 SLOT = 6e-3

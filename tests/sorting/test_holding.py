@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from on_track import LEVEL, device, lying, pick
 from on_track import block as part
 
-from feederscrew.rates import stream
+from feederscrew.bowl.devices.base import UNSURE
+from feederscrew.bowl.devices.kinds import KINDS
+from feederscrew.feeding import stream
 from feederscrew.resting.aspects import find
 from feederscrew.sorting import falling, verdicts
-from feederscrew.sorting.devices.base import UNSURE
-from feederscrew.sorting.devices.kinds import KINDS
 from feederscrew.sorting.fates import course
 from feederscrew.sorting.isolating.chain import DesignConstraints
 from feederscrew.sorting.isolating.design import design

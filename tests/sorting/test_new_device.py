@@ -9,21 +9,21 @@ import trimesh
 from click.testing import CliRunner
 from on_track import block, lying, read
 
+from feederscrew.base.value_forms import pattern
+from feederscrew.bowl import devices
+from feederscrew.bowl.devices import kinds
 from feederscrew.bowl.documentation import json_schema
-from feederscrew.sorting import devices
-from feederscrew.sorting.devices import kinds
 from feederscrew.sorting.isolating import chain
-from feederscrew.value_forms import pattern
 from feederscrew_cli.main import feeder
 
 FILE = '''
 """A strip removed along the wall, by another name."""
 
-from feederscrew import value_forms as forms
-from feederscrew.sorting.devices import values
-from feederscrew.sorting.devices.base import Device, room_of
-from feederscrew.sorting.devices.features import Features, TrackOpening, box_ring
-from feederscrew.sorting.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
+from feederscrew.base import value_forms as forms
+from feederscrew.bowl.devices import values
+from feederscrew.bowl.devices.base import Device, room_of
+from feederscrew.bowl.devices.features import Features, TrackOpening, box_ring
+from feederscrew.bowl.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
 
 
 class Ravine(Device):

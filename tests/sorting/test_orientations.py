@@ -10,7 +10,7 @@ import shapes
 import trimesh
 from on_track import LEVEL, block, lying, named, pick
 
-from feederscrew.geometry.polygons import turned
+from feederscrew.base.geometry.polygons import turned
 from feederscrew.sorting.orientations import name_mirror_images
 
 CURVED = replace(LEVEL, radius=0.15)

@@ -6,9 +6,9 @@ import shapely
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from feederscrew.geometry.polygons import convex
+from feederscrew.base.geometry.polygons import convex
+from feederscrew.bowl.devices import openings
 from feederscrew.sorting import footprints
-from feederscrew.sorting.devices import openings
 from feederscrew.sorting.footprints import Footprint
 
 STRAIGHT, CURVED = 100.0, 0.15  # [m]

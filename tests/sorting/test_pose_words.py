@@ -5,10 +5,10 @@ import pytest
 import shapes
 import trimesh
 
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.bowl.record import Track
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.device_poses import find_device_poses
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.orientations import HANGING, hang, neck, orientations
 from feederscrew.sorting.pose_words import describe_pose
 

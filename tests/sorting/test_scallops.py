@@ -7,8 +7,8 @@ import trimesh
 from on_track import block, device, lying, pick, read
 from round_bodies import revolved
 
-from feederscrew.errors import Faults
-from feederscrew.sorting.devices.kinds import KINDS
+from feederscrew.base.errors import Faults
+from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 
 

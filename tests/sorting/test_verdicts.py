@@ -12,12 +12,12 @@ from on_track import LEVEL, block, coming, device, lying, pick, read
 from scipy.special import ndtr
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
+from feederscrew.bowl.devices import openings
+from feederscrew.bowl.devices.base import UNSURE, room_of, share
+from feederscrew.bowl.devices.blades import SQUARE_FACE_RAD
+from feederscrew.bowl.devices.kinds import KINDS, find_kind
 from feederscrew.sorting import footprints
-from feederscrew.sorting.devices import openings
-from feederscrew.sorting.devices.base import UNSURE, room_of, share
-from feederscrew.sorting.devices.blades import SQUARE_FACE_RAD
-from feederscrew.sorting.devices.kinds import KINDS, find_kind
 from feederscrew.sorting.orientations import place
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 

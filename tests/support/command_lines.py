@@ -1,10 +1,13 @@
 """What the tests of commands share: where the parts lie, and how a table is read back."""
 
 import csv
+from dataclasses import fields
 from pathlib import Path
 
 from click.testing import CliRunner
 
+from feederscrew.designing.record import DesignRequest
+from feederscrew_cli.design import design as design_command
 from feederscrew_cli.main import feeder
 
 ROOT = Path(__file__).parents[2]
@@ -28,3 +31,11 @@ def called(*words):
 def names(folder):
     """The names of the files of a folder."""
     return {path.name for path in folder.iterdir()}
+
+
+def asked_by(words):
+    """The request that a call of feeder design asks for, as the command reads it."""
+    assert words[:2] == ["feeder", "design"]
+    params = design_command.make_context("design", words[2:]).params
+    names = {field.name for field in fields(DesignRequest)} & {*params}
+    return DesignRequest(**{name: params[name] for name in names - {"jobs"}})

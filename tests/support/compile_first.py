@@ -61,7 +61,8 @@ def compile_here(name, folder):
     from click.testing import CliRunner
 
     if name == "sweep":
-        from feederscrew.conveying import answer, operating_point
+        from feederscrew.motion import conveying as answer
+        from feederscrew.motion import operating_point
 
         answer.sweep(np.array([operating_point.plain(1.0, 0.5, 0.0, 0.4)]))
         return

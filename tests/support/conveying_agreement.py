@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from feederscrew.conveying import steady
-from feederscrew.conveying.operating_point import law
-from feederscrew.conveying.point_motion import TALLY, at_rest, turn
+from feederscrew.motion import steady
+from feederscrew.motion.operating_point import law
+from feederscrew.motion.point_motion import TALLY, at_rest, turn
 
 LONGEST = 40  # periods the general solver is asked to follow
 

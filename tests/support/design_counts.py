@@ -6,12 +6,13 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import short_trials
-from feederscrew.designing.findings import End, Fault, FaultKind
-from feederscrew.designing.record import DesignRequest, DesignStudy, RobustRun
+from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, MoveKind
+from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, RobustRun
 from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
 
 TURNED_ON_TRACK = End(Fate.TURNED)
+ARRIVALS = (("A", 0.6), ("B", 0.3), ("C", 0.08), ("D", 0.02))
 
 
 def end_at(fate, kind, station=1):
@@ -81,3 +82,21 @@ def short_trial(ways, right, wrong=(), held=(), *, each=2, row=0, **more):
     }  # fmt: skip
     shares, parts = np.full(count, 1.0 / count), np.full(count, each)
     return short_trials.ShortTrial(ways, shares, np.arange(count), parts, *own, **known | more)
+
+
+def attempt(wanted="A@270", rate=0.0, faults=None, **more):
+    """A short trial of which nothing left, unless its faults are given."""
+    nothing_left = Fault(FaultKind.NOTHING_LEAVES), lost(wanted, end_at(Fate.RETURNED, "gap"))
+    ended = nothing_left if faults is None else faults
+    made = Attempt(
+        wanted, wanted.partition("@")[0], ("gap: 9 mm",), Move(MoveKind.PROPOSED), 0.0, 0.1, 8,
+        0.0 if ended else 0.4, 1.0, 0.0, rate / 60.0, ended, Cause.DEVICE,
+    )  # fmt: skip
+    return replace(made, **more)
+
+
+def design_of_nothing(part, *attempts, request=None, **more):
+    """A design of which no chain got through its trial."""
+    asked = request or DesignRequest(1.0)
+    made = attempts or (attempt(),) * 4 + (attempt("A@54"), attempt("B@184"))
+    return DesignStudy(part, asked, None, None, None, attempts=made, **{"arrivals": ARRIVALS} | more)

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.dropping.kernel import body
-from feederscrew.dropping.rounded_hull import shape_of
+from feederscrew.arrivals.kernel import body
+from feederscrew.arrivals.rounded_hull import shape_of
 from feederscrew.part.hull import convex_hull
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2.0

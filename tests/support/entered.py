@@ -52,10 +52,10 @@ def watch():
 @functools.cache
 def _watched():
     """Sources of the program whose functions numba does not compile."""
-    text = (ROOT / "feederscrew/geometry/compiled.py").read_text()
+    text = (ROOT / "feederscrew/base/geometry/compiled.py").read_text()
     patterns = re.findall(r'"([\w/*]+\.py)"', text.partition("SOURCES = {\n")[2].partition("\n}")[0])
-    assert len(patterns) > 5, "geometry/compiled.py lists its sources otherwise"
-    globs = ((ROOT / "feederscrew").glob(pattern) for pattern in ("geometry/compiled.py", *patterns))
+    assert len(patterns) > 5, "base/geometry/compiled.py lists its sources otherwise"
+    globs = ((ROOT / "feederscrew").glob(pattern) for pattern in ("base/geometry/compiled.py", *patterns))
     left_out = {path for found in globs for path in found}
     return {path for room in ROOMS for path in (ROOT / room).rglob("*.py")} - left_out
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
-from feederscrew.mechanics.track_balance import Seat
+from feederscrew.motion.track_balance import Seat
 from feederscrew.resting.posture import Posture
 
 DEG = np.pi / 180.0

@@ -4,7 +4,7 @@ import struct
 
 import numpy as np
 
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
 from feederscrew.part import load
 
 SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])

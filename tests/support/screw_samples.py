@@ -5,7 +5,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from feederscrew.screw import Point, Screw
+from feederscrew.motion.screws import Point, Screw
 
 RELATIVE = 1e-12
 few = settings(max_examples=60, deadline=None)

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from mechanics_samples import DEG, bowl, box_posture, rectangle
 
-from feederscrew.mechanics import floor_balance
-from feederscrew.mechanics import track_balance as track
-from feederscrew.mechanics.track_balance import frame, seat
+from feederscrew.motion import floor_balance
+from feederscrew.motion import track_balance as track
+from feederscrew.motion.screws import Wrench
+from feederscrew.motion.track_balance import frame, seat
 from feederscrew.output import floor as floor_output
 from feederscrew.output import track as track_output
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
-from feederscrew.screw import Wrench
 from feederscrew.thesis.motion import (
     FLOOR_TERMS,
     TRACK_TERMS,

@@ -7,8 +7,8 @@ import numpy as np
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.base.running import RunSettings
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
 from feederscrew.sorting.orientations import orientations
 from feederscrew.trials import course, part_poses, runs, shape, staging
 

@@ -12,13 +12,13 @@ import trimesh
 from block_rides import ALONG, ASPECTS, BOWL, EVERY, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer
-from feederscrew.dropping.kernel import body
+from feederscrew.arrivals.kernel import body
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.feeding import stream
+from feederscrew.motion import conveying as answer
 from feederscrew.part import load
-from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.fates import at_entry
 from feederscrew.sorting.orientations import Hanging, add_travel, orientations
 from feederscrew.sorting.verdicts import DeviceEncounter

@@ -9,10 +9,10 @@ import shapes
 from block_rides import ALONG, LENGTH, PART, PRINCIPAL, SOLID, laid, lying, ridden, sent, still
 from scipy import stats
 
+from feederscrew.arrivals.kernel import body
+from feederscrew.base.geometry import vectors
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.bowl.record import Friction, Track
-from feederscrew.dropping.kernel import body
-from feederscrew.geometry import vectors
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.trials import part_poses, staging
 from feederscrew.trials.looks import OTHER, Looks
 from feederscrew.trials.shape import solid_of

@@ -12,20 +12,20 @@ import trimesh
 from block_rides import ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer
-from feederscrew.dropping.kernel import body
-from feederscrew.dropping.launch_conditions import named
-from feederscrew.geometry import vectors
+from feederscrew.arrivals.kernel import body
+from feederscrew.arrivals.launch_conditions import named
+from feederscrew.base.geometry import vectors
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.feeding import stream
+from feederscrew.motion import conveying as answer
 from feederscrew.output.trial import tables
 from feederscrew.output.trial.rides import deciding_station
 from feederscrew.part import load
-from feederscrew.rates import stream
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.kinds import make_device
 from feederscrew.sorting.orientations import add_travel
 from feederscrew.sorting.verdicts import verdict
-from feederscrew.studies import trial as studies
 from feederscrew.trials import course, looks, part_poses, runs, shape, staging
+from feederscrew.trials import trial as studies
 from feederscrew.trials.queue import queue_of
 from feederscrew.trials.result import TrialRun
 from feederscrew.trials.supply import QueuePlan

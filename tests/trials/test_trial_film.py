@@ -11,15 +11,15 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import FeederError
+from feederscrew.base.errors import FeederError
 from feederscrew.output.page.blocks import Views
-from feederscrew.output.report import CHAPTERS, page
+from feederscrew.output.report import report
+from feederscrew.output.report_page import CHAPTERS, page
 from feederscrew.output.trial import film, tables
 from feederscrew.output.trial.figures import unroll_path
 from feederscrew.output.trial.rides import rides_to_show
-from feederscrew.studies.report import report
-from feederscrew.studies.trial import trial
 from feederscrew.trials.course import Fate
+from feederscrew.trials.trial import trial
 
 
 @pytest.fixture(scope="module")

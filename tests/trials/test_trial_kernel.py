@@ -11,15 +11,15 @@ import pytest
 import shapes
 from block_rides import ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, aspects_of, laid, ridden, sent, still
 
-from feederscrew.conveying import answer
-from feederscrew.conveying.answer import at_radius
-from feederscrew.dropping import plate_test
-from feederscrew.dropping.kernel import body
-from feederscrew.dropping.launch_conditions import named, sample
-from feederscrew.geometry import vectors
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.features import Sensor
-from feederscrew.sorting.devices.kinds import make_device
+from feederscrew.arrivals import plate_test
+from feederscrew.arrivals.kernel import body
+from feederscrew.arrivals.launch_conditions import named, sample
+from feederscrew.base.geometry import vectors
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.features import Sensor
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.motion import conveying as answer
+from feederscrew.motion.conveying import at_radius
 from feederscrew.sorting.orientations import orientations
 from feederscrew.trials import course, looks, part_poses, queue, runs, shape, staging
 

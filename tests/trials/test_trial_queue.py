@@ -8,14 +8,14 @@ import pytest
 from block_rides import ALONG, ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SHARES, SOLID, laid, lying, still
 
 from feederscrew import bowl as bowls
+from feederscrew.arrivals.kernel import body
+from feederscrew.base.running import USUAL_RUN, RunSettings
+from feederscrew.bowl.devices.kinds import KINDS, make_device
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Friction
-from feederscrew.conveying import answer
-from feederscrew.dropping.kernel import body
-from feederscrew.rates import stream
+from feederscrew.feeding import stream
+from feederscrew.motion import conveying as answer
 from feederscrew.resting import profiles
-from feederscrew.running import USUAL_RUN, RunSettings
-from feederscrew.sorting.devices.kinds import KINDS, make_device
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import part_poses, queue, result, runs
 from feederscrew.trials.kernel.steps import BEHIND, BELOW

@@ -7,10 +7,10 @@ import pytest
 from block_rides import ASPECTS, LENGTH, PART, SOLID, laid, ridden, still
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping.kernel import body
-from feederscrew.running import RunSettings
-from feederscrew.sorting.devices.kinds import make_device
-from feederscrew.sorting.devices.pneumatics import Nozzles, thrust
+from feederscrew.arrivals.kernel import body
+from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.bowl.devices.pneumatics import Nozzles, thrust
 from feederscrew.sorting.orientations import add_travel, orientations, travel_speed
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import course, queue, runs, staging

@@ -9,7 +9,7 @@ import shapes
 from block_rides import laid, ridden
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping.kernel import body
+from feederscrew.arrivals.kernel import body
 from feederscrew.trials import part_poses, runs, shape, staging
 from feederscrew.trials.kernel import steps, track_contacts
 from feederscrew.trials.runs import workspace_of

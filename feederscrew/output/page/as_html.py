@@ -7,14 +7,14 @@ import io
 import json
 import re
 import struct
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape as html_escape
 from html import unescape
 from importlib import resources
 from itertools import groupby
 
-from feederscrew.columns import Frame
-from feederscrew.errors import printable
+from feederscrew.base.columns import Frame
+from feederscrew.base.errors import printable
 from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
 from feederscrew.output.page.words import GLOSSARY
@@ -51,13 +51,16 @@ CARD_LETTERS = 110  # of a cell that takes more than four lines of that column
 NOTHING = "–"  # in an empty cell
 WHERE_WORDS = "The glossary of feeder, docs/glossary.md, explains the words with pictures."
 DETAILS = "Details for those who compare the rules"  # over remarks that call for no step
-# In HTML, apart from scripts and tags: orientations 'A@188', and cells with nothing but 'A'.
-NAMES = re.compile(
+# In HTML, apart from scripts and tags: names of a part that is told, 'A of nut', orientations 'A@188',
+# aspects that are 'A up' or 'A, at any heading', and what has nothing but 'A' in it.
+NAMES = (
     r'<script.*?</script>|<table class="sheet".*?</table>'  # cells to copy stay as they are
-    r'|(?P<td><td(?: data-head="[^"]*")?>)(?P<cell>[^<>@\s]{1,12})</td>|<[^>]*>'
-    r"|(?P<name>[^\W\d_][\w-]{0,11}@\d{1,3})(?![\w@])",
-    re.DOTALL,
+    r'|(?P<td><(?P<tag>td|strong|small)(?: data-head="[^"]*")?>)(?P<cell>[^<>@\s]{1,12})</(?P=tag)>|<[^>]*>'
+    r"|(?<![\w@])(?P<own>[^\W\d_][\w-]{0,11}(?:@\d{1,3})?) of (?P<part>{parts})(?!\w)"
+    r"|(?P<name>[^\W\d_][\w-]{0,11}@\d{1,3})(?![\w@])"
+    r"|(?<![\w@])(?P<aspect>[A-Z]{1,2})(?= up\b|, at any heading|, \d+ trials?:)"
 )
+NO_PART = r"(?!)"  # matches nothing
 FOLLOWING = (  # what the script shows: its name, what a reader calls it
     ("velocity", "velocity"),
     ("regime", "the part"),
@@ -99,8 +102,9 @@ def html(page: kinds.Page) -> str:
     shown = ['<div class="tiles">', *tiles, "</div>"] if tiles else []
     shown.append(_list(page.warnings, "loud") if page.warnings else "")
     if page.opening:
-        shown = ['<div class="opening">', *map(_views, page.opening), "<div>", *shown, "</div>", "</div>"]
-    names = PoseNames(page.pose)
+        views = ["<div>", *map(_views, page.opening), "</div>"]
+        shown = ['<div class="opening">', *views, "<div>", *shown, "</div>", "</div>"]
+    names = PoseNames(page.pose, page.pose_of)
     head.append(names.marked("\n".join(shown)))
     links, sections = [], []
     for section in page.sections:
@@ -132,8 +136,15 @@ def html(page: kinds.Page) -> str:
 class PoseNames:
     """Marks the names of a page that stand for poses, and keeps the pictures of those that it found."""
 
-    def __init__(self, find: Callable[[str], kinds.Pose | None] | None) -> None:
+    def __init__(
+        self,
+        find: Callable[[str], kinds.Pose | None] | None,
+        find_of: Mapping[str, Callable[[str], kinds.Pose | None]] | None = None,
+    ) -> None:
         self.find = find or (lambda name: None)
+        self.find_of = {escape(part): own for part, own in (find_of or {}).items()}
+        parts = "|".join(sorted(map(re.escape, self.find_of), key=len, reverse=True))
+        self.pattern = re.compile(NAMES.replace("{parts}", parts or NO_PART), re.DOTALL)
         self.found: dict[str, kinds.Pose] = {}
 
     def marked(self, body: str) -> str:
@@ -150,8 +161,10 @@ class PoseNames:
         met: set[str] = set()
 
         def mark(match: re.Match[str]) -> str:
-            name = match["name"] or match["cell"]
-            pose = self.find(unescape(name)) if name else None
+            name, find = match["name"] or match["cell"] or match["aspect"], self.find
+            if match["own"]:
+                name, find = match[0], lambda _: self.find_of[match["part"]](match["own"])
+            pose = find(unescape(name)) if name else None
             if pose is None:
                 return match[0]
             self.found[name] = pose
@@ -159,9 +172,9 @@ class PoseNames:
             met.add(name)
             first = ' first" tabindex="0' if is_first else ""
             text = f'<span class="pose pose-{place}{first}" data-words="{escape(pose.words)}">{name}</span>'
-            return f"{match['td']}{text}</td>" if match["cell"] else text
+            return f"{match['td']}{text}</{match['tag']}>" if match["cell"] else text
 
-        return NAMES.sub(mark, body)
+        return self.pattern.sub(mark, body)
 
     def style(self) -> str:
         """Return the style sheet's lines with the pictures."""
@@ -358,7 +371,7 @@ def _table(frame: Frame) -> str:
             if number and count < most and "e" not in cell and cell != NOTHING:
                 pad[place] = f' data-pad="{"" if count else "."}{"0" * (most - count)}"'
     # a text of several lines leaves the cells beside it white: on a phone each row of such a table is a card
-    is_cards = any(len(cell) > CARD_LETTERS for column in columns for cell in column)
+    is_cards = len(columns) > 2 and any(len(cell) > CARD_LETTERS for column in columns for cell in column)
     titles = [f' data-head="{escape(" ".join(names).strip())}"' * is_cards for names in heads]
     lines = []
     for own, row in zip(zip(*pads), zip(*columns)):
@@ -456,11 +469,12 @@ def _views(views: kinds.Views) -> str:
         )
     drawn = "\n".join(figures)
     hint = views.hint or (PLAYED if views.plays else HINT)
+    own = "turnable on-paper" if views.printed else "turnable"
     return (
-        f'<div id="{views.name}" hidden class="{"turnable on-paper" if views.printed else "turnable"}">\n'
+        f'<div id="{escape(views.name)}" hidden class="{own}">\n'
         f'<p class="quiet">{hint}</p>\n<div class="{"views played" if views.plays else "views"}">\n'
         f"{drawn}\n</div>\n</div>\n"
-        f'<script type="application/json" class="scene" data-views="{views.name}">'
+        f'<script type="application/json" class="scene" data-views="{escape(views.name)}">'
         f"{_json(views.scene)}</script>"
     )
 

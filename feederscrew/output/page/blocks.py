@@ -1,11 +1,11 @@
 """Blocks of a page; the two writers turn each kind of block into HTML or Markdown."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
-from feederscrew.columns import Frame
-from feederscrew.errors import Detail
+from feederscrew.base.columns import Frame
+from feederscrew.base.errors import Detail
 
 
 @dataclass(frozen=True)
@@ -193,6 +193,8 @@ class Page:
     kind: str = ""
     opening: tuple[Views, ...] = ()  # what it begins with, to be turned
     pose: Callable[[str], Pose | None] | None = None  # what a name of its texts stands for
+    # the same for 'A@188 of nut', where a page is of several parts: by the name of the part
+    pose_of: Mapping[str, Callable[[str], Pose | None]] = field(default_factory=dict)
 
     @property
     def tiles(self) -> tuple[Tile, ...]:

@@ -1,4 +1,4 @@
-// The conveying kernel of feederscrew/conveying in the page, for a drive without second harmonic, and the knobs that
+// The conveying kernel of feederscrew/motion in the page, for a drive without second harmonic, and the knobs that
 // turn its drive. Angles in radians, lengths in units of the half stroke A, velocities in A w, as in docs/conveying.md.
 "use strict";
 

@@ -6,13 +6,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from feederscrew.arrays import Floats, Points
+from feederscrew.base.arrays import Floats, Points
+from feederscrew.base.units import MM
 from feederscrew.output import style
 from feederscrew.trials import course, runs
 from feederscrew.trials.course import Fate
 from feederscrew.trials.result import TrialRun
 from feederscrew.trials.staging import Stage
-from feederscrew.units import MM
 
 BLOWN_OFF = None  # in place of the fate of a returned part, where a sensor saw it
 # of each fate: colour, told apart by colour-blind eyes, line, and mark where the path ends

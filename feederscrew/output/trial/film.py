@@ -11,8 +11,9 @@ import shapely
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation, Slerp
 
-from feederscrew.arrays import Bools, Floats
-from feederscrew.errors import FeederError, MissingPackage
+from feederscrew.base.arrays import Bools, Floats
+from feederscrew.base.errors import FeederError, MissingPackage
+from feederscrew.base.units import MM
 from feederscrew.output import DPI, shading, style
 from feederscrew.output.shading import STEEL_COLOUR, Camera, Mesh, Rays, join_meshes
 from feederscrew.output.tooling_views import camera_at
@@ -21,12 +22,11 @@ from feederscrew.output.trial.figures import LOOKS, solids, unroll_path
 from feederscrew.output.trial.rides import WALL, DeviceRide
 from feederscrew.part.record import Part
 from feederscrew.sorting import solid
-from feederscrew.studies.trial import TrialStudy
 from feederscrew.trials.course import Fate
 from feederscrew.trials.queue_counts import QueuedParts
 from feederscrew.trials.result import TrialRun
 from feederscrew.trials.staging import Stage
-from feederscrew.units import MM
+from feederscrew.trials.trial import TrialStudy
 
 Frame = tuple[Floats, str, str]  # image (rows, columns, 3), caption, time
 ENDINGS = ("gif", "mp4", "webm")

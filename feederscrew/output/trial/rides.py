@@ -8,9 +8,10 @@ import numpy as np
 import shapely
 from scipy.spatial.transform import Rotation
 
-from feederscrew.arrays import Floats
+from feederscrew.arrivals.kernel import body
+from feederscrew.base.arrays import Floats
+from feederscrew.base.units import MM
 from feederscrew.bowl.record import Track
-from feederscrew.dropping.kernel import body
 from feederscrew.output import shading, tooling_views
 from feederscrew.output.shading import Mesh, encode_base64, join_meshes, short
 from feederscrew.output.trial.figures import solids, unroll_path
@@ -22,7 +23,6 @@ from feederscrew.trials.course import Fate
 from feederscrew.trials.result import TrialRun
 from feederscrew.trials.shape import solid_of
 from feederscrew.trials.staging import Stage
-from feederscrew.units import MM
 
 ALWAYS = (-np.inf, np.inf)  # [s] when a steady jet blows
 WALL = 3e-3  # [m] thickness of the wall that is drawn

@@ -5,24 +5,24 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints
-from feederscrew.columns import ColumnHead, Frame, heads, of_arrays, share_head, values
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.columns import ColumnHead, Frame, heads, of_arrays, share_head, values
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM, MM_S, PER_MINUTE
 from feederscrew.designing.evidence import share_at_least
-from feederscrew.dropping.ensemble import wilson
-from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts
 from feederscrew.output.convey import restitution_entry
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import trial_text
 from feederscrew.sorting.orientations import ORIENTATION_TRIED_COLUMNS
-from feederscrew.studies.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
 from feederscrew.trials import course
 from feederscrew.trials.course import LANDING_COLUMNS, Fate
 from feederscrew.trials.fills import FILL_COLUMNS, FILL_COUNT_COLUMNS, FilledQueue
 from feederscrew.trials.queue_counts import QUEUED_COLUMNS
 from feederscrew.trials.result import OUTLET_COLUMNS, RUN_COLUMNS, RUN_DRIVE_COLUMNS, Outlet, TrialRun
-from feederscrew.units import MM, MM_S, PER_MINUTE
+from feederscrew.trials.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
 
 figures = heavy("feederscrew.output.trial.figures")
 film = heavy("feederscrew.output.trial.film")

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Array, Bools, Floats, Ints
+from feederscrew.base import check
+from feederscrew.base.arrays import Array, Bools, Floats, Ints
 from feederscrew.resting.barriers import Tipping, critical_solid_angles
 from feederscrew.resting.faces import Face
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats
-from feederscrew.columns import Column
-from feederscrew.errors import ArgumentError
-from feederscrew.records import ReadableRecord
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats
+from feederscrew.base.columns import Column
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.records import ReadableRecord
 from feederscrew.resting.rules import registry
 
 LAUNCH_NAMES = ("place", "drop", "flip", "roll", "feed")

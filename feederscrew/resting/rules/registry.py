@@ -7,14 +7,14 @@ names of rules and the table in ``docs/resting.md`` are made from these entries,
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from feederscrew.arrays import Floats, Ints
-from feederscrew.documents import hint, nearest
-from feederscrew.errors import ArgumentError
+from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.documents import hint, nearest
+from feederscrew.base.errors import ArgumentError
+from feederscrew.base.units import quantity_text
 from feederscrew.resting import barriers
 from feederscrew.resting.barriers import Tipping
 from feederscrew.resting.faces import Face
 from feederscrew.resting.rules import formulas
-from feederscrew.units import quantity_text
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,15 +16,15 @@ from typing import Any, cast
 import numpy as np
 import shapely
 
-from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Points
-from feederscrew.columns import Column
-from feederscrew.mechanics import sameness
-from feederscrew.sorting.devices.base import STOPPED, UNSURE, Device
-from feederscrew.sorting.devices.kinds import KINDS
-from feederscrew.sorting.devices.leans import Lean
-from feederscrew.sorting.devices.pneumatics import Sorter
-from feederscrew.sorting.devices.trade import Action
+from feederscrew.base import check
+from feederscrew.base.arrays import Bools, Floats, Points
+from feederscrew.base.columns import Column
+from feederscrew.bowl.devices.base import STOPPED, UNSURE, Device
+from feederscrew.bowl.devices.kinds import KINDS
+from feederscrew.bowl.devices.leans import Lean
+from feederscrew.bowl.devices.pneumatics import Sorter
+from feederscrew.bowl.devices.trade import Action
+from feederscrew.motion import sameness
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.fates import course
 from feederscrew.sorting.orientations import Orientation, hang

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats
+from feederscrew.base.arrays import Bools, Floats
+from feederscrew.base.errors import ArgumentError
+from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.devices.blades import PROPOSED_SWEEP_RAD, Wiper
+from feederscrew.bowl.devices.kinds import KINDS, leaning, names, shaped
+from feederscrew.bowl.devices.leans import Lean
+from feederscrew.bowl.devices.ledges import Rails
+from feederscrew.bowl.devices.orientation_names import place_of, rows
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl
-from feederscrew.errors import ArgumentError
-from feederscrew.sorting.devices.base import Device
-from feederscrew.sorting.devices.blades import PROPOSED_SWEEP_RAD, Wiper
-from feederscrew.sorting.devices.kinds import KINDS, leaning, names, shaped
-from feederscrew.sorting.devices.leans import Lean
-from feederscrew.sorting.devices.ledges import Rails
-from feederscrew.sorting.devices.orientation_names import place_of, rows
-from feederscrew.sorting.devices.trade import Action
 from feederscrew.sorting.fates import at_entry, course
 from feederscrew.sorting.isolating import chain, hole_search, rails
 from feederscrew.sorting.isolating.chain import (

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from feederscrew.arrays import Points
+from feederscrew.base.arrays import Points
+from feederscrew.bowl.devices import openings
+from feederscrew.bowl.devices.base import Device, carried
+from feederscrew.bowl.devices.openings import CutOut, HoleEdges
+from feederscrew.bowl.devices.values import crossed
 from feederscrew.sorting import footprints
-from feederscrew.sorting.devices import openings
-from feederscrew.sorting.devices.base import Device, carried
-from feederscrew.sorting.devices.openings import CutOut, HoleEdges
-from feederscrew.sorting.devices.values import crossed
 from feederscrew.sorting.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, Cut, DesignTask, judge_cut
 from feederscrew.sorting.orientations import Orientation
 from feederscrew.sorting.verdicts import verdict

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew.arrays import Bools
-from feederscrew.sorting.devices.base import RETURNED
-from feederscrew.sorting.devices.blades import Wiper
-from feederscrew.sorting.devices.ledges import Rails
+from feederscrew.base.arrays import Bools
+from feederscrew.bowl.devices.base import RETURNED
+from feederscrew.bowl.devices.blades import Wiper
+from feederscrew.bowl.devices.ledges import Rails
 from feederscrew.sorting.isolating.chain import (
     DESIGN_KEY,
     SHOP_STEP_M,

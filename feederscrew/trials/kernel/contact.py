@@ -6,9 +6,9 @@ Its response (6,) is what one unit of impulse along that axis adds to these.
 
 import math
 
-from feederscrew.arrays import Floats, Row, Triple
-from feederscrew.dropping.kernel.body import Moves, moves_of, set_moves
-from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.arrivals.kernel.body import Moves, moves_of, set_moves
+from feederscrew.base.arrays import Floats, Row, Triple
+from feederscrew.base.geometry.compiled import compiled, outlined
 from feederscrew.trials.kernel.plate_views import cross, dot, rotate_back
 from feederscrew.trials.kernel.workspace import Island, Surface, TrueSolid, Vec3, Workspace
 

@@ -2,10 +2,10 @@
 
 import math
 
-from feederscrew.arrays import Floats, Row
-from feederscrew.dropping.kernel.body import X, Y, Z
-from feederscrew.dropping.kernel.floor_motion import Floor
-from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.arrivals.kernel.body import X, Y, Z
+from feederscrew.arrivals.kernel.floor_motion import Floor
+from feederscrew.base.arrays import Floats, Row
+from feederscrew.base.geometry.compiled import compiled, outlined
 from feederscrew.trials.kernel.plate_views import (
     BLOCK,
     cross,

@@ -6,9 +6,9 @@ or lies moves by that in many steps, so that a step costs what touches and not w
 
 import math
 
-from feederscrew.arrays import Floats, Row, Rows, Triple
-from feederscrew.dropping.kernel.body import Q, X, Y, Z
-from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.arrivals.kernel.body import Q, X, Y, Z
+from feederscrew.base.arrays import Floats, Row, Rows, Triple
+from feederscrew.base.geometry.compiled import compiled, outlined
 from feederscrew.trials.kernel.plate_views import (
     BLOCK,
     MAX_DEPTH,

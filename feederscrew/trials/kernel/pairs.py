@@ -6,9 +6,9 @@ Everything is looked for in the body axes of the part that is touched, the secon
 
 import math
 
-from feederscrew.arrays import Floats, Ints, Triple
-from feederscrew.dropping.kernel.body import X
-from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.arrivals.kernel.body import X
+from feederscrew.base.arrays import Floats, Ints, Triple
+from feederscrew.base.geometry.compiled import compiled, outlined
 from feederscrew.trials.kernel.contact import set_axes, set_levers
 from feederscrew.trials.kernel.plate_views import (
     BLOCK,

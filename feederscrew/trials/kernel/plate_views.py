@@ -2,9 +2,9 @@
 
 import math
 
-from feederscrew.arrays import Floats, Row, Rows, Triple
-from feederscrew.dropping.kernel.body import X, Y, Z
-from feederscrew.geometry.compiled import compiled
+from feederscrew.arrivals.kernel.body import X, Y, Z
+from feederscrew.base.arrays import Floats, Row, Rows, Triple
+from feederscrew.base.geometry.compiled import compiled
 from feederscrew.trials.kernel.workspace import Surface, TrueSolid, Vec3
 
 MAX_DEPTH = 0.04  # how far behind a surface anything may be found, in units of the part's length

@@ -6,12 +6,12 @@ fast as it closes its gap, or, of one that strikes, as Newton's law of restituti
 
 import math
 
-from feederscrew.arrays import Floats
-from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel import floor_motion as floors
-from feederscrew.dropping.kernel.body import VX, W, X, Y, moves_of
-from feederscrew.dropping.kernel.floor_motion import Floor
-from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.arrivals.kernel import body
+from feederscrew.arrivals.kernel import floor_motion as floors
+from feederscrew.arrivals.kernel.body import VX, W, X, Y, moves_of
+from feederscrew.arrivals.kernel.floor_motion import Floor
+from feederscrew.base.arrays import Floats
+from feederscrew.base.geometry.compiled import compiled, outlined
 from feederscrew.trials.kernel import contact, jets
 from feederscrew.trials.kernel.contact import along_speed, aside_speed, normal_speed, pair_slip, pair_speed
 from feederscrew.trials.kernel.plate_views import axis_of, wall_of

@@ -11,9 +11,9 @@ What lies on a surface by many corners, circles, edges and faces is carried as w
 
 import math
 
-from feederscrew.arrays import Floats, Row, Rows, Triple
-from feederscrew.dropping.kernel.body import X, Y, Z
-from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.arrivals.kernel.body import X, Y, Z
+from feederscrew.base.arrays import Floats, Row, Rows, Triple
+from feederscrew.base.geometry.compiled import compiled, outlined
 from feederscrew.trials.kernel.contact import KEYS_PER_SPOT, add_contact
 from feederscrew.trials.kernel.neighbours import lists_hold, rebuild_lists
 from feederscrew.trials.kernel.plate_views import (

@@ -2,11 +2,11 @@
 
 import math
 
-from feederscrew.arrays import Bools, Floats, Row
-from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.body import VX, VY, X, Y, Z
-from feederscrew.dropping.kernel.floor_motion import Floor
-from feederscrew.geometry.compiled import compiled, entry, outlined
+from feederscrew.arrivals.kernel import body
+from feederscrew.arrivals.kernel.body import VX, VY, X, Y, Z
+from feederscrew.arrivals.kernel.floor_motion import Floor
+from feederscrew.base.arrays import Bools, Floats, Row
+from feederscrew.base.geometry.compiled import compiled, entry, outlined
 from feederscrew.trials.kernel import pairs, steps
 from feederscrew.trials.kernel.track_contacts import find_contacts
 from feederscrew.trials.kernel.workspace import (

@@ -2,15 +2,15 @@
 
 The frame is fixed to the bowl: the track is z = 0, the wall is about an axis at (0, radius) and tangent to x
 at the origin. The drive is a force that changes with time, and gravity turns with the place. Everything is
-without dimensions, as in `feederscrew.dropping.kernel`, forces over the part's weight.
+without dimensions, as in `feederscrew.arrivals.kernel`, forces over the part's weight.
 
 Rows are records. Their fields are plain numbers, so that compiled code reads them without making an array.
 """
 
 from typing import NamedTuple
 
-from feederscrew.arrays import Bools, Floats, Ints, Rows, Triple
-from feederscrew.geometry.compiled import record_type
+from feederscrew.base.arrays import Bools, Floats, Ints, Rows, Triple
+from feederscrew.base.geometry.compiled import record_type
 
 Vec3 = Triple | Floats  # the same as an array, too
 IntPair = tuple[int, int]

@@ -1,1 +1,0 @@
-"""One study a command: one function from inputs to one frozen record."""
