@@ -378,7 +378,7 @@ def _slow_down(bowl: Bowl, velocity: float) -> Bowl:
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 
 
-def slow_to(bowl: Bowl, velocity: float, *, at_worst: bool = True) -> Bowl:
+def slow_to(bowl: Bowl, velocity: float, *, kept: float = LEAST_VELOCITY_KEPT) -> Bowl:
     """Return a bowl at the least amplitude that has a velocity.
 
     Parameters
@@ -386,8 +386,8 @@ def slow_to(bowl: Bowl, velocity: float, *, at_worst: bool = True) -> Bowl:
     bowl : Bowl
     velocity : float [m/s]
         That is asked for.
-    at_worst : bool, optional
-        Whether ``LEAST_VELOCITY_KEPT`` of it is asked for at the worst friction, as of every design.
+    kept : float [1], optional
+        Share of it that is asked for at the worst friction; usually as of every design.
 
     Returns
     -------
@@ -402,7 +402,7 @@ def slow_to(bowl: Bowl, velocity: float, *, at_worst: bool = True) -> Bowl:
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         slower = with_amplitude(bowl, middle)
-        enough = _is_fast(slower, velocity) if at_worst else speed(slower) >= velocity
+        enough = speed(slower) >= velocity and slowest(slower) >= kept * velocity
         low, high = (low, middle) if enough else (middle, high)
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 

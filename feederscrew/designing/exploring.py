@@ -118,17 +118,7 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
         if _promise(search, idea.track, idea.row, idea.recipe) < least:
             continue
         if idea.by_trials:
-            track = idea.track
-            start = replace(calm_drive.drive_at(track.plain_bowl, 0.0), devices=search.plain.devices)
-            rails = hanging.RailsSearch(
-                search.through(start).lying,
-                track.weights,
-                idea.row,
-                search.plain.devices,
-                search.request,
-                cost_class,
-            )
-            yield from _try_rails(search, track, rails)
+            yield from _rails_by_trials(search, idea, cost_class)
             continue
         proposal = idea.proposal or _proposal(search, idea)
         if proposal is None or _was_tried(search, idea.track, proposal):
@@ -150,6 +140,23 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
             recipe = replace(idea.recipe, excluded_kinds=(*excluded, *more))
             other = _Idea(idea.track, idea.row, recipe, left_out=idea.left_out + 1)
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
+    # rails of each head are tried, though what the static rule proposed has used up the trials
+    late: dict[int, _Idea] = {}
+    for _, _, idea in sorted(heap, key=lambda item: item[:2]):
+        if idea.by_trials:
+            late.setdefault(idea.row, idea)
+    for idea in late.values():
+        state.reach += policy.rails_given_up
+        yield from _rails_by_trials(search, idea, cost_class)
+
+
+def _rails_by_trials(search: Search, idea: _Idea, cost_class: int) -> Iterator[Candidate]:
+    """Candidates with rails for the head of an idea's row, by trials alone."""
+    track, before = idea.track, search.plain.devices
+    start = replace(calm_drive.drive_at(track.plain_bowl, 0.0), devices=before)
+    lying = search.through(start).lying
+    rails = hanging.RailsSearch(lying, track.weights, idea.row, before, search.request, cost_class)
+    yield from _try_rails(search, track, rails)
 
 
 def _others_first(search: Search, name: str) -> Iterator[Candidate]:

@@ -122,6 +122,7 @@ class MoveKind(enum.Enum):
     LEAD_IN = enum.auto()  # its lead-in is so many times as long
     BLADE_BEHIND = enum.auto()  # a blade behind the rails sweeps off what does not hang
     CUTS_BEFORE = enum.auto()  # cuts before the rails, by what a trial has shown to hang
+    OTHER_CUTS = enum.auto()  # cuts of another kind before the rails, which return the same
     BLADE_HEIGHT = enum.auto()  # it stands higher, by a value [m], or lower
     RAILS = enum.auto()  # rails for a head, before any trial
     LONGER_PULSE = enum.auto()

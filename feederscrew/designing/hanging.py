@@ -228,7 +228,8 @@ class RailsSearch:
         """Yield what changes a chain whose queue jams, by what stood there and at which device.
 
         Another orientation is returned before the rails. Where one that hangs stands at a cut before them,
-        that cuts less; at the rails it gets a wider slot and a longer lead-in, at the blade a higher blade.
+        that cuts less, or another kind of cut takes its place; at the rails it gets a wider slot and a longer
+        lead-in, at the blade a higher blade.
 
         Parameters
         ----------
@@ -250,13 +251,17 @@ class RailsSearch:
             ends = trial.ends[n]
             shown.stands[row] |= bool(ends) and all(0 < end.station < station for end in ends)
         at_rails = at_blade = False
+        stands_at_cut = False  # what hangs
         for stood in jammed:
             row, place = rows.get(stood.name, -1), stood.place
             if row < 0 or shown.hangs[row]:
                 at_rails, at_blade = at_rails or place == station, at_blade or place > station
-                eased = proposals.ease_cut(proposal, place, self.lying) if place < station else None
+                if place >= station:
+                    continue
+                eased = proposals.ease_cut(proposal, place, self.lying)
                 if eased is not None:
                     yield eased
+                stands_at_cut = True
             elif place <= station:
                 shown.stands[row] = True
             else:
@@ -264,27 +269,35 @@ class RailsSearch:
         wider = [(MoveKind.WIDER_SLOT, x, replace(setting, play=setting.play + x)) for x in PLAYS_M]
         longer = [(MoveKind.LEAD_IN, x, replace(setting, lead=setting.lead * x)) for x in LEADS[:1]]
         higher = [(MoveKind.BLADE_HEIGHT, x, replace(setting, blade=setting.blade + x)) for x in BLADES_M]
+        cuts_before = [(MoveKind.CUTS_BEFORE, 0.0, setting), (MoveKind.OTHER_CUTS, 0.0, setting)]
         tries = [
-            (MoveKind.CUTS_BEFORE, 0.0, setting),
+            *(reversed(cuts_before) if stands_at_cut else cuts_before),
             *(higher if at_blade else ()),
             *((*wider, *longer) if at_rails else ()),
         ]
         self.seen.add(proposal.chain)
         own_cuts = {cut.device.kind: cut for cut in proposal.cuts if cut.device.action.carries}
         for kind, value, other in tries:
-            for built in self._build(Move(kind, value), other, sweep, shown):
+            # another kind does before the rails what those of the chain do
+            without = tuple(own_cuts) if kind is MoveKind.OTHER_CUTS else ()
+            for built in self._build(Move(kind, value), other, sweep, shown, without):
                 cuts = built.cuts
-                if kind is not MoveKind.CUTS_BEFORE:  # as they were changed before
+                if kind not in (MoveKind.CUTS_BEFORE, MoveKind.OTHER_CUTS):  # as they were changed before
                     cuts = tuple(own_cuts.get(cut.device.kind, cut) for cut in cuts)
                 changed = replace(built, cuts=cuts)
                 if changed.chain != proposal.chain:
                     yield changed
 
     def _build(
-        self, move: Move, setting: RailSetting, sweep: float | None, shown: Shown
+        self,
+        move: Move,
+        setting: RailSetting,
+        sweep: float | None,
+        shown: Shown,
+        without: Sequence[str] = (),
     ) -> Iterator[Proposal]:
-        """Yield the chain of a setting, if it is a new one."""
-        device, task, hangs = self._rails(setting), self._task(), shown.hangs
+        """Yield the chain of a setting without some kinds of devices, if it is a new one."""
+        device, task, hangs = self._rails(setting), self._task(without), shown.hangs
         if device is None or not hangs.any():
             return
         wanted = self.row if hangs[self.row] else int(np.flatnonzero(hangs)[0])
@@ -320,7 +333,8 @@ class RailsSearch:
             move = replace(move, value=slot[1] - slot[0])
         return Proposal(self.row, cuts, self.before, move, margin=MARGINS[-1])
 
-    def _task(self) -> DesignTask:
+    def _task(self, without: Sequence[str] = ()) -> DesignTask:
+        kinds = dict.fromkeys((*self.constraints.without, *without))
         return chain.design_task(
             self.lying,
             self.shares,
@@ -328,7 +342,7 @@ class RailsSearch:
             MARGINS[-1],
             1.0 - SELDOM_SHARE,
             self.before,
-            constraints=self.constraints,
+            constraints=replace(self.constraints, without=tuple(kinds)),
         )
 
     def _rails(self, setting: RailSetting) -> Rails | None:

@@ -262,16 +262,18 @@ def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
         proofs.append((study, candidate))
         if study.status in HELD or study.partial or search.is_spent:
             return
-        other = _change_by_proof(search, study, candidate)
+        other = _change_by_proof(search, study, candidate, [proved for _, proved in proofs])
         if other is None or not other.attempt.clean:
             return
         candidate = other
 
 
-def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
+def _change_by_proof(
+    search: Search, study: DesignStudy, candidate: Candidate, proved: Sequence[Candidate] = ()
+) -> Candidate | None:
     """A design at another drive, with another value or one device more, by what its proof denied.
 
-    None where there is nothing to change.
+    None where there is nothing to change but what was proved at this drive before.
     """
     state, policy = search.state, search.policy
     proposal, lying = candidate.proposal, candidate.orientations.lying
@@ -279,7 +281,9 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
         # what stood there, and where, says what to change
         jammed = tuple(row for queue in study.proof.queues for row in queue.jammed)
         mends = exploring.mends_of_jams(search, candidate, jammed)
-        for mended in itertools.islice(mends, policy.jam_mends):
+        known = {other.proposal.chain for other in proved if other.bowl.drive == candidate.bowl.drive}
+        fresh = (mended for mended in mends if mended.chain not in known)
+        for mended in itertools.islice(fresh, policy.jam_mends):
             tried = exploring.try_again(search, candidate, mended, candidate.bowl)
             if tried.attempt.clean:
                 return tried
@@ -315,7 +319,18 @@ def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -
             or proposals.purify(candidate, study.proof.left_instead)
             or proposals.spread_apart(candidate, search.request.without)
         )
-    return None if changed is None else exploring.try_again(search, candidate, changed, candidate.bowl)
+    if changed is None:
+        return None
+    tried = exploring.try_again(search, candidate, changed, candidate.bowl)
+    if tried.attempt.clean or search.is_spent or not _loses_wanted(tried):
+        return tried
+    # at one device more what hops is lost: a calmer drive carries it past both
+    return exploring.try_calmer(search, tried) or tried
+
+
+def _loses_wanted(candidate: Candidate) -> bool:
+    """Whether a trial of a candidate lost parts of what is wanted."""
+    return any(fault.kind is FaultKind.LOST for fault in candidate.attempt.faults)
 
 
 def _leaves_over_slot(study: DesignStudy, candidate: Candidate) -> bool:

@@ -8,7 +8,15 @@ from dataclasses import dataclass, replace
 
 from feederscrew.base.units import MINUTE, MM
 from feederscrew.bowl.verified import HELD, Status
-from feederscrew.designing.calm_drive import CALMER_SHARE, STROKES, DriveKind, slow_to, speed, velocity_kept
+from feederscrew.designing.calm_drive import (
+    CALMER_SHARE,
+    LEAST_VELOCITY_KEPT,
+    STROKES,
+    DriveKind,
+    slow_to,
+    speed,
+    velocity_kept,
+)
 from feederscrew.designing.findings import Cause
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
 from feederscrew.machine.drive_sizing import is_two_axis
@@ -19,6 +27,7 @@ SHARE_OF_TRIAL_RATE = 0.5  # [1] of what a clean short trial promises: queues br
 OFTEN_SHARE = 0.05  # [1] of the parts, from which an aspect is worth a design of its own
 FAR_MORE = 1.5  # [1] times the rate that was asked for, from which a calmer drive is named
 SPARE = 1.25  # [1] times the rate that was asked for, that it aims at: the middle of 1 to 1.5
+STILL_CONVEYS = 0.1  # [1] of that rate, that it brings at the worst friction at least
 MORE_TRIALS = 2  # times the budget, where nothing else is left
 
 
@@ -95,9 +104,10 @@ def _calmer_drive(study: DesignStudy) -> Iterator[NextTry]:
         return
     velocity = speed(bowl) * SPARE * target / rate
     best = rate
-    # one that keeps its speed where friction is at its worst; else as well one that is as slow as asked for
-    for at_worst in (True, False):
-        calmer = slow_to(bowl, velocity, at_worst=at_worst)
+    # one that keeps its speed where friction is at its worst; else as well one that is nearer to what was
+    # asked for, and at the worst friction does not stand still
+    for kept in (LEAST_VELOCITY_KEPT, STILL_CONVEYS):
+        calmer = slow_to(bowl, velocity, kept=kept)
         less = rate * speed(calmer) / speed(bowl)
         if less < CALMER_SHARE * best and best >= FAR_MORE * target:
             yield NextTry(

@@ -35,6 +35,9 @@ USUAL_S = {
 # [1] of a stage that is done, from which its own pace is what counts: the fill that is followed first is the
 # slowest by far, so that queues show theirs late
 OWN_PACE_SHARE = {SearchStage.DRAWS: 0.1, SearchStage.QUEUE: 0.5, SearchStage.LONG_PROOF: 0.0}
+# [1] of the time gone, that a search goes on at least: chosen of 0, 0.3, 0.5, 0.7 and 1 on the designs of
+# tests/data/design_times.csv
+GOES_ON_SHARE = 0.7
 LONGER_SHARE = 0.25  # [1] of the time gone, that a stage which takes longer than usual goes on
 
 
@@ -151,7 +154,8 @@ class Clock:
         """Return a guess of the seconds to go: as if a usual number of trials led to one proof.
 
         Where a proof has denied a design, the next may be denied as well: one more round of trials and proof,
-        as long as those before, is counted.
+        as long as those before, is counted. Whether a proof denies is not known beforehand, so that no search
+        is guessed to end soon: ``GOES_ON_SHARE`` of the time gone is the least.
 
         Parameters
         ----------
@@ -174,7 +178,8 @@ class Clock:
             rest += self.each(SearchStage.DRAWS) + self.each(SearchStage.QUEUE)
         is_proving = self.stage in (SearchStage.DRAWS, SearchStage.QUEUE)
         denied = self.proofs - is_proving
-        return rest + (self.seconds / (denied + 1) if denied > 0 else 0.0)
+        rest += self.seconds / (denied + 1) if denied > 0 else 0.0
+        return max(rest, GOES_ON_SHARE * self.seconds)
 
 
 @dataclass(eq=False)

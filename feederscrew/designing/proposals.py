@@ -455,22 +455,60 @@ def ease_cut(proposal: Proposal, place: int, orientations: Sequence[Orientation]
     Proposal or None
         None where it is none of the proposal's, its value is no length, or it would return no less.
     """
-    placed = [device for device in proposal.devices if device.action.has_place]
-    own = [
-        n
-        for n, cut in enumerate(proposal.cuts)
-        if 0 < place <= len(placed) and cut.device is placed[place - 1]
-    ]
-    if not own or not proposal.cuts[own[0]].device.search.bound:
+    found = _own_cut(proposal, place)
+    if found is None or not found[1].device.search.bound:
         return None
-    cut = proposal.cuts[own[0]]
+    number, cut = found
     limit = 0.5 * (cut.device.limit + cut.smallest.limit)
     if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
         return None
     other = move_cut(cut, limit, orientations, proposal.row)
     if other.device.limit == cut.device.limit:
         return None
-    return proposal.with_cut(own[0], other, _move_of(MoveKind.VALUE, other.device))
+    return proposal.with_cut(number, other, _move_of(MoveKind.VALUE, other.device))
+
+
+def relax_device(
+    proposal: Proposal, place: int, trial: ShortTrial, orientations: Sequence[Orientation]
+) -> Proposal | None:
+    """Return the proposal with a device that returns what is wanted changed so that it returns less.
+
+    A cut moves half the way to its least one. A pressure break leaves more of the track, by the least margin.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    place : int
+        Of the device along what stands on the track, from 1; 0 of the bare track.
+    trial : ShortTrial
+        Of the proposal: its wanted orientations have to reach over a pressure break.
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where it is none of the proposal's, or cannot return less.
+    """
+    found = _own_cut(proposal, place)
+    if found is None:
+        return None
+    number, cut = found
+    if cut.device.action is not Action.RELIEVE:
+        return ease_cut(proposal, place, orientations)
+    other = cut.device.valued(cut.device.limit + MARGINS[-1]).rewritten()
+    # what backs up leaves where it reaches over the ledge
+    if other.limit > min((orientations[k].width for k in trial.wanted), default=0.0) - MARGINS[-1]:
+        return None
+    changed = judge_cut(orientations, proposal.row, other, np.zeros(len(orientations), bool), other, other)
+    return proposal.with_cut(number, changed, _move_of(MoveKind.VALUE, other))
+
+
+def _own_cut(proposal: Proposal, place: int) -> tuple[int, Cut] | None:
+    """The number and the cut of a proposal at a place along what stands on the track; None of another's."""
+    placed = [device for device in proposal.devices if device.action.has_place]
+    if not 0 < place <= len(placed):
+        return None
+    return next(((n, cut) for n, cut in enumerate(proposal.cuts) if cut.device is placed[place - 1]), None)
 
 
 def _slips(cut: Cut, trial: ShortTrial, orientations: Sequence[Orientation]) -> bool:
@@ -540,7 +578,9 @@ def mend_proposal(
     if worst is not None:
         match worst.kind:
             case FaultKind.LOST:
-                return _widen_slot(proposal, orientations)
+                returned_at = dict.fromkeys(end.station for end in worst.ends if end.came_back)
+                eased = (relax_device(proposal, place, trial, orientations) for place in returned_at)
+                return next(filter(None, eased), None) or _widen_slot(proposal, orientations)
             case FaultKind.CARRIED:
                 return _cut_more(proposal, trial, worst.row, orientations)
         return None

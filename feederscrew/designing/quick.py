@@ -6,8 +6,8 @@ from feederscrew.designing import exploring, proposals
 from feederscrew.designing.record import DesignStudy, QuickAnswer
 from feederscrew.designing.search import Candidate, Search
 
-QUICK_TRIALS = 6  # short trials at most, each of about a second
-QUICK_PROPOSALS = 24  # chains that are looked for by the static rule at most, of all cost classes
+QUICK_TRIALS = 8  # short trials at most, each of about a second
+QUICK_PROPOSALS = 24  # chains that are looked for by the static rule at most, of each cost class
 
 
 def first_chain(search: Search) -> Candidate | None:
@@ -28,8 +28,8 @@ def first_chain(search: Search) -> Candidate | None:
     state = search.state
     policy = replace(search.policy, tries_before_others=1)  # few trials: each side has one first
     limited = replace(search, request=replace(search.request, budget=QUICK_TRIALS), policy=policy)
-    state.proposals_left = QUICK_PROPOSALS
     for cost_class in proposals.COST_CLASSES:
+        state.proposals_left = QUICK_PROPOSALS
         for candidate in exploring.candidates(limited, cost_class):
             return candidate
     tried = [candidate for candidate in (*state.clean, *state.failures) if candidate.attempt.rate > 0.0]

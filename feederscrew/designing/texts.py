@@ -60,7 +60,7 @@ def fault_text(fault: Fault) -> str:
         case FaultKind.LOST:
             text = f"{fault.orientation} is lost ({ends_text(fault.ends) or Fate.TURNED.word})"
         case FaultKind.CARRIED:
-            text = f"{fault.orientation} is carried through"
+            text = f"{fault.orientation} leaves too"
         case FaultKind.STAYS:
             text = f"{fault.orientation} stays ({ends_text(fault.ends)})"
         case FaultKind.NOT_RUN:
@@ -180,6 +180,8 @@ def move_text(move: Move) -> str:
             return f"blade behind the rails {in_mm(abs(move.value))} {higher}"
         case MoveKind.CUTS_BEFORE:
             return "cuts before the rails by what hangs in the trial"
+        case MoveKind.OTHER_CUTS:
+            return "other cuts before the rails, for those at which parts stand"
         case MoveKind.LONGER_PULSE:
             return f"pulse of {1e3 * move.value:.0f} ms"
         case MoveKind.DROP_BEFORE:

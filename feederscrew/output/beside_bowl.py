@@ -108,7 +108,7 @@ def vision_rows(station: VisionStation, start: float) -> Iterator[tuple[str, str
         yield "laser line", f"{_length(STAND_OFF_M)} over the track, {station.profiles:.3g} profiles a second"
     yield "light", station.light
     trigger = f"light barrier, {_length(start + station.trigger_at)} from D along the wall"
-    delay = "no delay" if station.trigger_delay == 0.0 else f"delay {station.trigger_delay / MS:.3g} ms"
+    delay = "no delay" if station.trigger_delay == 0.0 else f"delay {station.trigger_delay / MS:.4g} ms"
     yield "trigger", f"{trigger}: the front of a part meets it, {delay}"
     way = (
         f"{_length(station.valve_way)} at {station.speed / MM_S:.3g} mm/s: {station.valve_delay / MS:.3g} ms"

@@ -486,7 +486,9 @@ def _draw_devices(
     scale = min(_scale(length / MM, 330.0), _scale(plan.width / MM, 45.0))
     drawing.new_sheet()
     _draw_title(drawing, part, scale, fields, sheet)
-    view = View((45.0, 215.0 - plan.width / MM * scale), scale, length)
+    # holes in the wall are drawn above the track, below the head
+    bores = min(240.0, 270.0 - tooling_drawing.bore_height(stretch.devices) / MM * scale)
+    view = View((45.0, bores - 25.0 - plan.width / MM * scale), scale, length)
     drawing.outline(view.placed([(0, 0), (length, 0), (length, plan.width), (0, plan.width)]), "TRACK")
     drawing.outline(view.placed([(0, -2e-3), (length, -2e-3), (length, -1e-9), (0, -1e-9)]), "WALL")
     opened = stretch.opened_to(length)
@@ -500,7 +502,7 @@ def _draw_devices(
             drawing.outline(view.placed(ring), "GATE")
     tooling_drawing.dimension_devices(drawing, opened.devices, view, plan.width)
     drawing.length(view.placed([length, 0]), view.placed([length, plan.width]), (27.0, 0.0), scale)
-    tooling_drawing.draw_wall_bores(drawing, opened.devices, view, 240.0)
+    tooling_drawing.draw_wall_bores(drawing, opened.devices, view, bores, listed=False)
     behind = (plan.path.end - plan.first) / MM
     words = f"track unrolled: wall below, parts move to the right; D lies {behind:.5g} mm along the wall, "
     _draw_head(drawing, 25.0, 281.0, f"{words}{_angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
@@ -522,8 +524,6 @@ def _draw_devices(
         angles = [f"{_angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])
     top = min(175.0, float(view.at[1]) - NUMBERS_MM)  # below the numbers along the track
-    line = min(4.6, (top - 45.0) / len(rows))
-    low = drawing.table(25.0, top, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=line)
     notes = [
         f"from and to: along the wall from D; cuts {CUT_TOLERANCE}, everything else {GENERAL}; "
         "* before the outlet",
@@ -536,6 +536,9 @@ def _draw_devices(
             f"inner rail: {len(places)} yokes of {track.YOKE / MM:.3g} below it, to the wall, at "
             f"{' and '.join(places)} from D; {plan.hanging / MM:.4g} clear below the track"
         )
+    notes += tooling_drawing.bore_texts(stretch.devices)
+    line = min(4.6, (top - 33.0 - 4.0 * len(notes)) / len(rows))
+    low = drawing.table(25.0, top, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=line)
     for k, note in enumerate(notes):
         drawing.text(25.0, low - 5.0 - 4.0 * k, note, 2.2)
 

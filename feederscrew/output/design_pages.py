@@ -146,8 +146,8 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     loop: list[Block] = [
         Text(
             "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. "
-            "What goes wrong in it is changed in the next. design_trials.csv has the dimensions of each "
-            "device."
+            "What goes wrong in it is changed in the next. The velocity is the mean of its parts; that of "
+            "the machine is computed for a point. design_trials.csv has the dimensions of each device."
         )
     ]
     if study.attempts:
@@ -252,6 +252,8 @@ def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
         hangs = one.wanted == HANGING and arrives
         seen.append((arrives, f"arrives so; {words}") if hangs and arrives else (one.wanted, words))
     aspects = {name.partition("@")[0] for name, _ in seen}
+    if study.quick is not None and all(name == HANGING for name, _ in seen):  # what the bound is of
+        return [(study.quick.wanted, "may bring most; not tried to its end")]
     instead_of_it = (one for one in next_tries(study) if one.aspect and one.aspect not in aspects)
     return [*seen, *((one.aspect, f"to try: {reason(one)}") for one in itertools.islice(instead_of_it, 1))]
 

@@ -412,7 +412,7 @@ def short_attempts(study: DesignStudy) -> Frame:
     """
     chains = [", ".join(attempt.chain_brief) or "none" for attempt in study.attempts]
     history = attempts(study).without(["peak_to_peak_mm"])  # the throw number says as much
-    named = {"why": "what is new", "denied": "what goes wrong"}
+    named = {"why": "what is new", "denied": "what goes wrong", "velocity_mm_s": "velocity in the trial"}
     return history.taking({"chain": chains}).with_headings(named)
 
 
@@ -496,7 +496,7 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
         ]
         rows += [("a part hops", facts["hop"])] if facts["hop_height_mm"] > 0.0 else []
         velocity = facts["velocity_mm_s"]
-        rows += [] if velocity is None else [("velocity [mm/s]", f"{velocity:.4g}")]
+        rows += [] if velocity is None else [("velocity, computed [mm/s]", f"{velocity:.4g}")]
         rows.append(("cameras, valves, air", served_by))
     if drive := (d.get("bowl") or {}).get("drive_of_the_springs"):
         rows.append(("its drawn springs make", drive))

@@ -84,7 +84,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
         rows.append(("of these as the rule says", f"{d['parts_per_minute_static']:.4g}"))
     purity = "none" if np.isnan(d["purity"]) else f"{100.0 * d['purity']:.4g}"
     rows += [
-        ("aspect and heading", f"{d['aspect']} at {d['heading_deg']:.4g} deg"),
+        ("orientation", f"{d['aspect']}@{round(d['heading_deg']) % 360}"),
         ("velocity [mm/s]", ends(d, "velocity_mm_s")),
         ("parts offered per minute", ends(d, "offered_per_minute")),
         ("efficiency, correctly oriented of what is offered [%]", f"{100.0 * d['efficiency']:.4g}"),

@@ -122,9 +122,8 @@ def rate_text(rate: "Rate") -> str:
 
 
 def orientation_text(orientation: "Orientation") -> str:
-    """Return an orientation in words: 'A at heading 90 deg', 'A hanging'."""
-    lying = f"at heading {figure(orientation.heading, DEGREE)} deg"
-    return f"{orientation.aspect} {'hanging' if orientation.kind == 'hanging' else lying}"
+    """Return an orientation by its name: 'A@90', 'hanging'."""
+    return orientation.name
 
 
 def tune_text(study: "TuneStudy") -> str:
@@ -179,7 +178,7 @@ def machine_text(sheet: "MachineSheet") -> str:
 
 
 def tooling_text(study: "ToolingStudy") -> str:
-    """Return designs in words: 'A at heading 90 deg isolated by wiper (efficiency 80 %, purity 100 %)'."""
+    """Return designs in words: 'A@90 isolated by wiper (efficiency 80 %, purity 100 %)'."""
     texts = []
     for design in (design for design in study.designs if design is not None):
         text = (

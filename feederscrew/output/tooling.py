@@ -481,9 +481,8 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
     track = {name: text for name, text in asked.items() if text}
     left_out = (DEVICES_SECTION, *(f"track.{name}" for name in track))
     own = [s for s in settings if s.is_own and s.key.field not in left_out]
-    heading = orientation.name.partition("@")[2]
     lines = [
-        f"# Tooling that lets aspect {orientation.aspect} at heading {heading} deg leave.",
+        f"# Tooling that lets {orientation.name} leave.",
         f"# By the static rule: efficiency {'at least ' * (design.least < design.efficiency)}"
         f"{100.0 * design.least:.4g} %, purity {'at least ' * bool(design.purity_is_least)}"
         f"{100.0 * design.purity:.4g} %, by {study.answer}.",

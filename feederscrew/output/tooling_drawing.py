@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew.base.arrays import Floats
 from feederscrew.base.units import DEG, MM
-from feederscrew.bowl.devices.features import box_ring
+from feederscrew.bowl.devices.features import Bore, box_ring
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
 from feederscrew.output.tables import Frame
@@ -295,7 +295,9 @@ def _dimension_cut(drawing: Drawing, hole: Floats, view: View, width: float) -> 
         drawing.length(ends[0], ends[1], (0.0, above + row - ends[0][1]), view.scale)
 
 
-def draw_wall_bores(drawing: Drawing, devices: Sequence[PlacedDevice], view: View, low: float) -> float:
+def draw_wall_bores(
+    drawing: Drawing, devices: Sequence[PlacedDevice], view: View, low: float, *, listed: bool = True
+) -> float:
     """Draw holes of nozzles in the wall, seen from the bowl's axis.
 
     Parameters
@@ -305,28 +307,25 @@ def draw_wall_bores(drawing: Drawing, devices: Sequence[PlacedDevice], view: Vie
     view : View
     low : float [mm]
         Height of the track on the sheet.
+    listed : bool, optional
+        Write what each hole is above them: ``bore_texts``.
 
     Returns
     -------
     float [mm]
         Height of the top.
     """
-    bores = [
-        (placed.begin + bore.place, bore.height, 0.5 * bore.diameter, bore)
-        for placed in devices
-        for bore in placed.features.bores
-    ]
+    bores, texts = _bores(devices), bore_texts(devices) if listed else []
     if not bores:
         return low - 10.0
     along = View((view.at[0], low), view.scale)
     top = low + max(z + r for _, z, r, _ in bores) / MM * view.scale + 5.0
     places = sorted({s for s, *_ in bores})
     columns = {s: sorted({(z, r) for place, z, r, _ in bores if place == s}) for s in places}
-    uses = {s: next(bore for place, _, _, bore in bores if place == s) for s in places}
     middles = {s: float(along.placed([s, 0.0])[0]) for s in columns}
-    title = top + 1.0 + 4.0 * len(columns)  # above a line of text for each column
+    title = top + 1.0 + 4.0 * len(texts)  # above a line of text for each column
     drawing.lines([[(min(middles.values()) - 25.0, low), (max(middles.values()) + 9.0, low)]], "OUTLINE")
-    for row, (s, column) in enumerate(columns.items()):
+    for s, column in columns.items():
         drawing.lines([[(middles[s], low - 2.0), (middles[s], top)]], "CENTRE")
         for z, r in column:
             drawing.circle(along.placed([s, z]), r / MM * view.scale, "BORE")
@@ -336,12 +335,55 @@ def draw_wall_bores(drawing: Drawing, devices: Sequence[PlacedDevice], view: Vie
             for (z, _), end in zip(column, ends):
                 at, number, origin = along.placed([s, z]), (middles[s] + 14.0, end), (middles[s], low)
                 drawing.ordinate(at, number, origin, True, view.scale)
-        thread = f"{uses[s].thread}, " if uses[s].thread else ""
-        hole = f"{uses[s].what}: {len(column)} x {thread}Ø{2.0 * column[0][1] / MM:.4g} through the wall"
-        text = f"{hole} at {s / MM:.5g} from D, heights over the track"
-        drawing.text(view.at[0], title - 4.0 * (row + 1), text, 2.5)
+    for row, text in enumerate(texts, start=1):
+        drawing.text(view.at[0], title - 4.0 * row, text, 2.5)
     drawing.text(view.at[0], title, "wall seen from the bowl's axis", 2.5, bold=True)
     return title + 4.0
+
+
+def bore_height(devices: Sequence[PlacedDevice]) -> float:
+    """Return how high over the track the highest hole in the wall reaches.
+
+    Parameters
+    ----------
+    devices : sequence of PlacedDevice
+
+    Returns
+    -------
+    float [m]
+        0 without any.
+    """
+    return max((z + r for _, z, r, _ in _bores(devices)), default=0.0)
+
+
+def bore_texts(devices: Sequence[PlacedDevice]) -> list[str]:
+    """Return what the holes in the wall are for, how large, and where: one text for those above each other.
+
+    Parameters
+    ----------
+    devices : sequence of PlacedDevice
+
+    Returns
+    -------
+    list of str
+    """
+    bores, texts = _bores(devices), []
+    for s in sorted({s for s, *_ in bores}):
+        column = [(r, bore) for place, _, r, bore in bores if place == s]
+        radius, bore = column[0]
+        thread = f"{bore.thread}, " if bore.thread else ""
+        hole = f"{bore.what}: {len(column)} x {thread}Ø{2.0 * radius / MM:.4g} through the wall"
+        texts.append(f"{hole} at {s / MM:.5g} from D, heights over the track")
+    return texts
+
+
+def _bores(devices: Sequence[PlacedDevice]) -> list[tuple[float, float, float, Bore]]:
+    """The holes in the wall: s along it, height and radius [m] of each, and what it is."""
+    return [
+        (placed.begin + bore.place, bore.height, 0.5 * bore.diameter, bore)
+        for placed in devices
+        for bore in placed.features.bores
+    ]
 
 
 def device_rows(

@@ -13,17 +13,20 @@ import pytest
 import shapes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
-from solids import STEEP, STEPPED, TRACK, built, device, planned
+from solids import RULES, STEEP, STEPPED, TRACK, built, device, planned
 
 from feederscrew import bowl as bowls
 from feederscrew.cad.closed_body import body
-from feederscrew.cad.plan import SolidOptions
+from feederscrew.cad.plan import SolidOptions, material, plan
 from feederscrew.feeding import stream
+from feederscrew.machine.sizing import Size
 from feederscrew.output import bowl_sheet, outlet_poses
 from feederscrew.output.drafting import FRAME
 from feederscrew.output.marking import SheetFields
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.orientations import orientations
 from feederscrew.sorting.pose_words import describe_pose
+from feederscrew.sorting.tooled_track import lay_out
 
 CASES = {
     "cylinder": ("narrowed and rails", TRACK, SolidOptions()),
@@ -156,3 +159,39 @@ def pdf_words(data):
             pieces = re.findall(rb"\(((?:\\.|[^\\()])*)\)", written)
             words.append(b"".join(pieces).decode("latin-1"))
     return words
+
+
+def test_sheets_of_two_vision_rejects_have_their_texts_apart_and_within_the_frame():
+    """Eight columns of holes in the wall: their texts ran over the head of the sheet and beyond its frame."""
+    part = shapes.part(shapes.prism(shapes.l_profile(), 15.0), "bracket")
+    track = replace(TRACK, width=0.03, radius=0.2, climb=np.radians(4.5))
+    lying = orientations(part, find(part), track)
+    longest = max(lying, key=lambda one: one.length)
+    like = longest.aspect, longest.heading, 2e-3
+    devices = (
+        device("spacing section", angle=np.radians(-4.0)).rewritten(),
+        device("vision reject", like=like, sees="outline").rewritten(),
+        device("vision reject", like=like, sees="height").rewritten(),
+    )
+    coming = stream.follow_orientations(part, find(part), track, devices)
+    pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
+    size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, 1.5 * pitch, 1.5, pitch)
+    extents = (30e-3, 20e-3, 15e-3)
+    tooled = lay_out(track, devices, coming.lying)
+    made = body(plan(size, track, material("steel", RULES), tooled, SolidOptions(), extents=extents))
+    sheet = study(made)
+    sheet.bowl, sheet.answer = (
+        replace(sheet.bowl, devices=devices, track=track),
+        SimpleNamespace(velocity=0.05),
+    )
+    sheet.order.part, sheet.order.on_track, sheet.order.rule = part, coming, "hops"
+    drawing = bowl_sheet.draw_sheets(sheet)
+    for number in range(len(drawing.sheets)):
+        assert not overlapping(drawing.figure(number))
+    for number in (2, 3):
+        assert any(
+            f"vision reject, device {number}" in " ".join(drawing.texts(k))
+            for k in range(len(drawing.sheets))
+        )
+    holes = [text for text in drawing.texts(1) if "through the wall" in text]
+    assert len(holes) == 8 and sum("nozzle: 4" in text for text in holes) == 2

@@ -259,6 +259,31 @@ def test_beds_that_are_none(text, line):
     assert str(fault.value).startswith(line)
 
 
+# In closed form: a bowl of 300 mm, a track of 20 mm that climbs at 3.5 deg, a gap of 9 mm between parallel
+# edges, and a part of which 18 x 14 mm set its size. Room for 0.6 of that to either side of a device; 10 mm
+# behind.
+RISE, ROUND, SIZE = np.tan(np.radians(3.5)), 2.0 * np.pi * 150.0, np.hypot(18.0, 14.0)  # [1], [mm]
+GAP_LENGTH = 150.0 * np.arcsin(9.0 / 130.0)  # at the wall, of 9 mm at the free edge
+NEEDED = 1.2 * SIZE + GAP_LENGTH + 10.0
+HIGHEST = RISE * (
+    ROUND + NEEDED - (0.6 * SIZE + GAP_LENGTH)
+)  # the turn below begins where the last part fell
+# a quarter turn over the dome of 3 deg: its plate of 3 mm seen by 0.3, and 0.3 mm more
+LOWEST = 0.25 * ROUND * RISE + 0.3 * 3.0 + 20.0 * np.tan(np.radians(3.0)) + 0.3
+# A stepped wall: its radius shrinks by 21 mm a turn, along a spiral of s / flare
+FLARE = -np.log(1.0 - 21.0 / 150.0) / (2.0 * np.pi)
+PITCH = 21.0 / FLARE  # [mm] of a turn along the wall
+# the part on end, 5 mm, a slope of 40 deg, three plates
+STEPPED_NEEDS = 18.0 + 5.0 + 21.0 * np.tan(np.radians(40.0)) + 3.0 * 3.0
+LEAST_STEPPED = np.ceil(10.0 * np.degrees(np.arctan(STEPPED_NEEDS / PITCH))) / 10.0
+SMALLEST_FLOOR = 0.5 * 150.0 / FLARE * np.tan(np.radians(4.5))  # half the radius is left to the floor
+# along a spiral the quarter turn is shorter
+LOWEST_STEPPED = (
+    150.0 / FLARE * (1.0 - np.exp(-FLARE * 0.5 * np.pi)) * np.tan(np.radians(4.5))
+    + 0.3 * 3.0 + 20.0 * np.tan(np.radians(3.0)) + 0.3
+)  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("track", "asked", "chain", "line"),
     [
@@ -276,18 +301,19 @@ def test_beds_that_are_none(text, line):
         ({}, {"drains": 8, "drain": 12e-3}, "none", "sizing.drain_hole: 12 mm may let parts through that "
          "are 12 mm thick - give less than 12 mm"),
         ({}, {"outlet_height": 0.09}, "gap", "sizing.outlet_height: 90 mm puts a turn of the track below "
-         "the cuts: what falls stays on it - give at most 59.09 mm"),
-        ({}, {"outlet_height": 0.0025}, "gap", "sizing.outlet_height: 2.5 mm leaves 40.87 mm of track, and "
-         "the devices take 47.76 mm - give at least 16.66 mm"),
-        ({}, {"outlet_height": 0.01}, "gap", "sizing.outlet_height: 10 mm leaves 163.5 mm of track, less "
-         "than a quarter turn - give at least 16.66 mm"),
-        ({"climb": np.radians(2.5)}, {"shape": "stepped"}, "none", "track.climb: a turn rises 38.2 mm, and "
-         "a stepped wall needs 49.62 mm - give 3.3 deg, or sizing.shape: cylinder"),
+         f"the cuts: what falls stays on it - give at most {HIGHEST:.4g} mm"),
+        ({}, {"outlet_height": 0.0025}, "gap", f"sizing.outlet_height: 2.5 mm leaves {2.5 / RISE:.4g} mm of "
+         f"track, and the devices take {NEEDED:.4g} mm - give at least {LOWEST:.4g} mm"),
+        ({}, {"outlet_height": 0.01}, "gap", f"sizing.outlet_height: 10 mm leaves {10.0 / RISE:.4g} mm of "
+         f"track, less than a quarter turn - give at least {LOWEST:.4g} mm"),
+        ({"climb": np.radians(2.5)}, {"shape": "stepped"}, "none", "track.climb: a turn rises "
+         f"{PITCH * np.tan(np.radians(2.5)):.4g} mm, and a stepped wall needs {STEPPED_NEEDS:.4g} mm - give "
+         f"{LEAST_STEPPED:.4g} deg, or sizing.shape: cylinder"),
         ({}, {"shape": "conical"}, "gap", "sizing.shape: conical leans outwards, and devices are computed "
          "by an upright wall - take stepped"),
         ({"climb": np.radians(4.5)}, {"shape": "stepped", "outlet_height": 0.4}, "none", ""
          "sizing.outlet_height: leaves too small a floor: the wall steps outwards with the track - give at "
-         "most 245.9 mm, or a larger bowl"),
+         f"most {SMALLEST_FLOOR:.4g} mm, or a larger bowl"),
     ],
 )  # fmt: skip
 def test_faults(track, asked, chain, line):
@@ -296,7 +322,11 @@ def test_faults(track, asked, chain, line):
     assert str(fault.value) == line
 
 
-@pytest.mark.parametrize(("shape", "climb", "least"), [(PLAIN, 3.5, 16.66e-3), (STEPPED, 4.5, 20.45e-3)])
+@pytest.mark.parametrize(
+    ("shape", "climb", "least"),
+    # as the message rounds it up
+    [(PLAIN, 3.5, round(LOWEST + 5e-3, 2) * 1e-3), (STEPPED, 4.5, round(LOWEST_STEPPED + 5e-3, 2) * 1e-3)],
+)
 def test_the_lowest_outlet_that_is_named_has_a_width_to_measure(shape, climb, least):
     own = replace(TRACK, climb=np.radians(climb))
     sizes = measures(built(track=own, asked=replace(shape, outlet_height=least)))

@@ -204,7 +204,7 @@ def answer_to(monkeypatch, block):
 
     for module, name in (
         (exploring, "try_livelier"), (exploring, "try_calmer"), (proposals, "_widen_slot"),
-        (proposals, "_cut_more"), (loop, "_faster"),
+        (proposals, "_cut_more"), (proposals, "relax_device"), (loop, "_faster"),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, note(name))
     wiper = SimpleNamespace(device=SimpleNamespace(action=Action.OVERHEAD, kind="wiper"))
@@ -237,7 +237,7 @@ def test_neither_a_sentence_nor_the_name_of_an_aspect_changes_what_a_fault_leads
 
     plain = answers("A")
     assert len(set(plain)) >= 8 and {move for moves in plain for move in moves[:-3]} == {
-        "try_livelier", "try_calmer", "_widen_slot", "_cut_more", "_faster",
+        "try_livelier", "try_calmer", "_widen_slot", "_cut_more", "relax_device", "_faster",
     }  # fmt: skip
     assert all(answers(name) == plain for name in NAMES)
     scramble_all(monkeypatch)

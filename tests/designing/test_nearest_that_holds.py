@@ -291,7 +291,7 @@ def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_t
         assert calm_drive.speed(calmer) < 0.75 * calm_drive.speed(bowl)
 
 
-@pytest.mark.parametrize("more, word", [({"queues": fills(jams=1)}, "jam"), (CARRIED, "carried through")])
+@pytest.mark.parametrize("more, word", [({"queues": fills(jams=1)}, "jam"), (CARRIED, "leaves too")])
 def test_a_lower_rate_that_its_proof_denies_is_tried_at_a_calmer_drive(drives_tried, ways, more, word):
     """A cap of ABS at throw number 1.5: one jam in its queue; calmer it holds 16/min. At 3 draws deny it."""
     search, _ = searching(candidate(ways, calm_drive.drive_at(PLAIN, 0.18, hops=True)))
@@ -398,7 +398,7 @@ def test_each_class_has_its_best_design_the_cheapest_first():
     ]
     one, two, three = alternatives([study_with(GAP)], tried, [1])  # what was tried and not proved says why
     assert (one.status, two.status, three.status) == ("holds", "not tried", "none")
-    assert "--alternatives" in two.why and three.why == "A@0: B@0 is carried through"
+    assert "--alternatives" in two.why and three.why == "A@0: B@0 leaves too"
 
 
 @pytest.fixture

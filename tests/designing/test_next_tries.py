@@ -130,6 +130,7 @@ def test_what_brings_far_more_than_was_asked_names_a_calmer_drive():
     assert (step.kind, key, value.split()[1]) == (TryKind.CALMER_DRIVE, "drive.amplitude", "mm")
     assert 60.0 * step.rate == pytest.approx(rate * share)
     assert 1.0 <= step.rate / study.request.target <= 1.5  # asked for 40: 40 to 60
+    assert step.worst_rate > 0.0, "no call is named that stands still at the worst friction"
     assert step.worst_rate == pytest.approx(step.rate * calm_drive.velocity_kept(calmer))
     entry = designs.document(study)["next"][1]
     assert f"drive.amplitude={value}" in entry["words"] and "not tried" in entry["why"]

@@ -86,6 +86,23 @@ def test_no_orientation_has_five_trials_before_each_that_comes_often_has_one(tri
     assert max(tried.values()) > 4 and tried["C@86"] == 1 and "D@0" not in tried
 
 
+@pytest.mark.parametrize("rows", [(), (0,), (0, 5)])
+def test_rails_of_each_head_have_trials_though_the_static_rule_used_up_those_of_steel(
+    monkeypatch, trials, rows
+):
+    """A drawn cup had eight trials of one chain of the rule, and none of the rails that carry it."""
+    tried, search = [], trials.search
+    monkeypatch.setattr(exploring.hanging, "head_rows", lambda *_: list(rows))
+
+    def noted(search, idea, cost_class):
+        tried.append((idea.row, cost_class, search.is_spent))
+        return iter(())
+
+    monkeypatch.setattr(exploring, "_rails_by_trials", noted)
+    assert not list(exploring.candidates(search, 1))
+    assert sorted(tried) == [(row, 1, False) for row in rows]
+
+
 def test_what_is_clean_and_dearer_waits_for_its_class(trials):
     trials.clean["C@86"] = 2.0, 3
     assert not [one for one in exploring.candidates(trials.search, 1) if one.attempt.aspect == "C"]

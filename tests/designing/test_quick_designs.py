@@ -11,6 +11,7 @@ import feederscrew as fs
 from feederscrew.base.errors import ArgumentError
 from feederscrew.bowl.verified import Status
 from feederscrew.designing import exploring, loop, queues
+from feederscrew.designing.quick import QUICK_TRIALS
 from feederscrew.designing.record import QuickAnswer
 from feederscrew.output import design_pages, designs, tables
 from feederscrew_cli.design import design as design_command
@@ -33,7 +34,7 @@ def test_a_quick_look_ends_with_a_clean_chain_and_runs_no_draw_and_no_queue(monk
         monkeypatch.setattr(module, name, never)
     study = fs.design(block.part, "30/min", search=fs.DesignSearch(quick=True, rule="csa"))
     assert (study.status, study.partial) == (Status.NOT_PROVED, False) and study.bowl is not None
-    assert len(study.attempts) <= 6 and study.attempts[-1].clean
+    assert len(study.attempts) <= QUICK_TRIALS and study.attempts[-1].clean
     # a row of parts that touch, at the fastest drive
     trial = study.trials[0]
     pitch = (trial.shares * trial.orientations.lengths).sum()

@@ -146,8 +146,32 @@ def test_what_stands_in_a_queue_says_what_is_changed(lying, rails_search):
     assert MoveKind.BLADE_HEIGHT in kinds and MoveKind.WIDER_SLOT not in kinds
     higher = at_blade[kinds.index(MoveKind.BLADE_HEIGHT)]
     assert higher.devices[-1].limit > proposal.devices[-1].limit
+    before = {MoveKind.CUTS_BEFORE, MoveKind.OTHER_CUTS}
     for place in (rails, blade):
-        assert {changed.move.kind for changed in changes((other, place, "", 1))} <= {MoveKind.CUTS_BEFORE}
+        assert {changed.move.kind for changed in changes((other, place, "", 1))} <= before
+
+
+def test_what_hangs_and_stands_at_a_cut_before_the_rails_asks_for_another_kind_of_cut(lying, rails_search):
+    """A nut that hooks at a narrowed track went from one width to another and back."""
+    first = next(rails_search.start())
+    blade = [device.kind for device in first.proposal.devices if device.action.has_place].index("wiper") + 1
+    other = next(k for k in range(len(lying)) if find_head(lying[k]) is None)
+    trial = trial_of(lying, rails_search, first.proposal, other)
+    jam = JammedParts(lying[other].name, blade, "wiper", 1)
+    (proposal,) = (
+        changed
+        for changed in rails_search.mends_of_jams(first.proposal, trial, [jam])
+        if changed.move.kind is MoveKind.CUTS_BEFORE
+    )
+    kinds = {cut.device.kind for cut in proposal.cuts if cut.device.action.carries}
+    assert kinds  # a cut before the rails
+    wanted = lying[rails_search.row].name
+    jam = JammedParts(wanted, 1, proposal.devices[0].kind, 1)
+    tries = list(rails_search.mends_of_jams(proposal, trial_of(lying, rails_search, proposal, other), [jam]))
+    others = [changed for changed in tries if changed.move.kind is MoveKind.OTHER_CUTS]
+    assert all(not kinds & {cut.device.kind for cut in changed.cuts} for changed in others)
+    moves = [changed.move.kind for changed in tries]
+    assert not others or MoveKind.CUTS_BEFORE not in moves[: moves.index(MoveKind.OTHER_CUTS)]
 
 
 def test_standing_counts_more_against_a_chain_than_coming_back(lying, rails_search):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import shapes
 import trimesh
-from design_counts import carried, end_at, orientation, short_trial, stays, stopped_at
+from design_counts import carried, end_at, lost, orientation, short_trial, stays, stopped_at
 from scipy import stats
 
 from feederscrew import bowl as bowls
@@ -443,6 +443,29 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
     assert 6e-3 + proposals.MARGINS[-1] <= cut.device.limit <= 12e-3 - proposals.MARGINS[-1]
     again = SimpleNamespace(proposal=changed, trial=seen, orientations=ways)
     assert proposals.add_pressure_break(again) is None  # it has one
+
+
+def test_a_device_at_which_draws_lose_what_is_wanted_returns_less(rows, dropped):
+    """A ledge grows wider by the least margin while parts reach over it, a cut moves; not the slot behind."""
+    ways, along, _ = rows
+    proposal, seen = proposals.Proposal(along, (), (), "test"), short_trial(ways, {along}, row=along)
+    broken = proposals.add_pressure_break(SimpleNamespace(proposal=proposal, trial=seen, orientations=ways))
+    limits = [broken.cuts[0].device.limit]
+
+    def eased(changed, trial, station=1, kind="pressure break"):
+        fault = lost("A@0", end_at(Fate.RETURNED, kind, station), row=along).counted_in_draws(2, 7)
+        return proposals.mend_proposal(changed, trial, ways.lying, fault)
+
+    while (changed := eased(broken, seen)) is not None:
+        broken = changed
+        limits.append(broken.cuts[0].device.limit)
+    room = ways.lying[along].width - proposals.MARGINS[-1]
+    assert room - proposals.MARGINS[-1] < limits[-1] <= room
+    assert np.diff(limits) == pytest.approx(proposals.MARGINS[-1], abs=1e-4)
+    assert eased(broken, seen, station=0) is eased(broken, seen, station=2) is None
+    before, trial = dropped
+    after = eased(before, trial, kind=before.cuts[0].device.kind)
+    assert after.cuts == proposals.ease_cut(before, 1, ways.lying).cuts
 
 
 def test_what_a_full_track_lets_past_a_sensor_meets_a_second_one(rows):

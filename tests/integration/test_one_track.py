@@ -116,7 +116,9 @@ def draw_chain(seed, every):
 @functools.cache
 def drawn(seed, radius):
     """Everything that is made of the chain of a seed on a bowl of a radius [m]."""
-    track = Track(climb=np.radians(3.5), bank=np.radians(4.0 * (seed % 5 == 2)), radius=radius, width=24e-3)
+    track = Track(
+        climb=np.radians(3.5), bank=np.radians(4.0 * (seed % 5 in (1, 2))), radius=radius, width=24e-3
+    )
     every = orientations(part(), find(part()), track)
     chain = draw_chain(seed, every)
     return track, every, chain, lay_out(track, chain, every)
@@ -132,15 +134,16 @@ def bowl_of(tooled, every):
 
 def thickness(difference):
     """How wide [m] a difference of two areas is where it is widest, to a micrometre or so."""
-    low, high = 0.0, 8e-3
+
+    def is_thinner(width):
+        return difference.buffer(-0.5 * width, join_style="mitre").is_empty
+
     if difference.is_empty:
         return 0.0
+    low, high = 0.0, NEAR if is_thinner(NEAR) else 8e-3
     while high - low > 1e-6:
         middle = 0.5 * (low + high)
-        if difference.buffer(-0.5 * middle, join_style="mitre").is_empty:
-            high = middle
-        else:
-            low = middle
+        low, high = (low, middle) if is_thinner(middle) else (middle, high)
     return high
 
 

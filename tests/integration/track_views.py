@@ -22,6 +22,7 @@ MM = 1e-3
 UNDER = 6e-5  # [m] below a surface, where it is cut
 FINE = 1e-3  # [m] of a line, between places that are unbent
 REFINED = 2.0  # [mm] of an edge of a mesh as it is unrolled
+BESIDE = 0.01  # [m] before and behind a device that is looked at with it
 WALL_DEPTH = 5e-4  # [m] behind the wall's face, where bores are seen
 
 
@@ -159,12 +160,17 @@ def in_order(bores):
 def bowl(flat, plan, placed):
     """A device on the bowl's solid, unrolled."""
     start = plan.first + placed.begin
+    ends = (plan.first + placed.start - BESIDE) / MM, (plan.first + placed.end + BESIDE) / MM
+
+    @functools.cache
+    def beside(level):
+        return flat(level).trim_by_plane((1.0, 0.0, 0.0), ends[0]).trim_by_plane((-1.0, 0.0, 0.0), -ends[1])
 
     def cut(z, level=0.0):
-        return affinity.translate(facets.cut_face(flat(placed.level + level), 2, z), -start, 0.0)
+        return affinity.translate(facets.cut_face(beside(placed.level + level), 2, z), -start, 0.0)
 
     bank = float(plan.path.bank_at(start))
-    bores = _round_holes(flat(placed.level), placed, plan.first, bank) if placed.features.bores else []
+    bores = _round_holes(beside(placed.level), placed, plan.first, bank) if placed.features.bores else []
     return View(lambda level: cut(-UNDER, level), cut, bores)
 
 

@@ -583,7 +583,7 @@ def test_the_main_flow_with_the_keyboard_alone(tmp_path, width, dark):
         assert unnamed == [], "a field has no label"
         reach(AT.format("start"))
         page.press("Enter")
-        page.until(AT.format("next") + ".children.length")
+        page.until(AT.format("next") + ".firstElementChild?.disabled === false")
         assert (at("state", ".textContent"), at("next", ".textContent")) == (
             "falls short",
             "try first: 57/min holds",

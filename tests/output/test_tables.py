@@ -126,7 +126,7 @@ def test_texts_of_a_page_are_printable_and_what_has_a_unit_of_its_own_is_no_roun
     [
         ("A@188 is isolated", "A@188: aspect A, turned 188 deg counter-clockwise"),
         ("aspect  heading  share\nA  188  39", "heading: "),
-        ("keeps A at heading 188 and 354 deg", "heading: "), ("aspect  lies\nA  flat", None),
+        ("keeps A@188 and A@354", "A@188: "), ("aspect  lies\nA  flat", None),
         ("mass 13 g", None), ("quantity  value\naspect and heading  A at 188 deg", None),
         ("user@example", None), ("climbs at 3 deg", None),
     ],

@@ -318,7 +318,7 @@ def test_a_device_has_a_name_of_the_trade_and_a_value_in_words(kind, values, nam
 def test_a_vision_reject_says_what_sees_what_it_keeps_and_what_it_rejects(sees):
     like, also = ("A", np.radians(187.672), 8.35e-3), (("A", np.radians(353.592)), ("B", np.radians(359.8)))
     one, (name, what) = device("vision reject", like=like, also=also, sees=sees).rewritten(), SENSORS[sees]
-    words = f"keeps A at heading 188 and 354 deg and B at heading 0 deg, rejects {what} that differ by more "
+    words = f"keeps A@188, A@354 and B@0, rejects {what} that differ by more "
     words += "than "
     assert (one.full_name, one.value_words) == (name, f"{words}8.35 mm")
     assert one.with_pulse(0.02).value_words == f"{words}8.35 mm, air for 20 ms"

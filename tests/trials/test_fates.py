@@ -251,11 +251,16 @@ def test_a_queue_lies_in_the_groove_from_its_entry_and_its_wall_leans_from_stret
         staging.PlacedSlope(0.1, bank=6.0 * DEG, wall=0.0),
     )
     rows = staging.tabulate_leans(slopes, 0.0, 0.0, 0.02, 1.0)
-    axis, wall = rows[:, 4:6], rows[:, 6:8]
-    np.testing.assert_allclose(wall[0], axis[0])
-    np.testing.assert_allclose(wall[1], [np.sin(-30.0 * DEG), np.cos(30.0 * DEG)], atol=1e-12)
-    np.testing.assert_allclose(axis[1], [np.sin(30.0 * DEG), np.cos(30.0 * DEG)], atol=1e-12)
-    np.testing.assert_allclose(wall[3], axis[3])
+    tilt, lean = np.arctan2(rows[:, 4], rows[:, 5]) / DEG, np.arctan2(rows[:, 6], rows[:, 7]) / DEG
+    second = int(np.flatnonzero(rows[:, 0] == 0.1)[0])  # where it begins, as the first has left it
+    opened, closed = slice(0, second), slice(second, None)
+    assert (tilt[second - 1], lean[second - 1]) == pytest.approx((30.0, -30.0))
+    # the bank grows to 30 deg while the wall falls to -30 deg, then back, each angle linear along the wall
+    for part, bank, wall in ((opened, (0.0, 30.0), (0.0, -30.0)), (closed, (30.0, 6.0), (-30.0, 6.0))):
+        places = rows[part, 0]
+        ends = places.min(), places.max()
+        np.testing.assert_allclose(tilt[part], np.interp(places, ends, bank), atol=1e-9)
+        np.testing.assert_allclose(lean[part], np.interp(places, ends, wall), atol=1e-9)
 
 
 def ride_of(entered, ended):

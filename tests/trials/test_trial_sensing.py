@@ -90,8 +90,14 @@ def test_the_lean_of_the_track_changes_where_a_slope_begins_and_pulses_blow_for_
     assert flat.shape == (1, 8) and flat[0, 1] == pytest.approx(-np.sin(0.02))
     changes = staging.PlacedSlope(0.1, climb=-0.05), staging.PlacedSlope(0.2, bank=0.1)
     rows = staging.tabulate_leans(changes, 0.02, 0.0, 0.01, 0.5)
-    assert rows[:, 0] == pytest.approx([0.2, 0.205, 0.4, 0.405])
-    assert rows[:, 1] == pytest.approx(-np.sin([0.02, -0.05, -0.05, -0.05]))
+    # each angle is linear over half of the part's size, and stays as it is between
+    corners = [0.2, 0.205, 0.4, 0.405]
+    assert {0.2, 0.4} <= {*rows[:, 0]} and rows[-1, 0] == pytest.approx(0.405)
+    assert -np.arcsin(rows[:, 1]) == pytest.approx(
+        np.interp(rows[:, 0], corners, [0.02, -0.05, -0.05, -0.05])
+    )
+    tilts = np.arctan2(rows[:, 4], rows[:, 5])
+    assert tilts == pytest.approx(np.interp(rows[:, 0], corners, [0.0, 0.0, 0.0, 0.1]))
     assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)] * 2)
     pulses = staging.Pulses()
     assert pulses.next(0.0) == (np.inf, np.inf)

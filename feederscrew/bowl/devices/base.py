@@ -608,20 +608,18 @@ def span_words(span: tuple[float, ...]) -> str:
 
 
 def keeps(orientations: Iterable[tuple[str, float]]) -> str:
-    """Return aspects and headings in words: 'A at heading 188 and 354 deg, B at heading 90 deg'.
+    """Return orientations by their names: 'A@188, A@354 and B@90'.
 
     Parameters
     ----------
     orientations : iterable of (str, float [rad])
+        Aspect and heading of each.
 
     Returns
     -------
     str
     """
-    headings: dict[str, list[str]] = {}
-    for aspect, heading in orientations:
-        headings.setdefault(aspect, []).append(f"{round(math.degrees(heading)) % 360}")
-    return units.listed([f"{name} at heading {units.listed(turns)} deg" for name, turns in headings.items()])
+    return units.listed([f"{aspect}@{round(math.degrees(turn)) % 360}" for aspect, turn in orientations])
 
 
 def angle_text(value: float) -> str:

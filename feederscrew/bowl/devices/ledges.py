@@ -176,8 +176,7 @@ class NarrowedTrack(_Balcony):
     kind = "narrowed track"
     trade = Trade(
         "9 mm",
-        "track of a lesser width, a balcony; returns orientations whose foot of the centre of mass is not "
-        "supported",
+        "track of a lesser width; returns orientations whose foot of the centre of mass is not supported",
         old_name="narrowed_track",
         measures=DISTANCE,
     )

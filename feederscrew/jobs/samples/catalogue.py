@@ -15,7 +15,7 @@ from feederscrew.bowl.documentation import template
 from feederscrew.jobs.samples import families, solids
 
 HERE = Path(__file__).parent
-PART_FOLDERS = HERE / "parts", HERE.parents[1] / "parts"  # of a wheel, and of the sources
+PART_FOLDERS = HERE / "parts", HERE.parents[2] / "parts"  # of a wheel, and of the sources
 TOOLING = """# Tooling for lbracket_30x20x15.stl: feeder trial lbracket_30x20x15.stl --config tooling.yaml
 drive:
   peak_to_peak: 0.3 mm

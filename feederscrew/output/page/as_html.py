@@ -376,7 +376,7 @@ def _table(frame: Frame) -> str:
     lines = []
     for own, row in zip(zip(*pads), zip(*columns)):
         cells = (
-            f"<td{_long(mark, cell)}{pad}{title if cell != NOTHING else ''}>{escape(cell)}</td>"
+            f"<td{_long(mark, cell)}{pad}{title if cell not in ('', NOTHING) else ''}>{escape(cell)}</td>"
             for mark, pad, title, cell in zip(marks, own, titles, row)
         )
         lines.append(f"<tr>{''.join(cells)}</tr>")
@@ -387,7 +387,9 @@ def _table(frame: Frame) -> str:
 
 def _long(mark: str, cell: str) -> str:
     """The class of a cell: one of many words is no narrow column of them, which would make its row tall."""
-    return mark or (' class="long"' if len(cell) > LONG_LETTERS else "")
+    if mark or len(cell) <= LONG_LETTERS:
+        return mark
+    return ' class="long"' if len(cell) <= CARD_LETTERS else ' class="long longest"'
 
 
 def texts_of(frame: Frame) -> tuple[list[tuple[str, str]], list[bool], list[list[str]]]:
