@@ -16,10 +16,10 @@ from matplotlib.text import Text
 from solids import RULES, STEEP, STEPPED, TRACK, built, device, planned
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.size import Size
 from feederscrew.cad.closed_body import body
 from feederscrew.cad.plan import SolidOptions, material, plan
 from feederscrew.feeding import stream
-from feederscrew.machine.sizing import Size
 from feederscrew.output import bowl_sheet, outlet_poses
 from feederscrew.output.drafting import FRAME
 from feederscrew.output.marking import SheetFields
