@@ -45,9 +45,10 @@ def test_a_rate_is_the_product_of_its_factors_and_is_written(run_json, run):
     ]
     returned = run("rate", BRACKET, "--aspect", "A", "--config", "bowl.yaml")
     assert returned.exit_code == 0 and "correctly oriented parts per minute" in returned.stdout
-    hops, rejects = returned.stderr.splitlines()
+    hops, rejects, name = returned.stderr.splitlines()
     assert hops.startswith("Warning: parts hop 0.3 mm high and 2.2 mm far")
     assert rejects == "Warning: wiper (18 mm) rejects the orientation you want; rate is 0"
+    assert name.startswith("A@2: aspect A, turned 2 deg")
 
 
 def test_a_setting_reaches_the_target(run_json, run):

@@ -22,7 +22,7 @@ from feederscrew.output.report import report
 from feederscrew.output.report_page import bowl_values, knobs
 
 SETTINGS = 200
-PROBE = "<script>document.title = JSON.stringify(BOWLS.map(motion.conveying));</script></body>"
+PROBE = "<script>document.title = JSON.stringify(BOWLS.map(conveying.answer));</script></body>"
 MOVED = """<script>
 (() => {
   const block = document.querySelector(".knobs"), own = OWN, top = TOP;

@@ -41,7 +41,7 @@ STUDIES = {  # function: its record, and what its text says
     "family": (lambda: FamilyStudy((NONE,)), r"^FamilyStudy\(none, "),
     "rate": (
         lambda: fs.rate(PART, BOWL.with_values(amplitude="0.3 mm"), "A", rule="csa"),
-        HEADING + MINUTE + r", efficiency \d+",
+        r"A@\d+: " + MINUTE + r", efficiency \d+",
     ),
 }
 PICTURES = {

@@ -1,10 +1,12 @@
 """Which functions of the program the tests enter: the figure that `make test` prints, and its floor.
 
 A function begins with a stand-in for its code, which notes the first call and puts the code in its place: the
-figure costs nothing afterwards. Left out are functions within functions, and files whose functions numba
-compiles, because it reads their code. What another process enters is not seen: the figure is a lower limit.
+figure costs nothing afterwards. Left out are functions within functions, declarations of a protocol, and
+files whose functions numba compiles, because it reads their code. What another process enters is not seen:
+the figure is a lower limit.
 """
 
+import dis
 import functools
 import importlib.machinery
 import inspect
@@ -84,7 +86,7 @@ def _functions(value):
 
 
 def _replace(function, code, key):
-    if key in WAITING or key in ENTERED:
+    if key in WAITING or key in ENTERED or _is_declaration(code):
         return
     signed = not hasattr(function, "__signature__")
     if signed:
@@ -97,6 +99,12 @@ def _replace(function, code, key):
     )  # fmt: skip
 
 
+def _is_declaration(code):
+    """Whether a function is a docstring alone, as those of a protocol, which nothing enters."""
+    first, *rest = code.co_consts or (None,)
+    return isinstance(first, str) and set(rest) <= {None} and len(list(dis.get_instructions(code))) <= 3
+
+
 @functools.cache
 def everything():
     """Every function that could be entered."""
@@ -107,7 +115,8 @@ def everything():
             code = codes.pop()
             codes += [value for value in code.co_consts if isinstance(value, CodeType)]
             is_function = code.co_flags & inspect.CO_NEWLOCALS and code.co_flags & inspect.CO_OPTIMIZED
-            if is_function and not code.co_freevars and "<" not in code.co_qualname:
+            named = not code.co_freevars and "<" not in code.co_qualname
+            if is_function and named and not _is_declaration(code):
                 found.add(f"{path.relative_to(ROOT)}:{code.co_qualname}")
     return found
 
