@@ -409,6 +409,16 @@ class DesignStudy(ReadableRecord, view="design_pages.DESIGN_VIEW"):
         """Return what became of each orientation that was asked for in its short trials."""
         return WantedTrials.of(self.attempts_asked_for)
 
+    @property
+    def delivered(self) -> tuple[float, float, float]:
+        """Wanted parts [1/s] of the worst fill: value, low and high end of the 95 % interval."""
+        return self.proof.delivered
+
+    @property
+    def purity(self) -> tuple[float, float]:
+        """Share [1] of what left that is wanted, and its lower bound, of the worst fill; NaN of nothing."""
+        return self.proof.purity
+
     @functools.cached_property
     def verdict(self) -> DesignVerdict:
         """Return whether it holds, where it falls short, and why."""
