@@ -298,7 +298,8 @@ def find_circles(
             continue
         points, ends = [np.empty((0, 3))], [np.empty((0, 2), int)]
         for k, wide in enumerate(gaps):
-            steps = int(np.ceil(wide / FINE_CORNERS_ANGLE)) if solid[k] else 1
+            # at least one: a changed mesh may have two corners at one place, no angle apart
+            steps = max(int(np.ceil(wide / FINE_CORNERS_ANGLE)), 1) if solid[k] else 1
             at = turn[ring[k]] + wide * np.arange(1, steps)[:, None] / steps
             points.append(centre + radius * (np.cos(at) * across + np.sin(at) * aside))
             ends.append(np.tile([ring[k], ring[(k + 1) % len(ring)]], (steps - 1, 1)))

@@ -307,3 +307,14 @@ def test_what_rolls_back_or_over_the_free_edge_has_left_and_a_stopped_ride_decid
     own = {"repeats": 1, "distance": 0.2, "run": RunSettings(1, progress=stop)}
     with pytest.raises(KeyboardInterrupt):
         long_ride.ride_of_track(PART, RIDE_BOWL, RIDE_EVERY, [ALONG], **own)
+
+
+def test_two_corners_at_one_place_are_no_arc_between():
+    """A washer that was changed had such a pair on a circle, and its advice ended in a traceback."""
+    turn = np.radians(np.arange(0.0, 360.0, 15.0))
+    ring = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
+    axis = np.array([0.0, 0.0, 1.0])
+    (plain,) = shape.find_circles(ring, axis)
+    (twice,) = shape.find_circles(np.vstack([ring, ring[3]]), axis)
+    assert len(twice.corners) == len(plain.corners) + 1 and twice.radius == plain.radius
+    np.testing.assert_allclose(np.sort(twice.points, axis=0), np.sort(plain.points, axis=0), atol=1e-12)
