@@ -453,7 +453,7 @@ def ease_cut(proposal: Proposal, place: int, orientations: Sequence[Orientation]
     Returns
     -------
     Proposal or None
-        None where it is none of the proposal's, its value is no length, or it would return no less.
+        None where another made the device, its value cannot be moved, or it would return no less.
     """
     found = _own_cut(proposal, place)
     if found is None or not found[1].device.search.bound:

@@ -52,7 +52,7 @@ def figure(value: float | Array | None, unit_in_si: float = 1.0) -> str:
     Returns
     -------
     str
-        '-' of None and of NaN; '<5 values>' of an array.
+        '-' for a missing value and NaN; '<5 values>' for an array.
     """
     if value is None or np.ndim(value):
         return "-" if value is None else f"<{np.size(value)} values>"

@@ -120,7 +120,7 @@ class QueueCounts:
         entry : int
             Row of the orientation in which it came.
         pose, aspect : int
-            In which it left; -1 of none that is known.
+            In which it left; -1 where it is not known.
         """
         self.whole += 1
         self.left[entry, pose, aspect] += 1
