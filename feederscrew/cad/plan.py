@@ -16,7 +16,7 @@ from feederscrew.base.errors import FeederError
 from feederscrew.bowl.devices.features import Blade
 from feederscrew.bowl.record import Sizing, Track
 from feederscrew.bowl.size import MIN_WALL_ABOVE_PART_M, Size
-from feederscrew.sorting.tooled_track import TooledTrack
+from feederscrew.sorting.tooled_track import TooledTrack, changed_at
 
 Extents = Floats | tuple[float, ...]  # (3,) [m] of a part along its axes
 STEEL_NAME = "steel"
@@ -180,11 +180,7 @@ class TrackPath:
         -------
         (...) float [rad]
         """
-        banks = [self.bank, *(bank for _, _, bank in self.leans)]
-        bank_at = np.full(np.shape(s), float(self.bank))
-        for (start, end, bank), before in zip(self.leans, banks):
-            bank_at = bank_at + (bank - before) * np.clip((s - start) / (end - start), 0.0, 1.0)
-        return bank_at
+        return changed_at(s, float(self.bank), self.leans)
 
     @property
     def least_bank(self) -> float:

@@ -322,15 +322,10 @@ def _change_by_proof(
     if changed is None:
         return None
     tried = exploring.try_again(search, candidate, changed, candidate.bowl)
-    if tried.attempt.clean or search.is_spent or not _loses_wanted(tried):
+    if tried.attempt.clean or search.is_spent or not tried.trial.loses_wanted:
         return tried
-    # at one device more what hops is lost: a calmer drive carries it past both
+    # parts that hop may be lost at one more device: a calmer drive may carry them past both
     return exploring.try_calmer(search, tried) or tried
-
-
-def _loses_wanted(candidate: Candidate) -> bool:
-    """Whether a trial of a candidate lost parts of what is wanted."""
-    return any(fault.kind is FaultKind.LOST for fault in candidate.attempt.faults)
 
 
 def _leaves_over_slot(study: DesignStudy, candidate: Candidate) -> bool:

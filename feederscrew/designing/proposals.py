@@ -471,7 +471,7 @@ def ease_cut(proposal: Proposal, place: int, orientations: Sequence[Orientation]
 def relax_device(
     proposal: Proposal, place: int, trial: ShortTrial, orientations: Sequence[Orientation]
 ) -> Proposal | None:
-    """Return the proposal with a device that returns what is wanted changed so that it returns less.
+    """Return the proposal with one device changed so that it returns fewer wanted parts.
 
     A cut moves half the way to its least one. A pressure break leaves more of the track, by the least margin.
 
@@ -487,7 +487,7 @@ def relax_device(
     Returns
     -------
     Proposal or None
-        None where it is none of the proposal's, or cannot return less.
+        None where another made the device, or it cannot return fewer.
     """
     found = _own_cut(proposal, place)
     if found is None:

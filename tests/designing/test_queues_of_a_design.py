@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
-from design_counts import carried, design_study, end_at, lost, orientation, queue, stays, stopped_at
+from design_counts import carried, design_study, lost, orientation, queue, stays, stopped_at
 from scipy.stats import binom, hypergeom
 
 from feederscrew import bowl as bowls
@@ -42,7 +42,6 @@ from feederscrew.output import design_pages, designs
 from feederscrew.output import tables as tables_of
 from feederscrew.resting.aspects import find
 from feederscrew.trials import fills
-from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import FillLevel, share_interval
 from feederscrew.trials.queue_counts import QueuedParts
 from feederscrew.trials.supply import PARTS_IN_SHARES as BLOCK
@@ -298,8 +297,8 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
 def test_what_one_device_more_loses_is_tried_at_a_calmer_drive(monkeypatch, prove):
     """A second sensor lost a cap that hops at 1.6 mm, which one sensor isolates at 0.5 mm as well."""
     first, second = candidates_of(BOWL, replace(BOWL.drive, amplitude=0.5 * BOWL.drive.amplitude))
-    faults = (lost("A@0", end_at(Fate.RETURNED, "vision reject", 3)),)
-    hops = SimpleNamespace(**vars(first) | {"attempt": SimpleNamespace(clean=False, faults=faults)})
+    seen = SimpleNamespace(loses_wanted=True)
+    hops = SimpleNamespace(**vars(first) | {"attempt": SimpleNamespace(clean=False), "trial": seen})
     impure = study(robust=RobustRun(20, 16, carried("B@0").counted_in_draws(4, 20)))
     monkeypatch.setattr(loop.proposals, "mend_proposal", lambda *chain: "a second sensor")
     for calmer, proved in ((second, 2), (None, 1)):
@@ -307,7 +306,7 @@ def test_what_one_device_more_loses_is_tried_at_a_calmer_drive(monkeypatch, prov
         monkeypatch.setattr(loop.exploring, "try_calmer", lambda search, candidate, own=calmer: own)
         studies, _ = prove(first, second, {BOWL: impure, second.bowl: study()})
         assert len(studies) == proved
-    hops.attempt.faults = ()  # it lets something else through: no drive changes that
+    seen.loses_wanted = False  # it lets something else through: no drive changes that
     monkeypatch.setattr(loop.exploring, "try_calmer", lambda *_: pytest.fail("nothing was lost"))
     assert len(prove(first, second, {BOWL: impure})[0]) == 1
 
