@@ -52,11 +52,15 @@ ROBUST_COLUMNS: tuple[Column[RobustRun], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class Proof:
-    """Draws and queues of a design with their figures; empty of one that was not proved."""
+    """Draws and queues of a design with their figures; empty if the design was not proved.
+
+    A fill is how full the bowl is kept; each has a queue. Rate, purity and efficiency are each the least of
+    all fills, and may come from different ones: what a cleaner fill does improves none of them.
+    """
 
     robust: RobustRun = field(default_factory=lambda: RobustRun(0, 0))
     queues: tuple[FilledQueue, ...] = ()  # one a fill
-    slowed: float = 1.0  # [1] of its velocity that the drive keeps at the worst friction
+    slowed: float = 1.0  # [1] fraction of its velocity that the drive keeps at the worst friction
     row: FedRow | None = None  # how parts were fed into its queues; None of what was not followed
     long_ride: LongRide | None = None  # from the track's entry to the tooling; None of what was not proved
 
@@ -78,7 +82,7 @@ class Proof:
 
     @property
     def worst(self) -> float:
-        """Wanted parts [1/s] of the worst fill at the worst friction."""
+        """Wanted parts [1/s] of the worst fill at the worst friction: its rate goes as the velocity."""
         return self.delivered[0] * self.slowed
 
     @property
@@ -110,7 +114,11 @@ class Proof:
 
     @property
     def jams_per_hour_high(self) -> float:
-        """Upper bound of the jams an hour, one-sided for 95 % confidence: 3 / T after T hours without one."""
+        """Upper bound of the jams an hour, one-sided for 95 % confidence: 3 / T after T hours without one.
+
+        It holds for jams that come at one constant rate in all fills: their hours are added up. A design with
+        a jam at any fill does not hold.
+        """
         return HOUR * rate_at_most(self.jams, self.queue_seconds)
 
     @property

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 class Shortage(enum.Enum):
     """In which way a design does not do what was asked."""
 
-    LOST_IN_TRIALS = enum.auto()  # no chain brought an orientation through
-    RATE = enum.auto()  # of a fill
-    PURITY = enum.auto()  # of a fill
-    PURITY_NOT_SHOWN = enum.auto()  # by the parts of a fill
-    FOLLOWED_BRIEFLY = enum.auto()  # a fill
+    LOST_IN_TRIALS = enum.auto()  # in the short trials no chain let a wanted orientation pass
+    RATE = enum.auto()  # the low end of the rate of a fill is too low
+    PURITY = enum.auto()  # too little of what left at a fill is wanted
+    PURITY_NOT_SHOWN = enum.auto()  # too few parts left at a fill to show that it is pure
+    FOLLOWED_BRIEFLY = enum.auto()  # a fill was followed for too short a time to decide
     NO_QUEUE = enum.auto()
     JAMS_OF_FILL = enum.auto()  # in a long proof
     JAMS = enum.auto()
@@ -47,21 +47,21 @@ class BlameGround(enum.Enum):
     NO_MACHINE = enum.auto()
     NOT_TOLD_APART = enum.auto()  # no device tells what is wanted from the rest
     FAULTS_OF_TRIAL = enum.auto()
-    TOO_SELDOM = enum.auto()
+    TOO_SELDOM = enum.auto()  # the wanted orientation comes too rarely
     JAMS = enum.auto()
     NOTHING_ARRIVES = enum.auto()  # at the outlet
     HEADINGS_TURN = enum.auto()
     OTHERS_PASS = enum.auto()
     NO_DEVICE = enum.auto()
     FAULT_OF_DRAWS = enum.auto()
-    LITTLE_LEAVES = enum.auto()
+    LITTLE_LEAVES = enum.auto()  # nothing leaves as wanted at the worst fill
     FEW_PARTS = enum.auto()  # to show that it is pure
     SLOW = enum.auto()
 
 
 @dataclass(frozen=True, eq=False)
 class Blame:
-    """Cause why a design does not hold, and the finding from which it follows."""
+    """Reason why a design does not hold, and the finding from which it follows."""
 
     cause: Cause = Cause.UNKNOWN
     ground: BlameGround | None = None
@@ -73,15 +73,15 @@ class DesignVerdict:
     """Verdict on a design."""
 
     status: Status
-    tooling_status: Status  # on track and devices, whatever machine can be made below them
+    tooling_status: Status  # of track and devices alone, whether or not a machine can drive them
     tooling_shortfalls: tuple[Shortfall, ...]
     shortfalls: tuple[Shortfall, ...]  # those of the tooling, then of the machine
     blame: Blame
-    hooking: Hooking | None  # how two of its parts hook; None of parts that come apart by themselves
+    hooking: Hooking | None  # how two parts hook together; None if they separate by themselves
 
     @property
     def conditional(self) -> Hooking | None:
-        """The hooking under whose condition it holds; None of one that holds without, or does not."""
+        """The hooking that has to be prevented; None if it holds without, or does not hold."""
         return self.hooking if self.tooling_status == Status.HOLDS_SINGLE else None
 
 
@@ -119,7 +119,7 @@ def _tooling_status(study: "DesignStudy", falls_short: bool, hooking: Hooking | 
 def fills_of(
     queues: tuple[FilledQueue, ...], request: "DesignRequest", state: FillState
 ) -> list[FilledQueue]:
-    """Return the queues of the fills of one state, for the rate that is asked for.
+    """Return the queues that are judged to be in one state at the rate that is asked for.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def _blame(study: "DesignStudy", status: Status) -> Blame:
 
 
 def _blame_of_trials(study: "DesignStudy") -> Blame:
-    """What the short trials say, of the best of them."""
+    """The blame taken from the best short trial."""
     if not study.attempts:
         return Blame(Cause.PART, BlameGround.NOT_TOLD_APART)
     best = max(study.attempts_asked_for, key=lambda attempt: (attempt.efficiency, attempt.rate))
