@@ -136,10 +136,7 @@ def _emptying(sheet: Any) -> Iterator[FeederError]:
     full, empty = speeds_left[0], speeds_left[-1]
     mend = "control the amplitude, or hold the level with a hopper"
     if abs(full - empty) > rules.retune * empty:
-        drift = [f"{speed / MM:.3g} mm/s" for speed in (full, empty)]
-        if sheet.order is not None:
-            drift = [f"{60.0 * rate:.3g}/min" for rate in sheet.rates(speeds_left[[0, -1]])]
-        what = f"left alone, {drift[0]} of a full bowl become {drift[1]} as it empties"
+        what = f"left alone, {full / MM:.3g} mm/s of a full bowl become {empty / MM:.3g} mm/s as it empties"
         yield FeederError("sizing.carried", what, mend)
     beyond = emptied.levels[emptied.strokes * bowl.drive.amplitude > most]
     if beyond.size and bowl.drive.amplitude <= most:

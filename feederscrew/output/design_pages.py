@@ -241,7 +241,7 @@ def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
         words = "leaves correctly oriented"
         instead = texts.leaving_texts(study.proof.left_instead)
         others = sorted((name for name in instead if name != wanted), key=lambda name: -instead[name])
-        seen = [(name, f"left in its place: {instead[name]}") for name in others[:1]]
+        seen = [(name, f"not wanted: {instead[name]} left so") for name in others[:1]]
         if wanted == HANGING and arrives:  # no pose on a face
             wanted, words = arrives, "arrives so, leaves hanging by its head"
         return [(wanted, words), *seen]
