@@ -13,7 +13,7 @@ from werkzeug.serving import make_server
 
 from feederscrew.jobs.serving.site import Site
 
-SIZE = (1280, 1250)
+SIZE = (1280, 1650)
 PART = "/part-of-the-picture"
 DROP = f"""<script>
 addEventListener("load", async () => {{
