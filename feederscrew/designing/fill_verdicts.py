@@ -25,6 +25,7 @@ HOLDS_IN_ERROR = 0.15  # [1] chance, at most, that a fill of SHOWN_PURITY or les
 REFUSED_IN_ERROR = 0.02  # [1] chance, at most, that one of GOOD_PURITY or more is refused for it
 SETTLING_PARTS = 300  # good parts of the target in which a fill is settled, or is not at all
 SHORTEST_LIMIT_S, LONGEST_LIMIT_S = 120.0, 3600.0  # [s] between which that time is
+LONGER_BY = 1.5  # [1] of its time so far, that a fill takes which is pure already, and still open
 DIFFERENCE_RISK = 0.01  # [1] chance at which fills that are alike would differ as much
 
 
@@ -137,6 +138,35 @@ def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillSta
     if queue.seconds < 0.99 * FIRST_LOOK_S or likelier < -math.log(HOLDS_IN_ERROR):
         return FillState.OPEN
     return FillState.HOLDS if shows_rate(queue, least_rate) and shows_purity(queue) else FillState.OPEN
+
+
+def time_to_settle(queue: FilledQueue, longest: float) -> float:
+    """Return a guess of the time from its begin at which a fill is settled, if no more parts are wrong.
+
+    It holds by its purity as soon as so many right parts have left, which come at the rate so far. Where that
+    was reached already, something else keeps it open, and the guess is that it takes half as long again.
+
+    Parameters
+    ----------
+    queue : FilledQueue
+        As far as it was followed.
+    longest : float [s]
+        For which it may be followed.
+
+    Returns
+    -------
+    float [s]
+        At least the time for which it was followed; ``longest`` where nothing right has left.
+    """
+    if queue.right == 0:
+        return longest
+    wrong = queue.left - queue.right
+    odds = math.log((1.0 - SHOWN_PURITY) / (1.0 - GOOD_PURITY))
+    needed = math.ceil((wrong * odds - math.log(HOLDS_IN_ERROR)) / math.log(GOOD_PURITY / SHOWN_PURITY))
+    while not _is_pure(needed, needed + wrong):
+        needed += 1
+    lacking = needed / queue.right if needed > queue.right else LONGER_BY
+    return min(max(queue.seconds * lacking, queue.seconds), longest)
 
 
 def least_of(target: float) -> float:

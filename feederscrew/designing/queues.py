@@ -3,7 +3,7 @@
 import math
 import queue as fifo
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -30,7 +30,8 @@ class FollowedRow(FedRow):
     tell: Callable | None = None  # called with what is being followed, a sentence
     least: float = 0.0  # wanted parts [1/s] below which a fill does not hold
     longest: float = 600.0  # [s] for which each fill is followed at the most
-    progress: Callable[[int, int], None] | None = None  # told how many periods are done, of how many
+    # told how many part-seconds are done, of how many as it looks by now
+    progress: Callable[[int, int], None] | None = None
     jobs: int = 1  # cores: fills are then followed side by side, with the same outcome
 
     def say(self, fill: FillLevel, seconds: float) -> None:
@@ -49,27 +50,40 @@ class FollowedRow(FedRow):
             )
             self.tell(f"queue of {fill.parts} at {fill} fill, {end}")
 
-    def tell_periods(self, before: int) -> Callable[[int, int], None]:
-        """Return what is told how many periods of a queue are done.
+    def time_of(self, fill: FillLevel, seen: Mapping[FillLevel, FilledQueue]) -> float:
+        """Return a guess of the seconds for which a fill is followed, from what was seen of it and of others.
 
         Parameters
         ----------
-        before : int
-            Periods of other fills that are done.
+        fill : FillLevel
+        seen : mapping of FillLevel to FilledQueue
 
         Returns
         -------
-        callable
-            Takes the periods done, and how many there are, which is not looked at.
+        float [s]
+            By its own rate; by the mean of the others where it was not seen yet, and by the rate that is
+            asked for where none was.
         """
+        if fill in seen:
+            is_open = self.judge(seen[fill]) is FillState.OPEN
+            return fill_verdicts.time_to_settle(seen[fill], self.longest) if is_open else seen[fill].seconds
+        if seen:
+            return sum(self.time_of(other, seen) for other in seen) / len(seen)
         rate = fill_verdicts.RATE_KEPT * USUAL_PARTS / self.least if self.least > 0.0 else self.longest
-        expected = len(FILLS) * math.ceil(min(rate, self.longest) * self.bowl.drive.frequency)
+        return min(rate, self.longest)
 
-        def tell(done: int, _: int) -> None:
-            if self.progress:
-                self.progress(before + done, max(expected, before + done))
+    def work(self, seen: Mapping[FillLevel, FilledQueue]) -> float:
+        """Return a guess of the part-seconds of all fills: a second of a row counts by its parts.
 
-        return tell
+        Parameters
+        ----------
+        seen : mapping of FillLevel to FilledQueue
+
+        Returns
+        -------
+        float
+        """
+        return sum(fill.parts * self.time_of(fill, seen) for fill in FILLS)
 
     def judge(self, queue: FilledQueue) -> FillState:
         """Return what a fill has shown so far.
@@ -124,7 +138,7 @@ def follow_fills(
 
     seconds, going = min(fill_verdicts.FIRST_LOOK_S, row.longest), list(FILLS)
     while going:
-        with _Fills(row, running, going, seconds) as followers:
+        with _Fills(row, running, going, seconds, queue_of_fill) as followers:
             for fill in tuple(going):
                 try:
                     row.say(fill, seconds)
@@ -162,7 +176,8 @@ def follow_fills(
 class _Fills:
     """The queues that are not settled, through one round: followed when asked for, or on several cores.
 
-    There all of them begin at once. ``times`` [s] are those at which each fill is looked at.
+    There all of them begin at once. ``times`` [s] are those at which each fill is looked at; ``seen`` is what
+    the looks have shown.
     """
 
     def __init__(
@@ -171,8 +186,9 @@ class _Fills:
         running: dict[FillLevel, PartsQueue],
         going: Sequence[FillLevel],
         seconds: float,
+        seen: Mapping[FillLevel, FilledQueue],
     ) -> None:
-        self.row, self.running = row, running
+        self.row, self.running, self.seen = row, running, seen
         self.times: dict[FillLevel, list[float]] = {}
         for name in going:
             begin = running[name].time if name in running else 0.0
@@ -204,12 +220,16 @@ class _Fills:
             outcome = self.counted[name].get()
             if outcome is None:
                 self.tasks[name].result()  # raises what ended it
-            self.row.tell_periods(0)(sum(queue.periods for queue in list(self.running.values())), 0)
+            self._tell(self.row.work(self.seen))
             return outcome
-        queue = self._queue(name)
-        periods_elsewhere = sum(other.periods for other in self.running.values() if other is not queue)
-        queue.follow(until, self.row.tell_periods(periods_elsewhere))
+        queue, expected = self._queue(name), self.row.work(self.seen)
+        queue.follow(until, lambda *_: self._tell(expected))
         return self.row.count(name, queue.result())
+
+    def _tell(self, expected: float) -> None:
+        if self.row.progress:
+            done = sum(fill.parts * queue.time for fill, queue in list(self.running.items()))
+            self.row.progress(math.floor(done), math.ceil(max(expected, done)))
 
     def _queue(self, name: FillLevel) -> PartsQueue:
         if name not in self.running:
