@@ -174,8 +174,8 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
                 "What turns, leaves the track or rolls back changes the mix that arrives."
             )
             proof += [ridden, Table(designs.long_ride(study.proof.long_ride.rows()))]
-        worst = f"; most often: {study.proof.robust.worst_text}" if study.proof.robust.worst else ""
-        draws = Text(f"{study.proof.robust.held} of {study.proof.robust.draws} draws sort{worst}.")
+        most = f"; most often: {study.proof.robust.main_fault_text}" if study.proof.robust.main_fault else ""
+        draws = Text(f"{study.proof.robust.held} of {study.proof.robust.draws} draws sort{most}.")
         proof.append(Table(queues_table(d["queues"])))
         if d["differences"]:
             proof.append(Notes(tuple(item["text"] for item in d["differences"]), loud=True))

@@ -123,7 +123,8 @@ def document(study: DesignStudy) -> dict[str, Any]:
     ridden = () if study.proof.long_ride is None else study.proof.long_ride.rows()
     if is_proved:  # the figures that its queues have shown
         (purity, purity_low), high = study.proof.purity, study.proof.jams_per_hour_high
-        rates = (end / PER_MINUTE for end in (*study.proof.delivered, study.proof.worst))
+        ends = (*study.proof.delivered, study.proof.delivered_at_worst_friction)
+        rates = (end / PER_MINUTE for end in ends)
         figures = (*rates, None if np.isnan(purity) else purity, purity_low, study.proof.jams)
         proof = dict(zip(PROOF, (*figures, high if np.isfinite(high) else None), strict=True))
     facts = machine_facts(study)
