@@ -8,7 +8,7 @@ from itertools import zip_longest
 from typing import Any
 
 from feederscrew.base import units
-from feederscrew.base.columns import ColumnHead, Frame, share_head
+from feederscrew.base.columns import ColumnHead, Document, Frame, share_head
 from feederscrew.bowl.arguments import settings_of
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting
@@ -409,7 +409,7 @@ def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None 
     return [*files, offer.text("design.html", page, study, build, files)]
 
 
-def _solid_document(drawn: MachineSheet, trial: Verified | None) -> dict[str, Any]:
+def _solid_document(drawn: MachineSheet, trial: Verified | None) -> Document:
     """The bowl as a solid, and what stands beside it."""
     own = {} if drawn.solid is None else solidbowl.document(drawn.solid)
     return own | beside_bowl.document(beside_bowl.find_beside(drawn, trial))
@@ -427,7 +427,7 @@ SWAPPED = "swapped"  # by hand
 Change = tuple[str, str, tuple[str, ...]]  # what, how it is changed, and a text for each part
 
 
-def family_document(study: FamilyStudy) -> dict[str, Any]:
+def family_document(study: FamilyStudy) -> Document:
     """Return the design of a family as the JSON document, ``family.json``.
 
     Parameters
