@@ -4,7 +4,7 @@ import contextlib
 import dataclasses
 import os
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -267,7 +267,7 @@ def _batch(
 
 
 @contextlib.contextmanager
-def _stoppable(out: Output) -> Iterator[dict[str, Any]]:
+def _stoppable(out: Output) -> Iterator[Values]:
     """Yield keywords that tell of a search, and end it where a Ctrl-C was dropped while something loaded."""
     with note_interrupts() as let_through:
         bar = progress.StageBar(not out.quiet)

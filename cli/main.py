@@ -121,7 +121,7 @@ class Fence(click.Group):
             _to_nowhere(sys.stderr)  # else the status would be 120
         sys.exit(status)
 
-    def _status(self, arguments: list[str], extra: dict[str, Any]) -> Any:
+    def _status(self, arguments: list[str], extra: Mapping[str, Any]) -> Any:
         """Run one command line; the exit status."""
         try:
             return super().main(arguments, **{**extra, "standalone_mode": False, "obj": arguments})

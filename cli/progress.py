@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -166,7 +167,7 @@ def _write(text: str) -> None:
         click.echo(text, err=True, nl=False, color=True)
 
 
-def _note(path: Path, values: dict[str, Any]) -> None:
+def _note(path: Path, values: Mapping[str, object]) -> None:
     """Put values into a file in place of those before."""
     with contextlib.suppress(OSError):  # a full disk must not cost the answer
         partial = path.with_suffix(".new")

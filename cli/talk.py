@@ -487,8 +487,7 @@ def fold_text(text: str, width: int | None) -> str:
     """
     if width is None or len(text) <= width:
         return text
-    whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
-    return textwrap.fill(text, width, subsequent_indent="  ", **whole)
+    return textwrap.fill(text, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
 
 
 def placeless(arguments: Iterable[str]) -> list[str]:

@@ -11,8 +11,10 @@ from feederscrew.arrivals.kernel.falling import Launched
 from feederscrew.arrivals.rounded_hull import Shape, lowest_on
 from feederscrew.base import check
 from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Document
 from feederscrew.base.errors import ArgumentError
 from feederscrew.base.geometry import vectors
+from feederscrew.base.signatures import Keywords
 from feederscrew.base.units import GRAVITY, QuantityError, factor, quantity, quantity_text
 from feederscrew.motion.conveying import even_range
 from feederscrew.resting.rules.recommended import launch_of_name
@@ -51,7 +53,7 @@ class Launch:
         return replace(self, restitution=even_range(low) if low == high else (low, high))
 
 
-SURFACE: dict[str, Any] = {"restitution": (0.2, 0.6), "friction": (0.2, 0.5)}  # hard on hard, every launch
+SURFACE: Keywords = {"restitution": (0.2, 0.6), "friction": (0.2, 0.5)}  # hard on hard, every launch
 PRESETS = {
     launch.name: launch
     for launch in (
@@ -251,7 +253,7 @@ def single(text: str | None) -> float | None:
     return None if text is None or ":" in text else _read("restitution", text, "number")
 
 
-def described(launch: Launch, length: float, gravity: float = GRAVITY) -> dict[str, Any]:
+def described(launch: Launch, length: float, gravity: float = GRAVITY) -> Document:
     """Return the name and ranges of a launch in the units of the shop.
 
     Parameters

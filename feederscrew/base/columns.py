@@ -63,6 +63,12 @@ ENDINGS = {
 }  # of names; of others the unit
 ENDS = ("low", "high")  # of an interval
 
+# One JSON object, as a command writes it or a browser is sent it: entries by name, other objects and lists of
+# them among these. It is made of declared columns and read by programs of others; no code of ours decides on
+# it. What our own code hands on is a record.
+Document = dict[str, Any]
+Cells = dict[str, Any]  # columns of a table by name, or the cells of one of its rows
+
 
 class Unit(NamedTuple):
     """A unit: how a heading writes it, and what it is in SI units."""
@@ -156,7 +162,7 @@ class Column(Generic[R]):
         ends = {f"{self.name}_{end}": head._replace(heading=f"{head.heading} {end}") for end in ENDS}
         return {self.name: head} | ends
 
-    def values(self, record: R) -> dict[str, Any]:
+    def values(self, record: R) -> Document:
         """Return the value of a record in the column's unit by its name; three of an interval."""
         value = self.attribute(record)
         if not self.interval:
@@ -252,7 +258,7 @@ class Frame(dict[str, Any]):
         cells = list(rows)
         return cls.of({name: [row[place] for row in cells] for place, name in enumerate(names)})
 
-    def rows(self) -> list[dict[str, Any]]:
+    def rows(self) -> list[Cells]:
         """Return the rows, each a dict of cells by column."""
         return [dict(zip(self, cells)) for cells in zip(*self.values())]
 
@@ -289,7 +295,7 @@ class Frame(dict[str, Any]):
         return Frame.of(Frame(dict(self) | dict(columns), self.heads, self.hidden))
 
 
-def values(columns: Iterable[Column[R]], record: R) -> dict[str, Any]:
+def values(columns: Iterable[Column[R]], record: R) -> Document:
     """Return the values of a record by the names of its columns, each in its unit: entries of a document.
 
     Parameters
@@ -373,7 +379,7 @@ def of_pieces(columns: Sequence[Column[R]], records: Iterable[R]) -> Frame:
     return _declared(columns, {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})
 
 
-def _as_rows(cells: Mapping[str, Any]) -> dict[str, Any]:
+def _as_rows(cells: Mapping[str, Any]) -> Cells:
     """Return columns of one length: a single value stands in every row."""
     lengths = [len(column) for column in cells.values() if _is_column(column)]
     count = max(lengths, default=1)

@@ -8,6 +8,9 @@ from typing import Any, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 LINE_LETTERS = 100  # of a line of parameters
+# Arguments of a function, or fields of a record that ``replace`` changes, by name. They are handed on with
+# ``**`` where it is known only as it runs which of them are given: types of the values are not checked.
+Keywords = dict[str, Any]
 MODULES = re.compile(r"\b(?:[a-z_]\w*\.)+(?=\w)")  # 'collections.abc.' of a type's name
 
 

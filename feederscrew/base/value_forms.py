@@ -8,9 +8,10 @@ from feederscrew.base import units
 
 NUMBER_TEXT = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
 UNITLESS = ("number", "count")  # dimensions without a unit
+JsonSchema = dict[str, Any]  # one schema, or a part of one, in the words of json-schema.org, 2020-12
 
 
-def quantity(dimension: str, lowest: str | None = None, highest: str | None = None) -> dict[str, Any]:
+def quantity(dimension: str, lowest: str | None = None, highest: str | None = None) -> JsonSchema:
     """Return the JSON Schema form of a value with its unit.
 
     Parameters
@@ -28,7 +29,7 @@ def quantity(dimension: str, lowest: str | None = None, highest: str | None = No
     text = {"type": "string", "pattern": pattern(dimension)}
     if dimension not in UNITLESS:
         return text
-    number: dict[str, Any] = {"type": "number"}
+    number: JsonSchema = {"type": "number"}
     if lowest is not None and highest is not None:
         number |= {
             "minimum": units.quantity(lowest, dimension),
@@ -66,7 +67,7 @@ def _loose(unit: str) -> str:
     return escaped.replace("2", r"\^?[2²]").replace("3", r"\^?[3³]")
 
 
-def either(*forms: dict[str, Any]) -> dict[str, Any]:
+def either(*forms: JsonSchema) -> JsonSchema:
     """Return the form of a value that is written in one of several ways.
 
     Parameters
@@ -81,7 +82,7 @@ def either(*forms: dict[str, Any]) -> dict[str, Any]:
     return {"anyOf": list(forms)}
 
 
-def by_name(form: dict[str, Any]) -> dict[str, Any]:
+def by_name(form: JsonSchema) -> JsonSchema:
     """Return the form of values of one form, each with a name, one at least.
 
     Parameters
@@ -96,7 +97,7 @@ def by_name(form: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "minProperties": 1, "additionalProperties": form}
 
 
-def mapping(optional: Sequence[str] = (), /, **values: dict[str, Any]) -> dict[str, Any]:
+def mapping(optional: Sequence[str] = (), /, **values: JsonSchema) -> JsonSchema:
     """Return the form of a mapping of exactly these keys.
 
     Parameters
@@ -118,7 +119,7 @@ def mapping(optional: Sequence[str] = (), /, **values: dict[str, Any]) -> dict[s
 
 LENGTH_FORM = quantity("length")
 ANGLE_FORM = quantity("angle")
-POLYGON: dict[str, Any] = {
+POLYGON: JsonSchema = {
     "type": "array",
     "minItems": 3,
     "items": {"type": "array", "items": LENGTH_FORM, "minItems": 2, "maxItems": 2},

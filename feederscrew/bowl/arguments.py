@@ -13,7 +13,7 @@ from feederscrew import bowl as bowls
 from feederscrew.base import check, documents
 from feederscrew.base import units as si
 from feederscrew.base.errors import ArgumentError
-from feederscrew.base.signatures import with_shown_signature
+from feederscrew.base.signatures import Keywords, with_shown_signature
 from feederscrew.base.units import Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.bowl.devices.orientation_names import split_name
@@ -26,7 +26,7 @@ from feederscrew.resting.rules.formulas import EXPONENTS
 Path: TypeAlias = str | PathLike[str]
 Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the smaller and the larger
 Function = TypeVar("Function", bound=Callable[..., object])
-Fold: TypeAlias = Callable[[dict[str, Any], Any], None]  # puts a former keyword's value into the arguments
+Fold: TypeAlias = Callable[[Keywords, Any], None]  # puts a former keyword's value into the arguments
 EXPONENT_RANGE = -10.0, 10.0  # [1] of a surface: calibrate tries some below 0 as well
 BOWL_MEND = "give a Bowl, as read_bowl returns it"
 OVERRIDES = "overrides"

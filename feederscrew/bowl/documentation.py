@@ -3,11 +3,10 @@
 import json
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 from feederscrew.base import units
 from feederscrew.base.errors import FeederError
-from feederscrew.base.value_forms import UNITLESS, quantity
+from feederscrew.base.value_forms import UNITLESS, JsonSchema, quantity
 from feederscrew.bowl.device_list import DEVICES_SECTION
 from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.devices.kinds import KINDS
@@ -110,7 +109,7 @@ SECTION_DESCRIPTIONS = {
 }
 
 
-def json_schema() -> dict[str, Any]:
+def json_schema() -> JsonSchema:
     """Return the JSON Schema of a bowl file, draft 7.
 
     A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units`` and
@@ -187,17 +186,17 @@ def write_beside(path: str | PathLike[str]) -> Path:
     return place
 
 
-def _device_form(kind: type[Device]) -> dict[str, Any]:
+def _device_form(kind: type[Device]) -> JsonSchema:
     """The schema of one kind of device."""
     return {"description": f"{kind.trade.meaning}. Example: {kind.trade.example}", **kind.trade.form}
 
 
-def _value(key: Key) -> dict[str, Any]:
+def _value(key: Key) -> JsonSchema:
     """The schema of one key."""
-    part: dict[str, Any] = {"x-dimension": key.dimension}
+    part: JsonSchema = {"x-dimension": key.dimension}
     if key.choices:
         meaning = f"{key.meaning}. One of {', '.join(key.choices)}. Default: {key.default}."
-        form: dict[str, Any] = {"type": "string", "enum": list(key.choices)}
+        form: JsonSchema = {"type": "string", "enum": list(key.choices)}
         part |= {"x-lowest": key.choices[0], "x-highest": key.choices[-1], "x-units": []}
         return {"description": meaning, **form, **part, "default": key.default}
     follows = key.default in BY_NAME

@@ -19,6 +19,7 @@ from feederscrew.base.columns import Column
 from feederscrew.base.documents import Entry, Node
 from feederscrew.base.errors import ArgumentError, ConfigError, FeederError
 from feederscrew.base.geometry.grids import GridAxis
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl import device_list as devices
 from feederscrew.bowl import friction_table, schema, verified
 from feederscrew.bowl.devices.base import Device
@@ -166,7 +167,7 @@ def adjust(bowl: Bowl, overrides: Iterable[str]) -> Bowl:
             faults.append(ArgumentError(setting.where, what, "give it to read_bowl"))
             continue
         changed = replace(holder, **{word: setting.value if setting.key.choices else setting.size})
-        fields: dict[str, Any] = {section: changed}
+        fields: Keywords = {section: changed}
         bowl = replace(bowl, **fields) if section else changed
     if bowl.friction.kinetic > bowl.friction.static:
         what = f"friction.kinetic {bowl.friction.kinetic:g} is above friction.static {bowl.friction.static:g}"
@@ -251,7 +252,7 @@ def record(settings: Sequence[Setting]) -> Bowl:
     fields = {s.key.field: s.value if s.key.choices else s.size for s in keyed}
     kept = [s for s in keyed if s.is_own or s.where == FROM_LINING]
     fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and s not in kept}
-    sections: dict[str, dict[str, Any]] = {name: {} for name in RECORDS}
+    sections: dict[str, Keywords] = {name: {} for name in RECORDS}
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
         sections.setdefault(section, {})[word] = value

@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew.base import units
 from feederscrew.base.errors import FeederError
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl.friction_table import FAMILIES, LININGS
 from feederscrew.bowl.record import Machine, Unbalance
 
@@ -387,7 +388,7 @@ CENTRE = UNBALANCE_NAMES[:3]
 UNBALANCE_TOLERANCE = 1e-9  # of what is rounded in a file
 
 
-def with_unbalance(values: Mapping[str, Any], hand: str) -> dict[str, Any]:
+def with_unbalance(values: Mapping[str, Any], hand: str) -> Keywords:
     """Return the fields of a machine, with its unbalance in place of the keys that say it.
 
     A real body has second moments about its centre that are not below 0. So the tensor of the second moments,

@@ -11,6 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.arrivals.entry import Shares, the_shares
 from feederscrew.base import check, units
 from feederscrew.base.errors import ArgumentError, FeederError
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl import arguments, schema
 from feederscrew.bowl.arguments import Quantity, former_keywords
 from feederscrew.bowl.device_list import DEVICES_SECTION
@@ -75,7 +76,7 @@ class DesignOptions(TypedDict, total=False):
     progress: Callable[[str], None] | None
 
 
-def _keep_keys(given: dict[str, Any], kept_keys: Collection[str]) -> None:
+def _keep_keys(given: Keywords, kept_keys: Collection[str]) -> None:
     bowl = arguments.a_bowl(given.get("bowl") or bowls.default())
     own = {setting.key.name: setting.text for setting in bowl.settings if setting.key.name in kept_keys}
     given["bowl"] = bowl.with_values(own)

@@ -799,7 +799,7 @@ def _screen(search: Search, candidate: Candidate) -> Candidate:
         raise KeyboardInterrupt
     if robust.held == robust.draws:
         return candidate
-    attempt = replace(candidate.attempt, faults=() if robust.worst is None else (robust.worst,))
+    attempt = replace(candidate.attempt, faults=() if robust.main_fault is None else (robust.main_fault,))
     search.state.attempts[-1] = attempt
     return replace(candidate, attempt=attempt, robust=robust)
 

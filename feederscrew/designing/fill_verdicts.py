@@ -86,19 +86,42 @@ def _is_pure(right: int, left: int) -> bool:
     return right > 0 and right >= PURE * left and evidence.share_at_least(right, left) > SHOWN_PURITY
 
 
+def sequential_test(queue: FilledQueue) -> FillState:
+    """Return what the sequential test says of the purity of a fill.
+
+    It compares GOOD_PURITY p with SHOWN_PURITY q by the logarithm of their likelihood ratio,
+    L = r ln(p / q) + w ln((1 - p) / (1 - q)), of r right parts and w wrong ones. A fill holds at
+    L >= ln(1 / HOLDS_IN_ERROR), and is refused at L <= -ln(1 / REFUSED_IN_ERROR).
+
+    Parameters
+    ----------
+    queue : FilledQueue
+
+    Returns
+    -------
+    FillState
+        Open between the two.
+
+    References
+    ----------
+    A. Wald, "Sequential tests of statistical hypotheses", Ann. Math. Statist. 16, 117-186, 1945, eq. (3.26)
+    and sec. 5.2.
+    """
+    likelier = evidence.log_likelihood_ratio(queue.right, queue.left, GOOD_PURITY, SHOWN_PURITY)
+    if likelier <= math.log(REFUSED_IN_ERROR):
+        return FillState.REFUSED
+    return FillState.OPEN if likelier < -math.log(HOLDS_IN_ERROR) else FillState.HOLDS
+
+
 def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillState:
     """Return what the queue at a fill has shown.
 
     It holds where nothing has jammed, the lower end of its rate is the least that is asked for, at least
     ``PURE`` of what left is right, the lower bound of that share (one-sided, 95 %) is above ``SHOWN_PURITY``,
-    and the sequential test below says so too. It is refused where a part has jammed; where the upper end of
+    and the sequential test says so too. It is refused where a part has jammed; where the upper end of
     the rate is less; where the upper bound of the purity (one-sided, ``REFUSED_CONFIDENCE``) is below
     ``PURE``; where the sequential test refuses it; and where so many parts were wrong that it would not hold
     even if all others until the end were right.
-
-    The sequential test compares GOOD_PURITY p with SHOWN_PURITY q by the logarithm of their likelihood ratio,
-    L = r ln(p / q) + w ln((1 - p) / (1 - q)), of r right parts and w wrong ones. It lets a fill hold at
-    L >= ln(1 / HOLDS_IN_ERROR), and refuses it at L <= -ln(1 / REFUSED_IN_ERROR).
 
     Parameters
     ----------
@@ -112,9 +135,9 @@ def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillSta
     -------
     FillState
         However often a fill is looked at, one that is 97 % pure or less holds in 15 % of the runs at most
-        (in 13 % of exact counts, one that is 96 % pure in 3 %), and L refuses one that is 99 % pure or more
-        in 2 % at most. This is so of parts that are wrong by chance, each by itself: where one wrong part
-        brings others, their runs are longer than that. The rate's ends are those of one look.
+        (in 13 % of exact counts, one that is 96 % pure in 3 %), and the sequential test refuses one that is
+        99 % pure or more in 2 % at most. This is so of parts that are wrong by chance, each by itself: where
+        one wrong part brings others, their runs are longer than that. The rate's ends are those of one look.
 
     References
     ----------
@@ -129,13 +152,13 @@ def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillSta
     wrong = queue.left - queue.right
     if queue.left and evidence.share_at_most(queue.right, queue.left, REFUSED_CONFIDENCE) < PURE:
         return FillState.REFUSED
-    likelier = evidence.log_likelihood_ratio(queue.right, queue.left, GOOD_PURITY, SHOWN_PURITY)
-    if likelier <= math.log(REFUSED_IN_ERROR):
+    test = sequential_test(queue)
+    if test is FillState.REFUSED:
         return FillState.REFUSED
     coming = int(queue.left * max(longest / max(queue.seconds, 1e-300) - 1.0, 0.0))
     if wrong and not _is_pure(queue.right + coming, queue.left + coming):
         return FillState.REFUSED
-    if queue.seconds < 0.99 * FIRST_LOOK_S or likelier < -math.log(HOLDS_IN_ERROR):
+    if queue.seconds < 0.99 * FIRST_LOOK_S or test is FillState.OPEN:
         return FillState.OPEN
     return FillState.HOLDS if shows_rate(queue, least_rate) and shows_purity(queue) else FillState.OPEN
 

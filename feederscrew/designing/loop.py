@@ -297,7 +297,7 @@ def _change_by_proof(
         state.reserve *= min(lacking, policy.slow_reserve_limit)
         return _faster(search, candidate)
     elif study.proof.robust.share < DRAWS_HELD:
-        worst = study.proof.robust.worst
+        worst = study.proof.robust.main_fault
         if worst is not None and worst.kind is FaultKind.LOST and worst.is_stopped:
             # what is wanted gets stuck: a drive may be too slow
             state.min_speed = policy.faster * calm_drive.speed(candidate.bowl)

@@ -305,7 +305,7 @@ def _by_motion(study: DesignStudy) -> bool:
     impure = bool(study.proof.queues) and (bool(study.proof.jams) or not study.proof.purity[0] >= PURE)
     hops = study.bowl is not None and hop(study.bowl).height > 0.0
     denied = study.proof.robust.share < DRAWS_HELD and hops
-    worst = study.proof.robust.worst
+    worst = study.proof.robust.main_fault
     return impure or denied or (worst is not None and worst.kind is FaultKind.LOST)
 
 

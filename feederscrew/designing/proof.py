@@ -28,14 +28,14 @@ class RobustRun:
 
     draws: int
     held: int
-    worst: Fault | None = None  # what went wrong most often; None where nothing did
+    main_fault: Fault | None = None  # what went wrong most often; None where nothing did
     slowest: float = 0.0  # [m/s] velocity of the slowest draw; 0 of none
     partial: bool = False
 
     @property
-    def worst_text(self) -> str:
+    def main_fault_text(self) -> str:
         """Return the most frequent fault in words, and in how many draws it came; '' without any."""
-        return "" if self.worst is None else texts.counted_fault_text(self.worst)
+        return "" if self.main_fault is None else texts.counted_fault_text(self.main_fault)
 
     @property
     def share(self) -> float:
@@ -46,7 +46,7 @@ class RobustRun:
 ROBUST_COLUMNS: tuple[Column[RobustRun], ...] = (
     Column("draws", lambda robust: robust.draws),
     Column("held", lambda robust: robust.held),
-    Column("worst", lambda robust: robust.worst_text),
+    Column("worst", lambda robust: robust.main_fault_text),
 )
 
 
@@ -81,7 +81,7 @@ class Proof:
         return min(queue.rate for queue in self.queues), min(lows), min(highs)
 
     @property
-    def worst(self) -> float:
+    def delivered_at_worst_friction(self) -> float:
         """Wanted parts [1/s] of the worst fill at the worst friction: its rate goes as the velocity."""
         return self.delivered[0] * self.slowed
 
@@ -114,12 +114,13 @@ class Proof:
 
     @property
     def jams_per_hour_high(self) -> float:
-        """Upper bound of the jams an hour, one-sided for 95 % confidence: 3 / T after T hours without one.
+        """Upper bound of the jams an hour of the worst fill, one-sided for 95 % confidence.
 
-        It holds for jams that come at one constant rate in all fills: their hours are added up. A design with
-        a jam at any fill does not hold.
+        It is 3 / T of a fill that was followed for T hours without one. Jams may come at a rate of their own
+        in each fill, so its hours alone count. Infinite without a queue.
         """
-        return HOUR * rate_at_most(self.jams, self.queue_seconds)
+        bounds = (HOUR * rate_at_most(queue.jams, queue.seconds) for queue in self.queues)
+        return max(bounds, default=np.inf)
 
     @property
     def left_instead(self) -> LeavingCounts:

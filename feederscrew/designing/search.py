@@ -370,7 +370,7 @@ class Candidate:
     @property
     def worst(self) -> Fault | None:
         """The fault that some draws show most often; None where it was not drawn, or all of them held."""
-        return None if self.robust is None else self.robust.worst
+        return None if self.robust is None else self.robust.main_fault
 
     def is_nearly_robust(self, policy: SearchPolicy) -> bool:
         """Tell whether all draws of its screening but one held.

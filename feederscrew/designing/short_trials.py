@@ -18,6 +18,7 @@ from feederscrew.base.arrays import Floats, Ints
 from feederscrew.base.errors import FeederError
 from feederscrew.base.geometry import vectors
 from feederscrew.base.running import RunSettings
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.devices.orientation_names import place_of
 from feederscrew.bowl.devices.trade import Action
@@ -136,7 +137,7 @@ class ShortTrial:
         """
         rows = list(dict.fromkeys([*self.rows.tolist(), *other.rows.tolist()]))
         place = {row: n for n, row in enumerate(rows)}
-        counts: dict[str, Any] = {name: np.zeros(len(rows), int) for name in COUNTED}
+        counts: Keywords = {name: np.zeros(len(rows), int) for name in COUNTED}
         ends: list[Counter[End]] = [Counter() for _ in rows]
         turns: list[Counter[End]] = [Counter() for _ in rows]
         for trial in (self, other):
@@ -432,7 +433,7 @@ def draw_bowl(bowl: Bowl, orientations: Sequence[Orientation], rng: np.random.Ge
 
 def _draw_device(device: Any, orientations: Sequence[Orientation], rng: np.random.Generator) -> Any:
     """A device whose every length is off by up to CUT."""
-    more: dict[str, Any] = {}
+    more: Keywords = {}
     if device.like and device.action is not Action.SENSE:  # an opening: a gate by an orientation and its play
         grown = _named_orientation(device, device.like[:2], orientations).view_ahead.buffer(device.like[2])
         device = replace(device, corners=_corners(grown), like=())

@@ -8,7 +8,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT, Status
-from feederscrew.designing.fill_verdicts import FillState, judge_fill, longest_time, shows_purity
+from feederscrew.designing.fill_verdicts import (
+    FillState,
+    judge_fill,
+    longest_time,
+    sequential_test,
+    shows_purity,
+)
 from feederscrew.designing.findings import Cause, FaultKind, Hooking
 from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
 
@@ -23,7 +29,9 @@ class Shortage(enum.Enum):
     RATE = enum.auto()  # the low end of the rate of a fill is too low
     PURITY = enum.auto()  # too little of what left at a fill is wanted
     PURITY_NOT_SHOWN = enum.auto()  # too few parts left at a fill to show that it is pure
-    FOLLOWED_BRIEFLY = enum.auto()  # a fill was followed for too short a time to decide
+    PURITY_REFUSED = enum.auto()  # by the sequential test of a fill
+    PURITY_OPEN = enum.auto()  # the sequential test of a fill has not decided
+    FOLLOWED_BRIEFLY = enum.auto()  # a fill was followed for less than ``FIRST_LOOK_S``
     NO_QUEUE = enum.auto()
     JAMS_OF_FILL = enum.auto()  # in a long proof
     JAMS = enum.auto()
@@ -56,6 +64,7 @@ class BlameGround(enum.Enum):
     FAULT_OF_DRAWS = enum.auto()
     LITTLE_LEAVES = enum.auto()  # nothing leaves as wanted at the worst fill
     FEW_PARTS = enum.auto()  # to show that it is pure
+    FOLLOWED_BRIEFLY = enum.auto()  # the time alone was too short
     SLOW = enum.auto()
 
 
@@ -102,7 +111,7 @@ def judge_design(study: "DesignStudy") -> DesignVerdict:
     status = Status.NO_MACHINE if tooling in HELD and study.machine_lacks else tooling
     machine = study.machine_lacks if study.bowl is not None else ()
     both = (*lacks, *(Shortfall(Shortage.MACHINE, machine=text) for text in machine))
-    return DesignVerdict(status, tooling, lacks, both, _blame(study, status), hooking)
+    return DesignVerdict(status, tooling, lacks, both, _blame(study, status, lacks), hooking)
 
 
 def _tooling_status(study: "DesignStudy", falls_short: bool, hooking: Hooking | None) -> Status:
@@ -164,43 +173,63 @@ def _lacks_of_fill(queue: FilledQueue, target: float) -> list[Shortfall]:
         lacks.append(Shortfall(Shortage.PURITY, queue))
     elif not shows_purity(queue):
         lacks.append(Shortfall(Shortage.PURITY_NOT_SHOWN, queue))
+    else:
+        match sequential_test(queue):
+            case FillState.REFUSED:
+                lacks.append(Shortfall(Shortage.PURITY_REFUSED, queue))
+            case FillState.OPEN:
+                lacks.append(Shortfall(Shortage.PURITY_OPEN, queue))
     if not (lacks or queue.jams):
         lacks.append(Shortfall(Shortage.FOLLOWED_BRIEFLY, queue))
     return lacks
 
 
-def _blame(study: "DesignStudy", status: Status) -> Blame:
-    """The cause why a design does not hold; unknown of one that holds or was stopped."""
+def _blame(study: "DesignStudy", status: Status, lacks: tuple[Shortfall, ...]) -> Blame:
+    """The cause why a design does not hold; unknown of one that holds or was stopped.
+
+    What its queues show comes first, then its draws, then its short trials.
+    """
     if status in (*HELD, Status.NOT_PROVED):
         return Blame()
     if status is Status.NO_MACHINE:
         return Blame(Cause.DRIVE, BlameGround.NO_MACHINE)
     proof = study.proof
-    if not proof.queues:
-        return _blame_of_trials(study)
+    if not proof.queues:  # draws that fail end a proof
+        return _blame_of_draws(study) or _blame_of_trials(study)
     if proof.jams:
         return Blame(Cause.DEVICE, BlameGround.JAMS)
     if not proof.delivered[0] > 0.0 and not any(queue.left for queue in proof.queues):
         return Blame(Cause.DRIVE, BlameGround.NOTHING_ARRIVES)
-    if not proof.purity[0] >= PURE:
+    kinds = {lack.kind for lack in lacks}
+    if not proof.purity[0] >= PURE or Shortage.PURITY_REFUSED in kinds:
         off = sum(count for pose, count in proof.left_instead if _is_heading_off(pose, study.wanted_aspect))
         if 2 * off >= sum(count for _, count in proof.left_instead) > 0:
             return Blame(Cause.DRIVE, BlameGround.HEADINGS_TURN)
         if study.devices:
             return Blame(Cause.DEVICE, BlameGround.OTHERS_PASS)
         return Blame(Cause.PART, BlameGround.NO_DEVICE)
-    fault = proof.robust.worst
-    if proof.robust.share < DRAWS_HELD and fault is not None:
-        if fault.is_at_device or (fault.kind is FaultKind.CARRIED and study.devices):
-            return Blame(Cause.DEVICE, BlameGround.FAULT_OF_DRAWS)
-        return Blame(
-            Cause.PART if fault.kind is FaultKind.CARRIED else Cause.DRIVE, BlameGround.FAULT_OF_DRAWS
-        )
+    if (drawn := _blame_of_draws(study)) is not None:
+        return drawn
     queue = proof.worst_fill
     if queue is None or not queue.right:
         return Blame(Cause.ARRIVAL, BlameGround.LITTLE_LEAVES)
-    is_fast = proof.delivered[1] >= RATE_KEPT * study.request.target
-    return Blame(Cause.ARRIVAL, BlameGround.FEW_PARTS if is_fast else BlameGround.SLOW)
+    if proof.delivered[1] < RATE_KEPT * study.request.target:
+        return Blame(Cause.ARRIVAL, BlameGround.SLOW)
+    if kinds == {Shortage.FOLLOWED_BRIEFLY}:
+        return Blame(Cause.UNKNOWN, BlameGround.FOLLOWED_BRIEFLY)
+    return Blame(Cause.ARRIVAL, BlameGround.FEW_PARTS)
+
+
+def _blame_of_draws(study: "DesignStudy") -> Blame | None:
+    """The blame taken from the fault that most draws show; None where enough of them sort."""
+    robust = study.proof.robust
+    fault = robust.main_fault
+    if fault is None or robust.share >= DRAWS_HELD:
+        return None
+    if fault.is_at_device or (fault.kind is FaultKind.CARRIED and study.devices):
+        return Blame(Cause.DEVICE, BlameGround.FAULT_OF_DRAWS)
+    carried = fault.kind is FaultKind.CARRIED
+    return Blame(Cause.PART if carried else Cause.DRIVE, BlameGround.FAULT_OF_DRAWS)
 
 
 def _blame_of_trials(study: "DesignStudy") -> Blame:

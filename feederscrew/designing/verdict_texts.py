@@ -6,6 +6,7 @@ from feederscrew.base.units import HOUR, MINUTE, counted
 from feederscrew.bowl.verified import HELD, PURE, RATE_KEPT, SHOWN_PURITY
 from feederscrew.designing import texts
 from feederscrew.designing.evidence import rate_at_most, share_at_least
+from feederscrew.designing.fill_verdicts import GOOD_PURITY
 from feederscrew.designing.verdict import Blame, BlameGround, Shortage, Shortfall
 from feederscrew.trials.fills import FilledQueue
 
@@ -53,11 +54,13 @@ def reasons_text(study: "DesignStudy") -> str:
 def reason_lines(study: "DesignStudy") -> tuple[str, ...]:
     """Return the same, a sentence each, none of them twice."""
     cause = study.verdict.blame.cause
-    if not cause:
+    if study.verdict.blame.ground is None:
         return ()
     sentence = blame_text(study, study.verdict.blame)
     differences = map(texts.difference_text, study.differences)
     lines = dict.fromkeys((*shortfall_texts(study), *differences))
+    if not cause:  # what it lacks says all that is known
+        return tuple(lines)
     # a cause that was said already is named alone
     named = f"the cause is the {cause}"
     return (*lines, f"{named}: {sentence}" if sentence and sentence not in lines else named)
@@ -93,9 +96,9 @@ def shortfall_text(study: "DesignStudy", lack: Shortfall) -> str:
         stood = texts.jammed_text(row for queue in proof.queues for row in queue.jammed)
         return f"{counted(proof.jams, 'jam')} in {proof.queue_seconds:.3g} s of queue{stood}"
     if lack.kind is Shortage.DRAWS:
-        worst = "" if proof.robust.worst is None else f": {proof.robust.worst_text}"
+        fault = "" if proof.robust.main_fault is None else f": {proof.robust.main_fault_text}"
         drawn = f"{proof.robust.held} of {proof.robust.draws}"
-        return f"{drawn} draws of part, friction and drive sort{worst}"
+        return f"{drawn} draws of part, friction and drive sort{fault}"
     return lack.machine
 
 
@@ -120,6 +123,13 @@ def _text_of_fill(study: "DesignStudy", kind: Shortage, queue: FilledQueue) -> s
                 f"{at} {queue.right} of {counted(queue.left, 'part')} left as wanted, which shows a purity "
                 f"of {shown:.3g} % (lower bound, 95 %, one-sided), and more than "
                 f"{100.0 * SHOWN_PURITY:.3g} % have to be shown"
+            )
+        case Shortage.PURITY_REFUSED | Shortage.PURITY_OPEN:
+            says = "refuses" if kind is Shortage.PURITY_REFUSED else "has not yet decided for"
+            return (
+                f"{at} {queue.right} of {counted(queue.left, 'part')} left as wanted: the sequential test "
+                f"{says} a purity of {100.0 * GOOD_PURITY:.3g} % against {100.0 * SHOWN_PURITY:.3g} %"
+                f"{_instead(study, queue)}"
             )
         case Shortage.JAMS_OF_FILL:
             shown, agreed = HOUR * rate_at_most(queue.jams, queue.seconds), HOUR * study.request.agreed_jams
@@ -185,17 +195,17 @@ def blame_text(study: "DesignStudy", blame: Blame) -> str:
         case BlameGround.NO_DEVICE:
             return "without a device nothing tells what is wanted from the rest"
         case BlameGround.FAULT_OF_DRAWS:
-            return proof.robust.worst_text
+            return proof.robust.main_fault_text
         case BlameGround.LITTLE_LEAVES:
             return "too little of what is wanted leaves its queues"
         case BlameGround.FEW_PARTS:
             return "too few parts left its queues to show that it is pure"
         case BlameGround.SLOW if (queue := proof.worst_fill) is not None:
             share, need = queue.right / queue.offered, study.request.target / queue.pace
+            other = f", or a part of which {100.0 * need:.3g} % come so" if need <= 1.0 else ""
             return (
                 f"at {queue.fill} fill {60.0 * queue.pace:.3g} parts a minute come along, and "
                 f"{100.0 * share:.3g} % of them leave as {study.wanted}: "
-                f"{60.0 * proof.delivered[1] / RATE_KEPT:.2g}/min would hold, or a part of which "
-                f"{100.0 * need:.3g} % come so"
+                f"{60.0 * proof.delivered[1] / RATE_KEPT:.2g}/min would hold{other}"
             )
     return ""

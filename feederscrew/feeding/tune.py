@@ -3,12 +3,12 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 from feederscrew.arrivals.entry import Shares, check_wanted, shares, the_shares
 from feederscrew.base import check
 from feederscrew.base.columns import Column, Frame, of_records
 from feederscrew.base.records import ReadableRecord
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import Path, Quantity, former_keywords
 from feederscrew.bowl.device_list import shank_remarks, unknown_aspects
@@ -83,7 +83,7 @@ class TuneStudy(ReadableRecord, view="rate.TUNE_VIEW"):
         return (*unknown, *shank_remarks(self.devices), *self.aspects.warnings)
 
 
-def _take_arriving(given: dict[str, Any], arriving: Callable[[Bowl], Shares] | None) -> None:
+def _take_arriving(given: Keywords, arriving: Callable[[Bowl], Shares] | None) -> None:
     given["aspect_shares"] = given.get("aspect_shares") or arriving
 
 

@@ -7,13 +7,13 @@ was tried.
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.base.columns import Column
 from feederscrew.base.errors import ArgumentError
+from feederscrew.base.signatures import Keywords
 from feederscrew.base.units import MM_S, MPA, factor, listed
 from feederscrew.bowl import schema
 from feederscrew.bowl.reading import Setting, default
@@ -76,7 +76,7 @@ def machine_for(bowl: Bowl, size: Size, user_words: Collection[str], *, exact: b
         extra = 1.0 + rules.tooling_mass
         around = 0.5 * floor * radius**2 + wall * radius**2 + 0.5 * track * (radius**2 + inside**2)
         mass, inertia = float(extra * (floor + wall + track)), float(extra * around)
-    guess: dict[str, Any] = {
+    guess: Keywords = {
         "bowl_mass": mass,
         "bowl_inertia": inertia,
         "base_mass": rules.base_mass * mass,
@@ -661,7 +661,7 @@ def _bowl(drive_unit: DriveUnit) -> Bowl:
     guess = machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
     # to two digits, as a list of machines has them
     names = ("bowl_mass", "bowl_inertia", "base_mass", "base_inertia")
-    masses: dict[str, Any] = {name: float(f"{getattr(guess, name):.2g}") for name in names}
+    masses: Keywords = {name: float(f"{getattr(guess, name):.2g}") for name in names}
     under = replace(guess, **masses)
     drive = replace(
         plain.drive,

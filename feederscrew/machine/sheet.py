@@ -14,6 +14,7 @@ from feederscrew.base.arrays import Floats
 from feederscrew.base.columns import Column, Frame, of_arrays, values
 from feederscrew.base.errors import FeederError
 from feederscrew.base.records import ReadableRecord
+from feederscrew.base.signatures import Keywords
 from feederscrew.base.version import __version__
 from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import Quantity, former_keywords
@@ -378,7 +379,7 @@ def size_machine(
     if aspect is not None:
         wanted = well_oriented.wanted(part, aspects, straight, aspect, heading, plain.devices)
     lying = sizing.find_lying(part, aspects, wanted)
-    counted: dict[str, Any] = {"rule": arguments.a_rule(rule, aspects), "gap": gap, "fill": fill}
+    counted: Keywords = {"rule": arguments.a_rule(rule, aspects), "gap": gap, "fill": fill}
     # the size: what the file says of the track is kept; a device that leads down may need a steeper one
     user_keys, own = drive_sizing.user_keys(settings, "track"), plain.track
     least = None
@@ -454,7 +455,7 @@ def size_machine(
     return replace(_sheet(driven, settings, size.depth, (search.bulk, PART), order), solid=body)
 
 
-def _read_path(given: dict[str, Any], path: object) -> None:
+def _read_path(given: Keywords, path: object) -> None:
     if path is not None:
         given["bowl"] = bowls.read(check.path("path", path))
 

@@ -11,7 +11,6 @@ the wall. The radius may be infinite: a straight wall.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from feederscrew.base.errors import FeederError
 from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.polygons import cross, inset, sides, turned
 from feederscrew.base.records import ReadableRecord
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl.record import Track
 from feederscrew.motion import sameness
 from feederscrew.resting.posture import Posture
@@ -342,7 +342,7 @@ def headings(posture: Posture, track: Track) -> Headings:
         "half_turns": _partners(shapes, lambda shape: -shape, halves),
         "mirrors": _partners(shapes, lambda shape: shape * [-1.0, 1.0], mirrored),
     }
-    frozen: dict[str, Any] = {name: check.frozen(array) for name, array in arrays.items()}
+    frozen: Keywords = {name: check.frozen(array) for name, array in arrays.items()}
     return on_track(Headings(aspect=posture.name, rounded=curved.rounded, **frozen), posture, track)
 
 

@@ -5,12 +5,12 @@ Source: the thesis, chapter 5.
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from feederscrew.base.arrays import Array, Bools, Floats, Reals
 from feederscrew.base.errors import FeederError
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.motion import floor_balance, limits, track_balance
 from feederscrew.motion.floor_balance import HOP, MOTION_STATES
@@ -139,7 +139,7 @@ def track_cells(posture: Posture, bowl: Bowl, heading: float | None = None) -> d
     columns["regime"] = np.full(shape, DOES_NOT_FIT)
     for place, here in _seats(posture, bowl, heading, shape):
 
-        def cells(fields: dict[str, Any], here: Bools = here) -> dict[str, Any]:
+        def cells(fields: Keywords, here: Bools = here) -> Keywords:
             return {name: np.broadcast_to(value, shape)[here] for name, value in fields.items()}
 
         picked = {s: replace(getattr(bowl, s), **cells(fields)) for s, fields in sections.items()}

@@ -8,7 +8,6 @@ Source: reciprocal screws; Coulomb's cones as a linear programme; docs/mechanics
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +17,7 @@ from feederscrew.base.columns import Column
 from feederscrew.base.geometry.polygons import cross, sides
 from feederscrew.base.geometry.vectors import ratio
 from feederscrew.base.heavy import heavy
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl.record import Bowl
 from feederscrew.motion import track_balance
 from feederscrew.motion.floor_balance import HOP
@@ -137,7 +137,7 @@ def _openings(seat: Seat, bowl: Bowl, reversal: str, phase: float) -> list[Openi
     on_floor = np.array([0.0, np.nan_to_num(now.offset[1]), -seat.height])
     # friction over normal force and the line of the traction, as the part slides or sticks
     wall = ratio(now.wall_friction, now.walls, 0.0)
-    at_work: dict[str, Any] = {} if now.state == HOP else {"wall": wall}
+    at_work: Keywords = {} if now.state == HOP else {"wall": wall}
     if now.state != HOP and now.slides:
         at_work["floor"] = float(now.traction / now.normal_force)
     elif now.state != HOP:

@@ -1,11 +1,10 @@
 """Files of ``feeder advise``: the grade of a part, its reasons, and its changes before and after."""
 
 import re
-from typing import Any
 
 import numpy as np
 
-from feederscrew.base.columns import Column, Frame, of_records, values
+from feederscrew.base.columns import Column, Document, Frame, of_records, values
 from feederscrew.base.units import MINUTE
 from feederscrew.designing.advice import CLASS_WORDS, AdviceStudy, ChangedPart, Reason, Way
 from feederscrew.output import offers as offer
@@ -71,7 +70,7 @@ def summary(study: AdviceStudy) -> Frame:
     return of_records(CHANGE_COLUMNS, told) if told else of_records(REASON_COLUMNS, study.reasons)
 
 
-def document(study: AdviceStudy) -> dict[str, Any]:
+def document(study: AdviceStudy) -> Document:
     """Return an AdviceStudy as the JSON document."""
     return {
         "part": study.part.name,

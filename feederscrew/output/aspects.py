@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew.arrivals.aspects_study import AspectsStudy
 from feederscrew.base.arrays import Array, Floats, Points, Vector
-from feederscrew.base.columns import Frame
+from feederscrew.base.columns import Document, Frame
 from feederscrew.base.documents import hint, nearest
 from feederscrew.base.errors import ArgumentError
 from feederscrew.base.heavy import heavy
@@ -103,7 +103,7 @@ def check_columns(study: AspectsStudy, choice: str) -> None:
     select_columns(dropped.with_headings({DROP_COLUMNS[0]: "drop"}), choice)
 
 
-def document(study: AspectsStudy) -> dict[str, Any]:
+def document(study: AspectsStudy) -> Document:
     """Return all of a part and its aspects as the JSON document.
 
     Parameters
@@ -354,9 +354,9 @@ def aspect_views(
 def _caption(axes: "style.Axes", aspects: Aspects, row: int, answer: Recommended | None) -> None:
     """Name, count, lying of a class; the recommended answer with its interval, then every rule, smaller."""
     what = f"{aspects.lies[row]} ×{aspects.faces[row]}" if aspects.stable[row] else "not stable"
-    look: dict[str, Any] = {"color": style.INK, "va": "center"}
+    look: style.Look = {"color": style.INK, "va": "center"}
     name = axes.text(30, -0.6 * LINE_PX, aspects.names[row], fontsize=11, fontweight="bold", **look)
-    after_name: dict[str, Any] = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}
+    after_name: style.Look = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}
     axes.annotate(what, (1.0, 0.5), fontsize=8, **after_name, **look)
     if not aspects.stable[row]:
         return
@@ -514,7 +514,7 @@ def _arrows(
     curves = {pair: _curve(places[pair[0]], places[pair[1]], np.linspace(0.0, 1.0, 60)) for pair in lifts}
     bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-    look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
+    look: style.Look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
     for pair, lift in sorted(lifts.items(), key=lambda item: -item[1]):  # the easy ones on top
         start, end = (places[k] for k in pair)
         easiest, text = lift <= EQUAL_LIFT * lowest[pair[0]], f"{lift / MM:.3g}"

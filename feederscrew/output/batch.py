@@ -3,10 +3,10 @@
 import io
 import textwrap
 from collections.abc import Sequence
-from typing import Any
 
 from feederscrew.base.arrays import Array
 from feederscrew.base.heavy import heavy
+from feederscrew.base.signatures import Keywords
 from feederscrew.output import style
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
@@ -55,7 +55,7 @@ def png_of_pixels(pixels: Array) -> bytes:
     -------
     bytes
     """
-    buffer, metadata = io.BytesIO(), dict[str, Any](Software=None)  # None: no such entry
+    buffer, metadata = io.BytesIO(), Keywords(Software=None)  # None: no such entry
     mpl_image.imsave(buffer, pixels, format="png", metadata=metadata)
     return buffer.getvalue()
 

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from feederscrew.base.columns import Document
 from feederscrew.base.units import MM, MM_S
 from feederscrew.bowl.devices.pneumatics import SEEN_BY
 from feederscrew.bowl.verified import Verified
@@ -142,7 +142,7 @@ def _inline_rows(inline: InlineTrack) -> Iterator[tuple[str, str]]:
         yield "does not do", inline.lacks
 
 
-def document(beside: Beside | None) -> dict[str, Any]:
+def document(beside: Beside | None) -> Document:
     """Return the same in numbers, for the JSON document; empty where nothing is known."""
     if beside is None:
         return {}
@@ -154,7 +154,7 @@ def document(beside: Beside | None) -> dict[str, Any]:
     }
 
 
-def _vision_document(station: VisionStation, start: float) -> dict[str, Any]:
+def _vision_document(station: VisionStation, start: float) -> Document:
     lens = station.lens
     optics = None
     if lens is not None:
@@ -200,7 +200,7 @@ def _vision_document(station: VisionStation, start: float) -> dict[str, Any]:
     }
 
 
-def _inline_document(inline: InlineTrack) -> dict[str, Any]:
+def _inline_document(inline: InlineTrack) -> Document:
     lengths = ("gap", "bridged", "step", "height", "width", "cover", "length", "full_at", "low_at")
     values = {f"{name}_mm": getattr(inline, name) / MM for name in lengths}
     finite = {name: value if math.isfinite(value) else None for name, value in values.items()}

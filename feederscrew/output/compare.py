@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from feederscrew.base.arrays import Floats
-from feederscrew.base.columns import Frame, of_arrays, of_records, values
+from feederscrew.base.columns import Document, Frame, of_arrays, of_records, values
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM_S, counted
 from feederscrew.feeding import compare as studies
@@ -46,7 +46,7 @@ def offers(study: studies.CompareStudy | studies.FeedingStudy) -> list[offer.Off
 
 def printout(
     study: studies.CompareStudy | studies.FeedingStudy, format: str
-) -> tuple[Frame, dict[str, Any], Sequence[str]]:
+) -> tuple[Frame, Document, Sequence[str]]:
     """Return what is printed of a CompareStudy or a FeedingStudy: table, document, columns to be hidden.
 
     With the ``format`` 'table' each measured profile stands with the rules, the nearest one first; else all
@@ -77,7 +77,7 @@ def printout(
 FEEDING_FILE = "devices.csv"
 
 
-def _feeding_document(study: studies.FeedingStudy) -> dict[str, Any]:
+def _feeding_document(study: studies.FeedingStudy) -> Document:
     return {
         "part": study.part.name,
         "file": study.measured.source,
@@ -165,7 +165,7 @@ def _set_label(item: studies.SetStudy) -> str:
     return stem if len(item.measured.profiles) == 1 else f"{stem}, {item.profile.name}"
 
 
-def sets_document(study: studies.SetsStudy) -> dict[str, Any]:
+def sets_document(study: studies.SetsStudy) -> Document:
     """Return many measured sets and every answer for them as one JSON document."""
     sets = [
         {
@@ -339,7 +339,7 @@ def fit_velocities(study: studies.BowlFit) -> Frame:
     return of_arrays(studies.FIT_VELOCITY_COLUMNS, study)
 
 
-def fit_document(study: studies.BowlFit) -> dict[str, Any]:
+def fit_document(study: studies.BowlFit) -> Document:
     """Return a BowlFit as the JSON document; its ``remark`` says whether it explains the velocities."""
     before, after = (
         float(np.sqrt(np.mean((velocities - study.measured) ** 2))) / MM_S
@@ -374,7 +374,7 @@ def exponents(study: studies.CalibrateStudy) -> Frame:
     return of_records(studies.FIT_COLUMNS, study.fits)
 
 
-def calibration_document(study: studies.CalibrateStudy) -> dict[str, Any]:
+def calibration_document(study: studies.CalibrateStudy) -> Document:
     """Return a CalibrateStudy as one JSON document."""
     fitted = {fit.name: dict(zip(study.aspects.names, fit.calibration.shares)) for fit in study.fits}
     return {"part": study.part.name, "calibrations": exponents(study), "p_surface": fitted}

@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.base.arrays import Array, Bools, Floats
-from feederscrew.base.columns import Frame, of_arrays, quantities, values
+from feederscrew.base.columns import Document, Frame, of_arrays, quantities, values
 from feederscrew.base.geometry.grids import Grid
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM_S, factor
@@ -43,7 +43,7 @@ UNSTEADY_WORDS = {
 }
 
 
-def document(study: ConveyStudy) -> dict[str, Any]:
+def document(study: ConveyStudy) -> Document:
     """Return conveying at one operating point as the JSON document, ``convey.json``.
 
     Parameters
@@ -57,7 +57,7 @@ def document(study: ConveyStudy) -> dict[str, Any]:
     """
     conveying = study.answer
 
-    def change_entry(pair: Neighbours, change: float) -> dict[str, Any]:
+    def change_entry(pair: Neighbours, change: float) -> Document:
         return {
             "change_percent": 100.0 * change,
             **values(NEIGHBOUR_COLUMNS, pair),
@@ -75,7 +75,7 @@ def document(study: ConveyStudy) -> dict[str, Any]:
     }
 
 
-def restitution_entry(bowl: Bowl, neighbours: Neighbours | None) -> dict[str, Any] | None:
+def restitution_entry(bowl: Bowl, neighbours: Neighbours | None) -> Document | None:
     """Return a document's entry on the spread of restitution.
 
     Parameters
@@ -211,7 +211,7 @@ def cell_remarks(status: Array, several: Bools) -> list[str]:
     return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
 
 
-def phase_document(study: ConveyPhase) -> dict[str, Any]:
+def phase_document(study: ConveyPhase) -> Document:
     """Return the best phase of a drive as the JSON document.
 
     Parameters

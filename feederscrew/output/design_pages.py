@@ -8,7 +8,7 @@ from itertools import zip_longest
 from typing import Any
 
 from feederscrew.base import units
-from feederscrew.base.columns import ColumnHead, Frame, share_head
+from feederscrew.base.columns import ColumnHead, Document, Frame, share_head
 from feederscrew.bowl.arguments import settings_of
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting
@@ -174,8 +174,8 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
                 "What turns, leaves the track or rolls back changes the mix that arrives."
             )
             proof += [ridden, Table(designs.long_ride(study.proof.long_ride.rows()))]
-        worst = f"; most often: {study.proof.robust.worst_text}" if study.proof.robust.worst else ""
-        draws = Text(f"{study.proof.robust.held} of {study.proof.robust.draws} draws sort{worst}.")
+        most = f"; most often: {study.proof.robust.main_fault_text}" if study.proof.robust.main_fault else ""
+        draws = Text(f"{study.proof.robust.held} of {study.proof.robust.draws} draws sort{most}.")
         proof.append(Table(queues_table(d["queues"])))
         if d["differences"]:
             proof.append(Notes(tuple(item["text"] for item in d["differences"]), loud=True))
@@ -409,7 +409,7 @@ def offers(study: DesignStudy, settings: Sequence[Setting], build: Built | None 
     return [*files, offer.text("design.html", page, study, build, files)]
 
 
-def _solid_document(drawn: MachineSheet, trial: Verified | None) -> dict[str, Any]:
+def _solid_document(drawn: MachineSheet, trial: Verified | None) -> Document:
     """The bowl as a solid, and what stands beside it."""
     own = {} if drawn.solid is None else solidbowl.document(drawn.solid)
     return own | beside_bowl.document(beside_bowl.find_beside(drawn, trial))
@@ -427,7 +427,7 @@ SWAPPED = "swapped"  # by hand
 Change = tuple[str, str, tuple[str, ...]]  # what, how it is changed, and a text for each part
 
 
-def family_document(study: FamilyStudy) -> dict[str, Any]:
+def family_document(study: FamilyStudy) -> Document:
     """Return the design of a family as the JSON document, ``family.json``.
 
     Parameters

@@ -13,7 +13,7 @@ from feederscrew import __version__
 from feederscrew import bowl as bowls
 from feederscrew.base import units
 from feederscrew.base.arrays import Floats, Ints
-from feederscrew.base.columns import ColumnHead, Frame, heads, of_records, values
+from feederscrew.base.columns import ColumnHead, Document, Frame, heads, of_records, values
 from feederscrew.base.errors import FeederError
 from feederscrew.base.geometry import vectors
 from feederscrew.base.heavy import heavy
@@ -107,7 +107,7 @@ LOWER_BOUND, UPPER_BOUND = (f"{side} bound (95 %, one-sided)" for side in ("lowe
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
 
 
-def document(study: DesignStudy) -> dict[str, Any]:
+def document(study: DesignStudy) -> Document:
     """Return a design as the JSON document, ``design.json``.
 
     Parameters
@@ -123,13 +123,14 @@ def document(study: DesignStudy) -> dict[str, Any]:
     ridden = () if study.proof.long_ride is None else study.proof.long_ride.rows()
     if is_proved:  # the figures that its queues have shown
         (purity, purity_low), high = study.proof.purity, study.proof.jams_per_hour_high
-        rates = (end / PER_MINUTE for end in (*study.proof.delivered, study.proof.worst))
+        ends = (*study.proof.delivered, study.proof.delivered_at_worst_friction)
+        rates = (end / PER_MINUTE for end in ends)
         figures = (*rates, None if np.isnan(purity) else purity, purity_low, study.proof.jams)
         proof = dict(zip(PROOF, (*figures, high if np.isfinite(high) else None), strict=True))
     facts = machine_facts(study)
     findings = []  # of two parts how the second lies to the first, in the axes of the file
     for risk in study.risks:
-        pair: dict[str, Any] | None = None
+        pair: Document | None = None
         if risk.pair is not None and risk.pair.turn is not None and risk.pair.place is not None:
             pair = {"turn": risk.pair.turn.tolist(), "place_mm": (risk.pair.place / MM).tolist()}
         elif risk.pair is not None:
@@ -184,7 +185,7 @@ def document(study: DesignStudy) -> dict[str, Any]:
     }
 
 
-def _quick(study: DesignStudy) -> dict[str, Any] | None:
+def _quick(study: DesignStudy) -> Document | None:
     """Return what a quick look says of the rate as a dict; None of a design that was to be proved."""
     if study.quick is None:
         return None
@@ -201,7 +202,7 @@ def _quick_rows(quick: Mapping[str, Any]) -> list[tuple[str, str]]:
     return rows
 
 
-def _condition(study: DesignStudy) -> dict[str, Any] | None:
+def _condition(study: DesignStudy) -> Document | None:
     """Return the condition under which a design holds as a dict; None of one that holds without."""
     if not study.condition or study.verdict.hooking is None:
         return None
@@ -213,7 +214,7 @@ def _condition(study: DesignStudy) -> dict[str, Any] | None:
     }
 
 
-def _alternative(option: Alternative) -> dict[str, Any]:
+def _alternative(option: Alternative) -> Document:
     needs = [*NEEDS[option.cost_class]]  # beside steel
     if option.sees:
         needs = [_cameras(option.sees), units.counted(len(option.sees), "valve"), *NEEDS[3][2:]]
@@ -289,7 +290,7 @@ def long_ride(rows: Sequence[RiddenOrientation]) -> Frame:
     )
 
 
-def nearest(study: DesignStudy) -> dict[str, Any] | None:
+def nearest(study: DesignStudy) -> Document | None:
     """Return the nearest that holds as a dict.
 
     Parameters
@@ -318,7 +319,7 @@ def nearest(study: DesignStudy) -> dict[str, Any] | None:
     }
 
 
-def machine_facts(study: DesignStudy) -> dict[str, Any] | None:
+def machine_facts(study: DesignStudy) -> Document | None:
     """Return the machine that a design asks for as a dict.
 
     Parameters
@@ -805,7 +806,7 @@ def accepted_summary(lines: Sequence[SheetLine]) -> Frame:
     return Frame.of_cells(names, rows)
 
 
-def accepted_document(lines: Sequence[SheetLine]) -> dict[str, Any]:
+def accepted_document(lines: Sequence[SheetLine]) -> Document:
     """Return the sheet as the JSON document.
 
     Parameters

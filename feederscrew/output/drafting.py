@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew.base import dxf
 from feederscrew.base.arrays import Floats
+from feederscrew.base.signatures import Keywords
 from feederscrew.output import marking, style
 
 A3 = 420.0, 297.0  # [mm]
@@ -453,7 +454,7 @@ class Drawing:
         x, y = np.asarray(place, float) + self.origin
         return float(x), float(y)
 
-    def _look(self, layer: str) -> dict[str, Any]:
+    def _look(self, layer: str) -> Keywords:
         if layer not in self.document.layers:
             pen = self._pen(layer)
             look = {"color": pen.colour, "linetype": pen.dashes or "CONTINUOUS"}
@@ -492,7 +493,7 @@ class Drawing:
     def _pen(self, layer: str) -> Pen:
         return self.pens.get(layer) or self.pens[layer.removeprefix("BENT_").partition("_")[0]]  # BENT_CUT_2
 
-    def _line_look(self, layer: str, plural: str = "") -> dict[str, Any]:
+    def _line_look(self, layer: str, plural: str = "") -> style.Look:
         """The width and dashes of a layer's lines, as matplotlib takes them."""
         pen = self._pen(layer)
         dashes = [size / pen.width for size in LINE_TYPES[pen.dashes][1]] if pen.dashes else ()

@@ -1,7 +1,6 @@
 """Files of ``feeder drop``: counts of the test, traced drops, and the tosses of ``--launches``."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from feederscrew.arrivals.drop import (
 from feederscrew.arrivals.drop_test import DropTrace, chosen
 from feederscrew.arrivals.toss_runs import FACE_NAMES
 from feederscrew.base.arrays import Floats, Ints, Points
-from feederscrew.base.columns import values
+from feederscrew.base.columns import Document, values
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM
 from feederscrew.motion.conveying import RESTITUTION_DOUBT
@@ -34,7 +33,7 @@ ndimage = heavy("scipy.ndimage")
 shading = heavy("feederscrew.output.shading")
 
 
-def document(study: DropStudy) -> dict[str, Any]:
+def document(study: DropStudy) -> Document:
     """Return a drop test as one JSON document.
 
     Parameters
@@ -167,7 +166,7 @@ def curve(axes: "style.Axes", trace: DropTrace, aspects: Aspects, rows: Ints) ->
     # heights to compare with: of the aspect it ends on, of the way out of that, of the others
     plain = {"color": style.FAINT, "linewidth": 0.9, "zorder": 0}
     strong = {"color": style.INK, "linewidth": 0.9, "zorder": 1}
-    lines: list[tuple[float, str, dict[str, Any]]] = []
+    lines: list[tuple[float, str, style.Look]] = []
     if trace.row >= 0:
         height, name = aspects.heights[trace.row], aspects.names[trace.row]
         lines.append((height / MM, f"rests on {name}", strong))
@@ -186,7 +185,7 @@ def curve(axes: "style.Axes", trace: DropTrace, aspects: Aspects, rows: Ints) ->
     axes.yaxis.set_minor_locator(mpl_ticker.LogLocator(subs=()))
     # their names at the right, from the first on; one without room below the legend's lines is left out
     (low, high), taken = np.log(axes.get_ylim()), [0.96, 0.87]
-    letters: dict[str, Any] = {"fontsize": 7, "color": style.INK}
+    letters: style.Look = {"fontsize": 7, "color": style.INK}
     for height, text, look in lines:
         axes.axhline(height, **look)
         place = (np.log(height) - low) / (high - low)
@@ -199,14 +198,14 @@ def curve(axes: "style.Axes", trace: DropTrace, aspects: Aspects, rows: Ints) ->
     if trace.row >= 0:
         certain, words = 1e3 * trace.decided, f"from here {aspects.names[trace.row]} is certain"
         axes.axvline(certain, color=style.INK, linewidth=0.8, linestyle=(0, (1, 2)))
-        above: dict[str, Any] = {"va": "bottom", "ha": "center", "transform": axes.get_xaxis_transform()}
+        above: style.Look = {"va": "bottom", "ha": "center", "transform": axes.get_xaxis_transform()}
         axes.text(certain, 1.01, words, **above, **letters)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), fontsize=7, frameon=False, borderpad=0.0)
 
 
 def _badge(axes: "style.Axes", x: float, y: float, number: int) -> None:
     disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
-    look: dict[str, Any] = {"ha": "center", "va": "center", "color": style.INK, "bbox": disc, "zorder": 6}
+    look: style.Look = {"ha": "center", "va": "center", "color": style.INK, "bbox": disc, "zorder": 6}
     axes.text(x, y, str(number), fontsize=6, clip_on=False, **look)
 
 
@@ -223,10 +222,10 @@ STILL_MARGIN = 1.12  # of a still over the part in it
 MAX_ZOOM_OUT = 1.7  # a part that flies high is drawn so much smaller; higher still, its floor is cut off
 GRID_REACH = 1.25  # [size] how far behind and before the part the grid is drawn
 PIECES = 160  # points of a line, to see which are hidden
-GRID: dict[str, Any] = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
-PAST: dict[str, Any] = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
-AHEAD: dict[str, Any] = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
-FOOT: dict[str, Any] = {"color": style.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 4}
+GRID: style.Look = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
+PAST: style.Look = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
+AHEAD: style.Look = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
+FOOT: style.Look = {"color": style.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 4}
 
 
 def strip(part: Part, aspects: Aspects, trace: DropTrace, title: str) -> "style.Figure":
@@ -349,7 +348,7 @@ def still_caption(trace: DropTrace, row: int, names: Sequence[str], gap: float) 
 # --- Tosses: each launch of a file, followed from its own state ---
 
 
-def toss_document(study: TossStudy) -> dict[str, Any]:
+def toss_document(study: TossStudy) -> Document:
     """Return the tosses as one JSON document.
 
     Parameters

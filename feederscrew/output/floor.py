@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew.arrivals.floor import FLOOR_COLUMNS, FloorStudy
 from feederscrew.base.arrays import Array, Bools, Floats, Ints, Points, Vector
-from feederscrew.base.columns import Frame, quantities, values
+from feederscrew.base.columns import Cells, Document, Frame, quantities, values
 from feederscrew.base.geometry.grids import Grid
 from feederscrew.base.geometry.polygons import centroid, turned
 from feederscrew.base.heavy import heavy
@@ -73,7 +73,7 @@ FLOOR_LABELS = {  # what people read
 XY = Sequence[float] | Vector  # (2,)
 
 
-def instant(motion: Any, posture: Posture, bowl: Bowl) -> dict[str, Any]:
+def instant(motion: Any, posture: Posture, bowl: Bowl) -> Document:
     """Return the upper reversal under the names of the JSON contract.
 
     Parameters
@@ -106,7 +106,7 @@ def instant(motion: Any, posture: Posture, bowl: Bowl) -> dict[str, Any]:
     }
 
 
-def cycle_columns(motion: FloorMotion, course: Cycle) -> dict[str, Any]:
+def cycle_columns(motion: FloorMotion, course: Cycle) -> Cells:
     """Return one period as columns.
 
     Parameters
@@ -126,7 +126,7 @@ def cycle_columns(motion: FloorMotion, course: Cycle) -> dict[str, Any]:
     return samples(motion, course, columns)
 
 
-def samples(motion: FloorMotion | TrackMotion, course: Cycle, columns: Mapping[str, Array]) -> dict[str, Any]:
+def samples(motion: FloorMotion | TrackMotion, course: Cycle, columns: Mapping[str, Array]) -> Cells:
     """Return columns over a cycle, phase and state before and ``tips`` behind them.
 
     Parameters
@@ -140,7 +140,7 @@ def samples(motion: FloorMotion | TrackMotion, course: Cycle, columns: Mapping[s
     dict of str to array
         Every ``SAMPLE_STEP``-th sample.
     """
-    first: dict[str, Any] = {"phase_deg": phases(course), "state": np.array(MOTION_STATES)[motion.state]}
+    first: Cells = {"phase_deg": phases(course), "state": np.array(MOTION_STATES)[motion.state]}
     cells = first | dict(columns) | {"tips": [is_tipping(inside) for inside in motion.inside]}
     return {name: values[::SAMPLE_STEP] for name, values in cells.items()}
 
@@ -160,7 +160,7 @@ def phases(course: Cycle) -> Floats:
     return np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
 
 
-def document(study: FloorStudy) -> dict[str, Any]:
+def document(study: FloorStudy) -> Document:
     """Return all of a part on the floor as the JSON document; of one as published, print's reversal too.
 
     Parameters
@@ -223,7 +223,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
     return people_table(label_values(document, FLOOR_LABELS))
 
 
-def label_values(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
+def label_values(document: Mapping[str, Any], labels: Mapping[str, str]) -> Document:
     """Return the instant of a document and its regime by the names that people read, with units.
 
     Parameters
@@ -361,7 +361,7 @@ def none_slides(grid: Grid) -> str:
     )
 
 
-def _alignment(study: FloorStudy) -> dict[str, Any]:
+def _alignment(study: FloorStudy) -> Document:
     headings, cells = study.alignment()
     names = ("alignment_acceleration_rad_s2", "published_alignment_rad_s2")
     return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names if name in cells}}
@@ -495,7 +495,7 @@ def plan(
     axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
     style.note(axes, "x'", end, (3, 10), fontsize=9, style="italic")
     axes.plot(*centroid(contact), "+", color=CONTACT, markersize=9, markeredgewidth=1.6, zorder=5)
-    centre: dict[str, Any] = {"marker": "+", "color": CONTACT, "markeredgewidth": 1.6}
+    centre: style.Look = {"marker": "+", "color": CONTACT, "markeredgewidth": 1.6}
     handles = [
         mpl_patches.Patch(facecolor=CONTACT, alpha=0.35, label="contact polygon"),
         mpl_lines.Line2D([], [], linestyle="", label="its centroid", **centre),
@@ -509,7 +509,7 @@ def plan(
             arrow(axes, (0, 0), 0.62 * size * force / longest, f"{name} {newtons(np.hypot(*force))}", color)
     if np.isfinite(motion.offset).all() and motion.normal_force > 0.0:
         place = turned(motion.offset, heading) / MM
-        look: dict[str, Any] = {"marker": "x", "color": NORMAL, "markeredgewidth": 2}
+        look: style.Look = {"marker": "x", "color": NORMAL, "markeredgewidth": 2}
         axes.plot(*place, linestyle="", markersize=8, zorder=7, **look)
         _note(axes, place, f"N = {newtons(float(motion.normal_force))}", NORMAL, (8, -12))
         handles.append(mpl_lines.Line2D([], [], linestyle="", label="normal force acts here", **look))

@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from feederscrew import __version__
+from feederscrew.base.columns import Document
 from feederscrew.base.errors import FeederError
 from feederscrew.output import tables
 
@@ -70,7 +71,7 @@ class ResultFolder:
         """
         return name in self._records().get(command, {}).get("files", [])
 
-    def document(self, name: str) -> dict[str, Any]:
+    def document(self, name: str) -> Document:
         """Return a JSON document that lies here already.
 
         Parameters
@@ -130,7 +131,7 @@ class ResultFolder:
                 with contextlib.suppress(OSError):
                     folder.rmdir()  # goes only if nothing came into it
 
-    def _replace_files(self, command: str, record: dict[str, Any]) -> None:
+    def _replace_files(self, command: str, record: Document) -> None:
         records = self._records()
         old = records.get(command, {}).get("files", [])
         records[command] = record
@@ -152,7 +153,7 @@ class ResultFolder:
             if name not in self.staged and _inside(name):
                 (self.path / name).unlink(missing_ok=True)
 
-    def _records(self) -> dict[str, Any]:
+    def _records(self) -> Document:
         """The record of each command with results here, once it is sure that they are of this input."""
         file = self.path / RECORD
         try:

@@ -1,9 +1,8 @@
 """Files of ``feeder headings``."""
 
-from typing import Any
-
 import numpy as np
 
+from feederscrew.base.columns import Document
 from feederscrew.base.geometry.polygons import turned
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM
@@ -26,7 +25,7 @@ shading = heavy("feederscrew.output.shading")
 SPARE_COLUMNS = (("straight_wall_share",), ("half_turn_of_deg", "mirror_of_deg"))  # of a table too wide
 
 
-def document(study: HeadingsStudy) -> dict[str, Any]:
+def document(study: HeadingsStudy) -> Document:
     """Return stable headings as the JSON document.
 
     Parameters

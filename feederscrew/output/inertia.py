@@ -7,7 +7,16 @@ from typing import Any
 import numpy as np
 
 from feederscrew.base.arrays import Vector
-from feederscrew.base.columns import Column, ColumnHead, Frame, UnitName, of_records, quantities, values
+from feederscrew.base.columns import (
+    Column,
+    ColumnHead,
+    Document,
+    Frame,
+    UnitName,
+    of_records,
+    quantities,
+    values,
+)
 from feederscrew.output import offers as offer
 from feederscrew.output import part_facts
 from feederscrew.output.offers import RecordView
@@ -16,7 +25,7 @@ from feederscrew.part.density import MATERIAL_COLUMNS, MATERIALS
 from feederscrew.part.inertia import INERTIA_COLUMNS, InertiaStudy
 
 
-def document(study: InertiaStudy) -> dict[str, Any]:
+def document(study: InertiaStudy) -> Document:
     """Return everything ``feeder inertia`` says, by names with units.
 
     Parameters

@@ -2,9 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
-from feederscrew.base.columns import Frame, of_records, values
+from feederscrew.base.columns import Document, Frame, of_records, values
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import DEG, MM, MM_S
 from feederscrew.bowl.verified import Verified
@@ -51,7 +50,7 @@ def offers(
     tuple of Offer
     """
 
-    def document_with_trial() -> dict[str, Any]:
+    def document_with_trial() -> Document:
         return document(study, trial) | ({} if trial is None else {"verified": proof.block(trial)})
 
     alt = "The bowl from above and in section, with its sizes, and what it does from full to empty"
@@ -68,7 +67,7 @@ def offers(
     )
 
 
-def document(study: MachineSheet, trial: Verified | None = None) -> dict[str, Any]:
+def document(study: MachineSheet, trial: Verified | None = None) -> Document:
     """Return everything of a MachineSheet as the JSON document; where springs do not make the drive, both.
 
     With an order it has what stands beside the bowl, for the pose that the trial counted.
@@ -92,7 +91,7 @@ def document(study: MachineSheet, trial: Verified | None = None) -> dict[str, An
     }
 
 
-def _rocking_entries(study: MachineSheet, as_is: Rocking, balanced: Rocking) -> dict[str, Any]:
+def _rocking_entries(study: MachineSheet, as_is: Rocking, balanced: Rocking) -> Document:
     return {
         **values(ROCKING_COLUMNS, as_is),
         "stroke_round_greatest_at_deg": as_is.angle / DEG,
@@ -102,7 +101,7 @@ def _rocking_entries(study: MachineSheet, as_is: Rocking, balanced: Rocking) -> 
     }
 
 
-def _order_entries(study: MachineSheet, wish: Order) -> dict[str, Any]:
+def _order_entries(study: MachineSheet, wish: Order) -> Document:
     return {**values(ORDER_COLUMNS, (study, wish)), "sheet": sheets.quotation(study)}
 
 
@@ -154,7 +153,7 @@ def measured_summary(condition: MeasuredMachine) -> Frame:
     return Frame.of_cells(("quantity", "should be", "measured"), rows)
 
 
-def measured_document(condition: MeasuredMachine) -> dict[str, Any]:
+def measured_document(condition: MeasuredMachine) -> Document:
     """Return a MeasuredMachine as the JSON document."""
     return values(CONDITION_COLUMNS, condition)
 

@@ -1,7 +1,5 @@
 """The bowl from above and in section, in one scale, and what it does from full to empty."""
 
-from typing import Any
-
 import numpy as np
 from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
@@ -21,7 +19,7 @@ BASE = "#c9d0d6"
 SPRING_FACE = "#7d8b97"
 SIZE_TEXT_PT = 8.5  # [pt]
 PITCH = 2.2  # thicknesses from leaf to leaf: one between them as a spacer
-CENTRED: dict[str, Any] = {"color": style.INK, "ha": "center", "va": "center"}
+CENTRED: style.Look = {"color": style.INK, "ha": "center", "va": "center"}
 HEAD = {"fontsize": 10, "fontweight": "bold", "color": style.INK, "va": "top"}
 DIMENSION = {"arrowstyle": "<->", "color": style.INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
 LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 0}
@@ -136,7 +134,7 @@ def _draw_from_above(axes: "style.Axes", study: MachineSheet, half: float) -> No
     white = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
     axes.text(0, y, f"D {2 * radius:.4g}", fontsize=10, bbox=white, **CENTRED)
     on_track, label = tuple(middle * _axes_at(np.radians(-38))[0]), (1.17 * radius, -0.72 * radius)
-    look: dict[str, Any] = {"fontsize": SIZE_TEXT_PT, "arrowprops": LEADER, **CENTRED}
+    look: style.Look = {"fontsize": SIZE_TEXT_PT, "arrowprops": LEADER, **CENTRED}
     axes.annotate(f"track {width:.3g}", on_track, label, **look)
     axes.text(0, 0, f"springs on\nradius {at:.4g}", fontsize=SIZE_TEXT_PT, **CENTRED)
 
@@ -156,7 +154,7 @@ def _draw_section(axes: "style.Axes", study: MachineSheet, half: float) -> None:
     axes.add_patch(Rectangle((-radius, foot), 2 * radius, level, facecolor=FILL, edgecolor="none"))
     # the track cut at both sides, half a turn higher on the left
     rise = np.pi * 2.0 * radius * np.tan(track.climb)
-    cut: dict[str, Any] = {"facecolor": SPRING_FACE, "edgecolor": SHEET_EDGE, "linewidth": 0.5}
+    cut: style.Look = {"facecolor": SPRING_FACE, "edgecolor": SHEET_EDGE, "linewidth": 0.5}
     for left, start in ((radius - width, 0.0), (-radius, 0.5)):
         for height in rise * (start + np.arange(60)) if rise > 0.0 else (0.0,):
             if height > depth + 1e-9:

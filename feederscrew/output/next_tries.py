@@ -1,7 +1,6 @@
 """Calls to paste after a design, each with its reason."""
 
-from typing import Any
-
+from feederscrew.base.columns import Document
 from feederscrew.base.units import PER_MINUTE, counted, listed
 from feederscrew.bowl.verified import HELD
 from feederscrew.designing import next_tries as decisions
@@ -13,7 +12,7 @@ LABELS = ("try first", "then", "or")  # of the commands, the likeliest first
 CALMER = ("calmer", "or")  # of those after a design that holds
 
 
-def entries(study: DesignStudy) -> list[dict[str, Any]]:
+def entries(study: DesignStudy) -> list[Document]:
     """Return what to try after a design, the likeliest to hold first.
 
     Parameters

@@ -1,16 +1,15 @@
 """Facts of a part that every document says, in units of the shop: mm, g, degrees."""
 
 from collections.abc import Iterable
-from typing import Any
 
-from feederscrew.base.columns import values
+from feederscrew.base.columns import Document, values
 from feederscrew.base.units import factor
 from feederscrew.part.record import CONDITION_COLUMNS, PART_COLUMNS, Part
 
 UJ = factor("uJ", "energy")
 
 
-def part(solid: Part, warnings: Iterable[str] = ()) -> dict[str, Any]:
+def part(solid: Part, warnings: Iterable[str] = ()) -> Document:
     """Return what every document says of its part.
 
     Parameters
@@ -26,7 +25,7 @@ def part(solid: Part, warnings: Iterable[str] = ()) -> dict[str, Any]:
     return values(PART_COLUMNS, solid) | {"warnings": [*solid.warnings, *warnings]}
 
 
-def conditions(solid: Part) -> dict[str, Any]:
+def conditions(solid: Part) -> Document:
     """Return what was assumed of a part, for ``run.json``.
 
     Parameters

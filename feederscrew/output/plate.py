@@ -14,7 +14,7 @@ from feederscrew.arrivals.drop import (
 )
 from feederscrew.arrivals.plate_test import MIN_TRANSITIONS, Occupancy, PlateResult
 from feederscrew.base.arrays import Floats
-from feederscrew.base.columns import Frame, of_arrays, values
+from feederscrew.base.columns import Document, Frame, of_arrays, values
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM, MM_S, counted
 from feederscrew.bowl import Bowl
@@ -72,7 +72,7 @@ def _travels(result: PlateResult, digits: int) -> str:
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
 
-def document(study: PlateStudy) -> dict[str, Any]:
+def document(study: PlateStudy) -> Document:
     """Return a dynamic bowl test as one JSON document.
 
     Parameters

@@ -3,12 +3,12 @@
 import re
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Document
 from feederscrew.base.geometry.polygons import turned
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM
@@ -200,7 +200,7 @@ def opening(
     tuple of Views
         One, or none where nothing can be drawn.
     """
-    poses, tracks, captions = list[dict[str, Any]](), list[dict[str, Any]](), []
+    poses, tracks, captions = list[Document](), list[Document](), []
     for name, words in named:
         found = NAMED.fullmatch(name)
         if part.vertices is None or found is None or found[1] not in aspects.names:

@@ -1,9 +1,9 @@
 """Findings of a design's trial, beside what other commands compute of it."""
 
-from typing import Any, TypeGuard
+from typing import TypeGuard
 
 from feederscrew import __version__
-from feederscrew.base.columns import values
+from feederscrew.base.columns import Document, values
 from feederscrew.bowl import Bowl
 from feederscrew.bowl.verified import (
     VERIFIED_COLUMNS,
@@ -63,8 +63,8 @@ def holds(
 
 
 def with_trial(
-    document: dict[str, Any], trial: FileTrial, part: Part | None, bowl: Bowl, wanted_name: str | None = None
-) -> dict[str, Any]:
+    document: Document, trial: FileTrial, part: Part | None, bowl: Bowl, wanted_name: str | None = None
+) -> Document:
     """Return a document with the trial's figures beside its own ``parts_per_minute``; the lower rate leads.
 
     A trial leads in any case where it counted several aspects as one, since the rule counts one orientation,
@@ -102,7 +102,7 @@ def _rates(trial: Verified) -> dict[str, float]:
     return values(VERIFIED_RATE_COLUMNS, trial)
 
 
-def block(trial: Verified) -> dict[str, Any]:
+def block(trial: Verified) -> Document:
     """Return what a trial has shown as a dict."""
     figures = values(VERIFIED_FIGURE_COLUMNS, trial)
     condition = {"condition": trial.condition} if trial.condition else {}

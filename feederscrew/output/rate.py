@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.base import units
-from feederscrew.base.columns import ColumnHead, Frame, quantities, values
+from feederscrew.base.columns import Cells, ColumnHead, Document, Frame, quantities, values
 from feederscrew.base.units import MM, PER_MINUTE
 from feederscrew.bowl.devices.leans import Separation
 from feederscrew.feeding.drive_settings import ACCEPTED_RATE_ERROR
@@ -41,7 +41,7 @@ TOLD = {  # columns that stand in rows of the printed table with words of their 
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 
-def document(study: RateStudy) -> dict[str, Any]:
+def document(study: RateStudy) -> Document:
     """Return a rate as the JSON document: the part, the rate and every factor of its chain.
 
     Parameters
@@ -226,7 +226,7 @@ def offers(study: RateStudy) -> list[offer.Offer]:
 TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
 
 
-def tune_document(study: TuneStudy) -> dict[str, Any]:
+def tune_document(study: TuneStudy) -> Document:
     """Return the settings that give a rate as the JSON document.
 
     Parameters
@@ -261,7 +261,7 @@ def tune_printed(study: TuneStudy, format: str) -> Frame:
     if format == "csv":
         return frame
     target = f"{study.target / PER_MINUTE:.6g}/min {TARGET_FRICTION[study.worst].replace(' the ', ' ')}"
-    table: dict[str, Any] = {target: [], "per min": frame["parts_per_minute"], "mu +-20 %": []}
+    table: Cells = {target: [], "per min": frame["parts_per_minute"], "mu +-20 %": []}
     table |= {"velocity": frame["velocity_mm_s"], "impact": frame["hardest_impact_mm_s"]}
     table["regime"] = []
     for row in frame.rows():

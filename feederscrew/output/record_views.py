@@ -17,7 +17,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.base import check
-from feederscrew.base.columns import Frame
+from feederscrew.base.columns import Cells, Frame
 from feederscrew.base.errors import ArgumentError
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import listed, printable
@@ -107,7 +107,7 @@ def row(record: object) -> "DataFrame":
     return tables.data_frame(Frame.of({k: [v] for k, v in numbers.items()})) if numbers else frame(record)
 
 
-def _document_numbers(record: object) -> dict[str, Any]:
+def _document_numbers(record: object) -> Cells:
     """Single numbers and words of the document of a record's command; none where it writes none."""
     for item in _offers_of(record):
         if item.name.endswith(".json") and item.view is not None:
@@ -231,9 +231,9 @@ def _choose_view(record: object, views: Mapping[str, View], name: str | None, wh
     raise ArgumentError("name", f"{kind} has no {what}{f' {name!r}' if name else ''}", mend)
 
 
-def _numbers(record: Any, before: str = "") -> dict[str, Any]:
+def _numbers(record: Any, before: str = "") -> Cells:
     """Fields of a record and of those in it by their names: single ones, and one for each of several."""
-    numbers: dict[str, Any] = {}
+    numbers: Cells = {}
     for field in fields(record):
         value = getattr(record, field.name)
         row = isinstance(value, tuple) and len(value) > 0 and all(map(_single, value))

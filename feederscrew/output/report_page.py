@@ -7,7 +7,6 @@ from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -16,7 +15,7 @@ from feederscrew import __version__
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.aspects_study import AspectsStudy
 from feederscrew.base.arrays import Floats, Ints
-from feederscrew.base.columns import Column, Frame, of_arrays
+from feederscrew.base.columns import Column, Document, Frame, of_arrays
 from feederscrew.base.errors import FeederError
 from feederscrew.base.units import DEG, MM, MM_S
 from feederscrew.bowl.record import Bowl
@@ -588,7 +587,7 @@ def tooling(case: ReportStudy) -> Chapter | None:
     return Chapter(tuple(blocks), warnings=tuple(tipping.remark(study.orientations)))
 
 
-def over_cuts(part: Part, passages: Sequence[Passage], orientations: Sequence[Orientation]) -> dict[str, Any]:
+def over_cuts(part: Part, passages: Sequence[Passage], orientations: Sequence[Orientation]) -> Document:
     """Return what the viewer draws of a part over the cuts of a track, a pose for each passage.
 
     Parameters

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
 from feederscrew.base.arrays import Array, Bools, Floats, Points, Triangles, Vector
+from feederscrew.base.columns import Document
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM
 from feederscrew.output import style
@@ -685,7 +686,7 @@ def short(value: float) -> float:
     return float(f"{value:.7g}")
 
 
-def scene_of_part(part: "Part", to_viewer: Vector) -> dict[str, Any]:
+def scene_of_part(part: "Part", to_viewer: Vector) -> Document:
     """Return what a scene of the viewer tells of a part, and of the viewer's place.
 
     Parameters
@@ -714,7 +715,7 @@ def scene_of_part(part: "Part", to_viewer: Vector) -> dict[str, Any]:
     }
 
 
-def track(vertices: Points, faces: Triangles) -> dict[str, Any]:
+def track(vertices: Points, faces: Triangles) -> Document:
     """Return a section of track for a scene of the viewer.
 
     Parameters

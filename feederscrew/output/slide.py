@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feederscrew.base.arrays import Floats
-from feederscrew.base.columns import Frame, of_records
+from feederscrew.base.columns import Document, Frame, of_records
 from feederscrew.base.heavy import heavy
 from feederscrew.bowl import texts
 from feederscrew.bowl.reading import SETTING_COLUMNS, Setting
@@ -111,7 +111,7 @@ def summary(slides: Sequence[SlideMap]) -> Frame:
     return Frame.of(columns)
 
 
-def document(study: SlideStudy) -> dict[str, Any]:
+def document(study: SlideStudy) -> Document:
     """Return maps of slip as the JSON document.
 
     Parameters

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from feederscrew.base.columns import values
+from feederscrew.base.columns import Document, values
 from feederscrew.base.units import MM
 from feederscrew.cad import segments
 from feederscrew.cad.closed_body import SOLID_COLUMNS
@@ -78,7 +78,7 @@ def offers(
     )
 
 
-def document(solid: "BowlSolid") -> dict[str, Any]:
+def document(solid: "BowlSolid") -> Document:
     """Return what a BowlSolid measures and weighs, and of its STEP file what it was when opened again."""
     overhangs = {name: area / MM**2 for name, area in segments.overhangs(solid).items()}
     measures = values(SOLID_COLUMNS, solid) | {"overhangs_mm2": overhangs}

@@ -1,12 +1,12 @@
 """Files of ``feeder tooling``: tables, documents, the bowl file, drawings."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feederscrew.base.arrays import Floats
-from feederscrew.base.columns import ColumnHead, Frame, heads, share_head, values
+from feederscrew.base.columns import Cells, ColumnHead, Document, Frame, heads, share_head, values
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM, counted
 from feederscrew.bowl.arguments import settings_of
@@ -80,7 +80,7 @@ STOPPED = f"{NOT_PROVED}: stopped before all was searched and tried"
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 
-def document(study: ToolingStudy) -> dict[str, Any]:
+def document(study: ToolingStudy) -> Document:
     """Return a ToolingStudy as the JSON document."""
     entries = {
         **part_facts.part(study.part, (*study.aspects.warnings, *study.of_size)),
@@ -136,7 +136,7 @@ def _asked_for(study: ToolingStudy) -> tuple[Design, int]:
     return study.design, study.wanted
 
 
-def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
+def _rows(study: ToolingStudy) -> list[Cells]:
     rows = []
     for place, (item, share) in enumerate(zip(study.orientations, study.shares)):
         design = study.designs[place]
@@ -163,7 +163,7 @@ def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
     return rows
 
 
-def _next_class(study: ToolingStudy) -> dict[str, Any] | None:
+def _next_class(study: ToolingStudy) -> Document | None:
     """The chain of the next dearer class by the static rule; None without one."""
     design = study.dearer
     if design is None:
@@ -199,7 +199,7 @@ def next_class_words(study: ToolingStudy) -> str:
     )
 
 
-def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> dict[str, Any]:
+def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> Document:
     """Return efficiency and purity of an orientation's design.
 
     Of its trial where one was made, with the 95 % interval. Else the least by the static rule: without what
@@ -443,7 +443,7 @@ def passages(study: PassagesStudy) -> Frame:
         A row for each orientation.
     """
     names = [orientation.name for orientation in study.orientations]
-    table: dict[str, Any] = {"orientation": names, "of all parts": study.shares}
+    table: Cells = {"orientation": names, "of all parts": study.shares}
     above = {"of all parts": share_head("of all parts")}
     for place, device in enumerate(study.devices):
         verdicts = [ridden[place].verdict if place < len(ridden) else None for ridden in study.passages]

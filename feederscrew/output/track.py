@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew import bowl as bowls
 from feederscrew.base.arrays import Bools, Floats, Vector
-from feederscrew.base.columns import Frame, heads, values
+from feederscrew.base.columns import Cells, Document, Frame, heads, values
 from feederscrew.base.geometry.grids import Grid
 from feederscrew.base.geometry.polygons import outline, turned
 from feederscrew.base.heavy import heavy
@@ -55,7 +55,7 @@ WALL = "#5d6b78"
 WALL_COLOURS = ("#b5482a", "#e08a3c")  # of R1 and R2
 
 
-def _instant(motion: TrackMotion) -> dict[str, Any]:
+def _instant(motion: TrackMotion) -> Document:
     """One instant under the names of the JSON contract; ``motion`` is a TrackMotion of one instant."""
     load = motion.normal_force + abs(motion.traction)
     return {
@@ -78,7 +78,7 @@ def _instant(motion: TrackMotion) -> dict[str, Any]:
     }
 
 
-def _printed_instant(motion: Any) -> dict[str, Any]:
+def _printed_instant(motion: Any) -> Document:
     """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
@@ -93,7 +93,7 @@ def _printed_instant(motion: Any) -> dict[str, Any]:
     }
 
 
-def over_cycle(motion: TrackMotion, course: Cycle) -> dict[str, Any]:
+def over_cycle(motion: TrackMotion, course: Cycle) -> Cells:
     """Return one period as columns.
 
     Parameters
@@ -121,7 +121,7 @@ def _open_contacts(is_closed: Bools) -> list[str]:
     return [name for name, shut in zip(CONTACT_NAMES[1:], is_closed) if not shut]
 
 
-def document(study: TrackStudy) -> dict[str, Any]:
+def document(study: TrackStudy) -> Document:
     """Return all of a part on the track as the JSON document; of one as published, print's reversal too.
 
     ``stays_on_wall`` is None where it hops: the flight is not followed.

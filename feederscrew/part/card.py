@@ -14,7 +14,7 @@ from feederscrew.base.documents import Entry, Node
 from feederscrew.base.errors import ConfigError, FeederError
 from feederscrew.part import mass
 from feederscrew.part.formats import PartFile
-from feederscrew.part.record import AspectNames, CardAspect, Part
+from feederscrew.part.record import AspectNames, CardAspect, CardBlock, Part
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def read_card(file: PartFile) -> Part:
     )
 
 
-def _read_block(node: Node, keys: tuple[CardKey, ...], faults: list[FeederError]) -> dict[str, Any]:
+def _read_block(node: Node, keys: tuple[CardKey, ...], faults: list[FeederError]) -> CardBlock:
     """Values by word, in SI units; what is wrong is added to ``faults``."""
     if node.kind != "mapping":
         what = "is not a block of 'key: value' lines"
@@ -188,7 +188,7 @@ def _value(key: CardKey, node: Node, shape: tuple[int, ...]) -> Any:
     return value
 
 
-def _aspects(rows: Node | None, faults: list[FeederError]) -> list[dict[str, Any]]:
+def _aspects(rows: Node | None, faults: list[FeederError]) -> list[CardBlock]:
     """Keywords of each CardAspect, and the fault of an aspect given twice."""
     if rows is None:
         return []

@@ -21,6 +21,7 @@ MAX_MESH_BYTES = 1 << 29  # [bytes] of a file, or of what an archive unpacks to
 MAX_TEXT_BYTES = 1 << 27  # [bytes] of a mesh in text: six hundred thousand facets of an ASCII STL
 MAX_READ_FACETS = 2_000_000  # a hundred times what a fed part needs; checked in less than 3 GB
 MAX_READ_CORNERS = 3 * MAX_READ_FACETS  # of facets that share none
+ANNOUNCES_MORE = "it announces more than it holds"
 CARD_FORMAT = "card"
 BINARY_STL = "stl"
 ASCII_STL = "stl-ascii"

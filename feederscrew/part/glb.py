@@ -20,8 +20,9 @@ from feederscrew.base.arrays import Floats, Ints, Points, Triangles
 from feederscrew.base.errors import MeshError
 from feederscrew.base.geometry import vectors
 from feederscrew.base.units import counted, quantity_text
-from feederscrew.part.formats import MAX_READ_CORNERS, DamageError, Soup, refuse_size
+from feederscrew.part.formats import ANNOUNCES_MORE, MAX_READ_CORNERS, DamageError, Soup, refuse_size
 
+GltfObject = dict[str, Any]  # a node, a mesh, an accessor ... of a file of others, not yet checked
 MAX_SCENE_BYTES = 1 << 24  # [bytes] of the JSON of a GLB: names of nodes and buffers, not their numbers
 MAX_SCENE_NODES, MAX_NODE_DEPTH = 20_000, 50  # instances; nodes within nodes
 MAX_PRIMITIVES = 200_000  # of all instances
@@ -45,7 +46,6 @@ READ_EXTENSIONS = {  # may be required: read, or no matter of shape
 MATERIAL_EXTENSION = re.compile(r"[A-Z]+_materials_\w+")  # how a surface looks
 EXPORT_UNPACKED = "export it unpacked"
 EXPORT_AS_SHOWN = "apply it in the program that made it, and export plain meshes"
-ANNOUNCES_MORE = "it announces more than it holds"
 DATA_URI = re.compile(r"data:[^,;]*;base64,", re.IGNORECASE)
 
 
@@ -58,7 +58,7 @@ class Piece:
     instance: int  # which placed mesh it is of, from 0
     vertices: Points  # (V, 3) [m]
     faces: Triangles  # (F, 3) int, as many as the primitive has, in its order
-    extensions: dict[str, Any]  # of the primitive
+    extensions: GltfObject  # of the primitive
     matrix: Floats  # (4, 4) from the axes of the mesh to those of the scene
 
 
@@ -201,7 +201,7 @@ class Document:
             self._numbers[number] = self._read(accessor)
         return self._numbers[number]
 
-    def _read(self, accessor: dict[str, Any]) -> Any:
+    def _read(self, accessor: GltfObject) -> Any:
         each = COMPONENTS_BY_TYPE[_require(str, accessor["type"])]
         component = np.dtype(COMPONENT_TYPES[_whole(accessor["componentType"])])
         count = _whole(accessor["count"])
@@ -297,9 +297,7 @@ class Document:
             self.warnings = (f"holds {len(scenes)} scenes: the one it opens with is read, {left} left out",)
         return roots
 
-    def _refuse_deformed(
-        self, node: dict[str, Any], mesh: dict[str, Any], names: list[str], is_shown: bool
-    ) -> None:
+    def _refuse_deformed(self, node: GltfObject, mesh: GltfObject, names: list[str], is_shown: bool) -> None:
         """Refuse an instance that is hidden, or whose corners are moved by more than its nodes."""
         name = next(filter(None, names), "")
         title = f" of {quantity_text(name)}" if name else ""
@@ -317,7 +315,7 @@ class Document:
                 f"has a hidden mesh{title} ({VISIBILITY})", "show it or leave it out, and export again"
             )
 
-    def _place(self, primitive: dict[str, Any], matrix: Floats) -> tuple[Points, Triangles] | None:
+    def _place(self, primitive: GltfObject, matrix: Floats) -> tuple[Points, Triangles] | None:
         """Corners of a primitive in the axes of the scene, and its triangles; None for points and lines."""
         mode, attributes = _whole(primitive.get("mode", TRIANGLES)), _require(dict, primitive["attributes"])
         if mode in POINTS_AND_LINES or "POSITION" not in attributes:
@@ -380,7 +378,7 @@ def strip_triangles(corners: Ints) -> Triangles:
     return np.column_stack([corners[first], corners[first + 1 + odd], corners[first + 2 - odd]])
 
 
-def _chunks(data: bytes, where: str) -> tuple[dict[str, Any], bytes | None]:
+def _chunks(data: bytes, where: str) -> tuple[GltfObject, bytes | None]:
     """The scene of a GLB, and the bytes behind it; None where it has none (4.4)."""
     _, version, length = struct.unpack("<3I", data[:12])
     if version != 2:
@@ -406,7 +404,7 @@ def _chunks(data: bytes, where: str) -> tuple[dict[str, Any], bytes | None]:
     return scene, chunks[1][1] if len(chunks) > 1 and chunks[1][0] == BINARY_CHUNK else None
 
 
-def _placement(node: dict[str, Any]) -> Floats:
+def _placement(node: GltfObject) -> Floats:
     """(4, 4) from the axes of a node to those of what holds it (3.5.2)."""
     matrix = np.eye(4)
     if "matrix" in node:
@@ -434,7 +432,7 @@ def _placement(node: dict[str, Any]) -> Floats:
     return matrix
 
 
-def _floats(holder: dict[str, Any], name: str, count: int) -> Floats:
+def _floats(holder: GltfObject, name: str, count: int) -> Floats:
     numbers = _list_of(holder, name, (int, float))
     if len(numbers) != count:
         raise DamageError(f"a {name} of {len(numbers)} numbers, not of {count}")
@@ -444,7 +442,7 @@ def _floats(holder: dict[str, Any], name: str, count: int) -> Floats:
     return values
 
 
-def _extensions(holder: dict[str, Any]) -> dict[str, Any]:
+def _extensions(holder: GltfObject) -> GltfObject:
     """Return the entries of the extensions of a node, a primitive or a buffer view, by their names."""
     return _require(dict, holder.get("extensions", {}))
 
@@ -464,6 +462,6 @@ def _whole(value: object) -> int:
     return int(number)
 
 
-def _list_of(holder: dict[str, Any], name: str, kind: type | tuple[type, ...] = dict) -> list[Any]:
+def _list_of(holder: GltfObject, name: str, kind: type | tuple[type, ...] = dict) -> list[Any]:
     """A list of the scene, each of a kind; empty where there is none."""
     return [_require(kind, value) for value in _require(list, holder.get(name, []))]

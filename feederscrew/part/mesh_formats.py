@@ -15,9 +15,18 @@ from feederscrew.base.arrays import Ints, Triangles
 from feederscrew.base.errors import MeshError
 from feederscrew.base.units import counted, quantity_text
 from feederscrew.part import formats
-from feederscrew.part.formats import DamageError, Decimals, Soup, mask_non_ascii, refuse_size, split_facets
+from feederscrew.part.formats import (
+    ANNOUNCES_MORE,
+    DamageError,
+    Decimals,
+    Soup,
+    mask_non_ascii,
+    refuse_size,
+    split_facets,
+)
 
-ANNOUNCES_MORE = "it announces more than it holds"
+# By 'element.property': an array; of a list the sizes of its rows (R,), and all its numbers in one array.
+PlyColumns = dict[str, Any]
 
 
 def read_obj(data: bytes) -> Soup:
@@ -242,9 +251,9 @@ def _strip_facets(sizes: Ints, corners: Ints, count: int) -> Triangles:
     return faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
 
 
-def _ply_from_bytes(data: bytes, at: int, elements: list[PlyElement], order: str) -> dict[str, Any]:
+def _ply_from_bytes(data: bytes, at: int, elements: list[PlyElement], order: str) -> PlyColumns:
     """Columns by 'element.property' of binary rows; lists as their sizes and all their numbers."""
-    columns: dict[str, Any] = {}
+    columns: PlyColumns = {}
     for element in elements:
         if not element.rows or not element.properties:
             continue
@@ -279,7 +288,7 @@ def _ply_from_bytes(data: bytes, at: int, elements: list[PlyElement], order: str
     return columns
 
 
-def _rows_alike(data: bytes, at: int, element: PlyElement, order: str) -> tuple[dict[str, Any], int] | None:
+def _rows_alike(data: bytes, at: int, element: PlyElement, order: str) -> tuple[PlyColumns, int] | None:
     """Columns and the end of rows whose lists are as long as those of the first; None if they are not."""
     fields: list[Any] = []
     end = at
@@ -303,7 +312,7 @@ def _rows_alike(data: bytes, at: int, element: PlyElement, order: str) -> tuple[
             return None
         raise DamageError(ANNOUNCES_MORE)
     rows = np.frombuffer(data, dtype, element.rows, at)
-    columns: dict[str, Any] = {prop.name: rows[f"v{k}"] for k, prop in enumerate(element.properties)}
+    columns: PlyColumns = {prop.name: rows[f"v{k}"] for k, prop in enumerate(element.properties)}
     for k, prop in enumerate(element.properties):
         if prop.count:
             lengths = rows[f"n{k}"]
@@ -313,9 +322,9 @@ def _rows_alike(data: bytes, at: int, element: PlyElement, order: str) -> tuple[
     return columns, at + dtype.itemsize * element.rows
 
 
-def _ply_from_text(words: list[bytes], elements: list[PlyElement], decimals: Decimals) -> dict[str, Any]:
+def _ply_from_text(words: list[bytes], elements: list[PlyElement], decimals: Decimals) -> PlyColumns:
     """Columns as ``_ply_from_bytes`` has them, of rows in text."""
-    columns: dict[str, Any] = {}
+    columns: PlyColumns = {}
     at = 0
     for element in elements:
         width = len(element.properties)
@@ -329,7 +338,7 @@ def _ply_from_text(words: list[bytes], elements: list[PlyElement], decimals: Dec
                     columns[f"vertex.{prop.name}"] = decimals.read(words[at + k : end : width])
             at = end
             continue
-        lists: dict[str, Any] = {
+        lists: dict[str, tuple[list[int], list[bytes]]] = {
             prop.name: ([], []) for prop in element.properties if prop.name in PLY_CORNER_LISTS
         }
         for _ in range(element.rows):

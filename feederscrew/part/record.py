@@ -17,6 +17,7 @@ from feederscrew.part.hull import Hull
 
 trimesh = heavy("trimesh")
 
+CardBlock = dict[str, Any]  # values of a block of a part card by their keys, in SI units
 MAX_FACETS = 20_000  # beyond, verdicts of devices take gigabytes and hours (100,000: 2.3 GB, no end)
 PART_MEND = "give a Part, as load returns it"
 SMALL_PART_M = 1e-3  # [m] largest dimension: below it shops measure in other tolerances
@@ -69,7 +70,7 @@ class Part(ReadableRecord, view="record_lines.PART_VIEW"):
     vertices: Points | None = None  # (V, 3) [m]
     faces: Triangles | None = None  # (F, 3) indices, counter-clockwise seen from outside
     aspects: tuple[CardAspect, ...] = ()  # of a part card
-    printed: dict[str, dict[str, Any]] | None = None  # further data of a part card, as read: 'floor', 'track'
+    printed: dict[str, CardBlock] | None = None  # further data of a part card, as read: 'floor', 'track'
     hull: Hull | None = None  # about the centre of mass; None for a part card
     names: AspectNames | None = None  # that the user gives its aspects
     open_surface: bool = False  # computed with ``allow_open``: every output must say so

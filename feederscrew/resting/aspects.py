@@ -7,12 +7,11 @@ with a deeper neighbour, change the published rules alone.
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from string import ascii_uppercase
-from typing import Any
 
 import numpy as np
 
@@ -241,35 +240,50 @@ def find(
         moments = Moments(part.vertices, np.asarray(part.faces), part.centre_of_mass)
     label = join_classes(faces, part, moments)
     groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
-    table = _geometry(groups, part, hull)
+    table = _tabulate(groups, part, hull)
     noise = max((face.roughness for face in faces if face.kind == FLAT), default=0.0)
-    table["lies"] = lying.describe_lying(part, hull, basins, [group[0] for group in groups], noise)
+    lies = lying.describe_lying(part, hull, basins, [group[0] for group in groups], noise)
     # probabilities by the rules that weigh classes, with the facets that are no aspect and without
-    heights = table["heights"]
+    heights = table.heights
     quantities = ClassQuantities(
-        faces=table["faces"],
-        pmi_faces=np.ones_like(table["faces"]) if as_published else table["faces"],
+        faces=table.faces,
+        pmi_faces=np.ones_like(table.faces) if as_published else table.faces,
         heights=heights,
         csa_heights=heights,
         stability_heights=heights,
-        polar_inertias=table["polar_inertias"],
-        solid_angles=table["solid_angles"],
-        contact_areas=table["contact_areas"],
+        polar_inertias=table.polar_inertias,
+        solid_angles=table.solid_angles,
+        contact_areas=table.contact_areas,
     )
     weights = registry.weights(quantities)
-    chances = {rule: formulas.normalise(weight, table["stable"]) for rule, weight in weights.items()}
+    chances = {rule: formulas.normalise(weight, table.stable) for rule, weight in weights.items()}
     shallow = shallow_facets(hull, basins, stable)
-    complete = published_changes(shallow, weights, table["stable"], part.inertia, as_published)
+    complete = published_changes(shallow, weights, table.stable, part.inertia, as_published)
     # rows in their order, named
     order = _rank_classes(table, chances["csa"], part, moments)
-    names, warnings = name_classes([groups[k] for k in order], table["normals"][order], hull, part.names)
+    names, warnings = name_classes([groups[k] for k in order], table.normals[order], hull, part.names)
     chances, complete = (
         {rule: check.frozen(chance[order]) for rule, chance in of.items()} for of in (chances, complete)
     )
-    columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
-    columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "lies", "polygons")}
     ground = exact_tumbling.ground_faces(hull, stable, np.argsort(order)[label][: len(stable)])
-    aspects = Aspects(names=names, probabilities=chances, complete=complete, ground=ground, **columns)
+    aspects = Aspects(
+        names=names,
+        kinds=tuple(table.kinds[k] for k in order),
+        forms=tuple(table.forms[k] for k in order),
+        lies=tuple(lies[k] for k in order),
+        polygons=tuple(table.polygons[k] for k in order),
+        faces=check.frozen(table.faces[order]),
+        stable=check.frozen(table.stable[order]),
+        normals=check.frozen(table.normals[order]),
+        axes=check.frozen(table.axes[order]),
+        heights=check.frozen(heights[order]),
+        contact_areas=check.frozen(table.contact_areas[order]),
+        solid_angles=check.frozen(table.solid_angles[order]),
+        polar_inertias=check.frozen(table.polar_inertias[order]),
+        probabilities=chances,
+        complete=complete,
+        ground=ground,
+    )
     # all that exact tumbling adds, and the closed form for a launch or for the user's own surface
     weighted = formulas.EXPONENTS["hard"] if exponent is None else exponent
     more = exact_tumbling.tumble_classes(ground, part, aspects.stable, weighted)
@@ -285,7 +299,7 @@ def find(
         recommended=form,
         closed=form,
         warnings=(
-            *form_remarks(table["forms"]),
+            *form_remarks(table.forms),
             *warnings,
             *shallow_remark(shallow, names, chances, complete),
             *(f"exact tumbling is doubtful: {doubt}" for doubt in ground.tips.doubts),
@@ -346,40 +360,57 @@ def form_remarks(forms_of_classes: list[str]) -> tuple[str, ...]:
     return (*listed, *(ROCKING_REMARK.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks))
 
 
-def _geometry(groups: list[list[Face]], part: Part, hull: Hull) -> dict[str, Any]:
-    """Return the columns of the table in the order of the groups; a class's numbers are its faces' means."""
+@dataclass(frozen=True, eq=False)
+class _ClassTable:
+    """Classes of faces (C,) in the order in which they were found; numbers are the means of their faces."""
+
+    kinds: list[str]
+    forms: list[str]
+    faces: Ints  # (C,) how many
+    stable: Bools  # (C,)
+    normals: Floats  # (C, 3) [1] of a face of each
+    axes: Floats  # (C, 3) [1] of the same face
+    polygons: list[Points]  # [m] of the same face
+    heights: Floats  # (C,) [m]
+    contact_areas: Floats  # (C,) [m2]
+    solid_angles: Floats  # (C,) [sr]
+    polar_inertias: Floats  # (C,) [kg m2]
+
+
+def _tabulate(groups: list[list[Face]], part: Part, hull: Hull) -> _ClassTable:
     counts = np.array([len(group) for group in groups])
     faces = [face for group in groups for face in group]
     flats = any(group[0].kind == FLAT for group in groups)
     normals = np.array([face.normal for face in faces])
-    values = {
-        "heights": [face.height for face in faces],
-        "contact_areas": [face.area for face in faces],
-        "solid_angles": [face.solid_angle for face in faces],
-        "polar_inertias": vectors.dot(vectors.product(normals, part.inertia), normals),
-    }
+
+    def mean(values: Sequence[float] | Floats) -> Floats:
+        return np.add.reduceat(values, np.cumsum(counts) - counts) / counts
+
     examples = [max(group, key=lambda face: tuple(np.round(face.normal, 6))) for group in groups]
     # directions with rounding noise and minus zeros swept out
     directions = [np.array([getattr(face, name) for face in examples]) for name in ("normal", "axis")]
-    normals, axes = (np.where(np.abs(each) < 1e-9, 0.0, each) for each in directions)
-    return {
-        "kinds": [group[0].kind for group in groups],
-        "forms": [_form(group[0], hull, flats) for group in groups],
-        "faces": counts,
-        "stable": np.array([group[0].stable for group in groups]),
-        "normals": normals,
-        "axes": axes,
-        "polygons": [face.polygon for face in examples],
-        **{name: np.add.reduceat(of, np.cumsum(counts) - counts) / counts for name, of in values.items()},
-    }
+    example_normals, example_axes = (np.where(np.abs(each) < 1e-9, 0.0, each) for each in directions)
+    return _ClassTable(
+        kinds=[group[0].kind for group in groups],
+        forms=[_form(group[0], hull, flats) for group in groups],
+        faces=counts,
+        stable=np.array([group[0].stable for group in groups]),
+        normals=example_normals,
+        axes=example_axes,
+        polygons=[face.polygon for face in examples],
+        heights=mean([face.height for face in faces]),
+        contact_areas=mean([face.area for face in faces]),
+        solid_angles=mean([face.solid_angle for face in faces]),
+        polar_inertias=mean(vectors.dot(vectors.product(normals, part.inertia), normals)),
+    )
 
 
-def _rank_classes(table: dict[str, Any], chance: Floats, part: Part, moments: Moments) -> Ints:
+def _rank_classes(table: _ClassTable, chance: Floats, part: Part, moments: Moments) -> Ints:
     """Return the order of the rows: by falling CSA probability, then by size, then by direction in the part.
 
     The direction is taken in axes fixed in the part, so that a turned file keeps its names.
     """
-    size = np.where(table["stable"], 1.0 + chance, table["faces"] * table["solid_angles"] / (4.0 * np.pi))
+    size = np.where(table.stable, 1.0 + chance, table.faces * table.solid_angles / (4.0 * np.pi))
     order = np.argsort(-size, kind="stable")
     tied = np.concatenate([[False], -np.diff(size[order]) < CHANCE_TIE * size[order][1:]])
     if not tied.any():
@@ -395,8 +426,8 @@ def _rank_classes(table: dict[str, Any], chance: Floats, part: Part, moments: Mo
     axes = axes * np.where(clear, np.sign(skew), np.sign(largest))
     if clear.sum() == 2:  # the third follows: a mirror plane leaves no skew across it, but a hand
         axes[:, ~clear] *= vectors.determinant(axes)
-    direction = np.round(vectors.product(table["normals"], axes), 3)
-    height = np.round(table["heights"] / table["heights"].max(), 4)
+    direction = np.round(vectors.product(table.normals, axes), 3)
+    height = np.round(table.heights / table.heights.max(), 4)
     return np.lexsort((*-direction.T, height, rank))
 
 

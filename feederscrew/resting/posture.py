@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from feederscrew.base.geometry.polygons import centroid, outline, sides, surroun
 from feederscrew.base.records import ReadableRecord
 from feederscrew.base.signatures import with_shown_signature
 from feederscrew.part.hull import convex_hull
-from feederscrew.part.record import PART_MEND, Part
+from feederscrew.part.record import PART_MEND, CardBlock, Part
 from feederscrew.resting.aspects import ASPECTS_MEND, Aspects
 from feederscrew.resting.aspects import find as find_aspects
 from feederscrew.resting.lying import TOUCHING_SHARE
@@ -41,7 +41,7 @@ class Posture(ReadableRecord):
     outline: Points  # (J, 2) [m] plan outline of the whole part, as above
     offset: float  # [m] e, from the foot to the contact polygon's centroid; NaN where a card is silent
     axis: Floats | None = None  # (2,) direction of the rolling axis in the floor
-    printed: dict[str, dict[str, Any]] | None = None  # a card's 'floor' and 'track' data, in SI units
+    printed: dict[str, CardBlock] | None = None  # a card's 'floor' and 'track' data, in SI units
     corners: Points | None = None  # (V, 3) [m] hull corners, z from the floor; None of a card
     solid: Part | None = None  # that stands so; None where only its plan is known
     axes: Floats | None = None  # (3, 3) [1] x, y, z of the posture as rows, in the file's axes

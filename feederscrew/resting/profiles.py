@@ -8,7 +8,6 @@ from dataclasses import dataclass, fields
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from feederscrew.base.arrays import Floats
 from feederscrew.base.columns import Column
 from feederscrew.base.documents import hint
 from feederscrew.base.errors import Faults, FeederError
+from feederscrew.base.signatures import Keywords
 from feederscrew.base.units import counted, quantity_text
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
@@ -53,7 +53,7 @@ class Head:
     note: str = ""
 
     @property
-    def reading(self) -> dict[str, Any]:
+    def reading(self) -> Keywords:
         """Return the keywords of ``feederscrew.part.load`` with which the part file is read."""
         values = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass", "body")}
         return {name: value for name, value in values.items() if value}

@@ -18,6 +18,7 @@ from feederscrew.base.columns import Column
 from feederscrew.base.errors import ConfigError
 from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.polygons import convex, cross, outline, sides, turned
+from feederscrew.base.signatures import Keywords
 from feederscrew.base.units import GRAVITY
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.motion import conveying as answer
@@ -233,7 +234,7 @@ def _longest_gap(foot: Footprint, distance: float, radius: float, shift: float) 
     return footprints.longest_gap(footprints.axial_foot(foot, distance, radius, shift), radius)
 
 
-STILL: dict[str, Any] = dict.fromkeys(
+STILL: Keywords = dict.fromkeys(
     ("carry", "carry_ahead", "grip", "speed", "swing", "climbs", "hop", "flight"), 0.0
 )
 CACHED = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}

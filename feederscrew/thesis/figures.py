@@ -400,7 +400,7 @@ def _draw_lines(title: str, data: ByRatio, ax: "style.Axes | None" = None) -> "s
         handles += axes.plot(data.ratios, 100.0 * values, dashes, color=colour, linewidth=1.8, label=label)
     # what is in print: a marker each in its aspect's colour, and one in ink for the legend
     for (label, (ratios, rows)), (marker, is_filled) in zip(data.points.items(), (("o", False), ("D", True))):
-        look: dict[str, Any] = {"markersize": 5.5, "linestyle": "none", "marker": marker}
+        look: style.Look = {"markersize": 5.5, "linestyle": "none", "marker": marker}
         for column, (colour, _) in zip(rows.values(), ASPECT_LINES):
             face = colour if is_filled else "white"
             axes.plot(ratios, 100.0 * column, color=colour, markerfacecolor=face, clip_on=False, **look)
@@ -433,7 +433,7 @@ def _draw_curves(title: str, data: Curves) -> "style.Figure":
 
 def _draw_limits(title: str, data: FigureGrid) -> "style.Figure":
     figure = style.figure(6.4, 5.0)
-    shades: dict[str, Any] = {"vmin": 0.0, "vmax": slide.HIGHEST, "rcount": 34, "ccount": 46}
+    shades: style.Look = {"vmin": 0.0, "vmax": slide.HIGHEST, "rcount": 34, "ccount": 46}
     labels = (slide.ANGLE, slide.RATIO, slide.FRICTION)
     axes = _add_surface(figure, (1, 1, 1), title, labels, data, **shades)
     axes.set(xlim=(-90, 90), ylim=(0.0, DRIVE_RATIOS[-1]))
@@ -447,7 +447,7 @@ def _draw_contours(title: str, data: FigureGrid, ax: "style.Axes | None" = None)
     levels = [level for level in slide.LEVELS if level <= data.values.max()]
     shades = matplotlib.colormaps[slide.LEVEL_COLOURS](np.linspace(0.05, 0.75, len(levels)))
     angles = np.linspace(-89.9, 89.9, 361)
-    look: dict[str, Any] = {"fontsize": 7.5, "ha": "center", "va": "center", "bbox": LABEL_BOX}
+    look: style.Look = {"fontsize": 7.5, "ha": "center", "va": "center", "bbox": LABEL_BOX}
     for level, shade in zip(levels, shades):
         ratios = limits.published_ratio(level, np.radians(BETA_OF["5-5"]), np.radians(angles))
         axes.plot(angles, ratios, color=shade, linewidth=1.4)
@@ -472,7 +472,7 @@ def _draw_acceleration(title: str, data: FigureGrid) -> "style.Figure":
         flat.contourf(x, y, data.throw, [1.0, np.inf], colors="none", hatches=["///"])
     flat.contour(x, y, data.throw, [1.0], colors="white", linewidths=1.8)
     row, column = (int(np.mean(places)) for places in np.nonzero(data.hops))
-    look: dict[str, Any] = {"fontsize": 8.5, "ha": "center", "va": "center"}
+    look: style.Look = {"fontsize": 8.5, "ha": "center", "va": "center"}
     text = "hops: the formula's value,\nnot a part's"
     flat.text(x[column], y[row], text, color=style.INK, bbox=LABEL_BOX, **look)
     sticks = data.values < 0.0

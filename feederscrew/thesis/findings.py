@@ -51,8 +51,11 @@ FINDING_COLUMNS: tuple[Column[Finding], ...] = (
 )
 
 
+Figures = dict[str, Any]  # numbers and words that the sentences of findings name
+
+
 @functools.cache
-def _numbers() -> dict[str, Any]:
+def _numbers() -> Figures:
     return _t_shape() | _resting_cards() | _chapter_4_data() | _motion() | _conclusions()
 
 
@@ -61,7 +64,7 @@ def _limit(ratio: float, beta: float, turn: float = 0.0) -> float:
     return float(limits.published_limit(ratio, np.radians(beta), np.radians(turn)))
 
 
-def _t_shape() -> dict[str, Any]:
+def _t_shape() -> Figures:
     ours, printed, ngoi = parts.t_aspects(0.6), table("3-8"), table("3-1")
     moments = ours.moments / parts.G_MM2
     # Table 3-9: with the thesis's rounding of its inputs and without
@@ -99,7 +102,7 @@ def _t_shape() -> dict[str, Any]:
     }
 
 
-def _resting_cards() -> dict[str, Any]:
+def _resting_cards() -> Figures:
     # Tables 3-2 and 3-5: solid angles and heights; Table 3-11: totals
     arc_q, heights, magnet = table("3-2").numbers("Q"), table("3-2").numbers("h"), table("3-11")
     ratios, implied = heights / table("3-10").numbers("h"), heights * table("3-2").numbers("h_total_over_h")
@@ -135,7 +138,7 @@ def _resting_cards() -> dict[str, Any]:
     }
 
 
-def _chapter_4_data() -> dict[str, Any]:
+def _chapter_4_data() -> Figures:
     arc, magnet, row = chapter_4("arc_chute"), chapter_4("magnet"), table("3-11").rows["3"]
     # the Arc Chute's moments about the origin [g mm2], and the squares of its centre's levers [mm2]
     x, y, z = (arc[axis] for axis in "xyz")
@@ -162,7 +165,7 @@ def _chapter_4_data() -> dict[str, Any]:
     }
 
 
-def _motion() -> dict[str, Any]:
+def _motion() -> Figures:
     # the Arc Chute on its fifth aspect on a banked track, driven a little across it: it slips one way
     plain, card, arc = bowl.read(None, SLIPS_ONE_WAY), parts.card("arc_chute"), chapter_4("arc_chute")
     drive, at_bank = replace(plain.drive, direction=BANK_SHOWN), replace(plain.track, bank=BANK_SHOWN)
@@ -212,7 +215,7 @@ def _motion() -> dict[str, Any]:
     }
 
 
-def _conclusions() -> dict[str, Any]:
+def _conclusions() -> Figures:
     csa, measured = (table("3-1").numbers(name) for name in ("csa", "experiment"))
     csa, measured, pmi = csa / csa.sum(), measured / measured.sum(), parts.t_aspects(0.6).pmi
     at_78, at_80 = (table("3-4").numbers(name) for name in ("MDBT_78", "MDBT_80"))

@@ -5,9 +5,9 @@ import math
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from feederscrew.base.columns import Frame, of_records
+from feederscrew.base.columns import Document, Frame, of_records
 from feederscrew.base.errors import ArgumentError
 from feederscrew.base.records import ReadableRecord
 from feederscrew.base.units import listed
@@ -188,7 +188,7 @@ def entries(item: Item) -> Frame:
     return Frame.of(rows)
 
 
-def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[str, Any]:
+def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> Document:
     """Return the items of the thesis as one JSON document.
 
     Parameters

@@ -217,7 +217,7 @@ def answer_to(monkeypatch, block):
         study = design_study(block.part, robust=robust)
         candidate = SimpleNamespace(
             proposal=SimpleNamespace(cuts=(wiper,), row=0), orientations=block.ways, bowl=study.bowl,
-            trial=trial, worst=robust.worst, attempt=SimpleNamespace(clean=False),
+            trial=trial, worst=robust.main_fault, attempt=SimpleNamespace(clean=False),
         )  # fmt: skip
         list(exploring._find_calmer(search, candidate))
         loop._change_by_proof(search, study, candidate)

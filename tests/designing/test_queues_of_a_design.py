@@ -74,8 +74,42 @@ def test_the_rate_counts_what_is_wanted_of_the_worst_fill():
     some = study(low, high)
     assert 60.0 * some.proof.delivered[0] == pytest.approx(15.0)
     assert 60.0 * some.proof.delivered[1] == pytest.approx(225.0 * 0.0408, rel=1e-2)  # Wilson, 15 of 225
-    assert some.proved_by(slowed=0.7).proof.worst == pytest.approx(0.7 * some.proof.delivered[0])
+    slowed = some.proved_by(slowed=0.7).proof
+    assert slowed.delivered_at_worst_friction == pytest.approx(0.7 * some.proof.delivered[0])
     assert some.status == "falls short" and "at high fill 15/min are delivered" in some.why
+
+
+def test_jams_an_hour_are_those_of_the_fill_that_shows_least():
+    """Of Poisson counts: 3.00 over the time of a fill without a jam (rule of three), 4.74 with one."""
+    long, short = queue(fill="low", seconds=3600.0), queue(fill="high", seconds=60.0)
+    assert study(long, short).proof.jams_per_hour_high == study(short).proof.jams_per_hour_high
+    assert study(short).proof.jams_per_hour_high == pytest.approx(2.996 * 60.0, rel=1e-3)
+    jammed = queue(fill="high", seconds=1200.0, jams=1)
+    assert study(long, jammed).proof.jams_per_hour_high == pytest.approx(4.744 * 3.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(("counts", "cause", "why", "not_said"), [
+    # more than 97 % is shown by 254 of 257, not told from 99 %; 1,960 of 2,000 are far from 99 %
+    ({"right": 254, "left": 257}, "arrival", "has not yet decided for a purity of 99 %", "s only"),
+    ({"right": 1960, "left": 2000}, "part", "refuses a purity of 99 % against 97 %", "too few parts"),
+    ({"right": 80, "counted": 100.0}, "arrival", "too few parts left its queues", "s only"),
+    # all that come leave as wanted: no part brings more
+    ({"right": 80}, "arrival", "25/min would hold", "come so"),
+    ({"seconds": 10.0}, "", "parts were followed for 10 s only", "the cause is"),
+])  # fmt: skip
+def test_what_a_fill_lacks_is_said_by_its_own_name(counts, cause, why, not_said):
+    made = study(queue(**counts))
+    assert (made.status, made.cause) == ("falls short", cause)
+    assert why in made.why and not_said not in made.why
+
+
+def test_draws_that_end_a_proof_are_its_cause_though_a_short_trial_was_clean():
+    """No queue was followed; the short trial brought twice what is asked for."""
+    clean = SimpleNamespace(efficiency=0.5, rate=80.0 / 60.0, faults=(), wanted="A@0")
+    made = study(held=12).proved_by(queues=())
+    made = replace(made, attempts=(clean,))
+    assert made.cause == "drive" and "the cause is the drive: A@0 is lost" in made.why
+    assert "comes too seldom" not in made.why
 
 
 @pytest.mark.parametrize(("counts", "held", "why"), [

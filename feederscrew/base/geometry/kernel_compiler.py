@@ -14,10 +14,12 @@ import numpy as np
 from llvmlite import binding, ir
 from numba import carray, cfunc, extending, from_dtype, njit, types
 
+from feederscrew.base.signatures import Keywords
+
 RESULTS = {float: types.float64, int: types.int64, bool: types.boolean, None: types.void}
 
 WORD = ir.IntType(64)
-OPTIONS: dict[str, Any] = {"error_model": "numpy", "forceinline": True}  # of what reads words
+OPTIONS: Keywords = {"error_model": "numpy", "forceinline": True}  # of what reads words
 
 
 class HandedRecord(types.Type):

@@ -16,6 +16,7 @@ import shapely
 
 from feederscrew.base import units
 from feederscrew.base import value_forms as forms
+from feederscrew.base.columns import Document
 from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
 from feederscrew.base.units import MM
@@ -23,7 +24,7 @@ from feederscrew.bowl.devices import orientation_names, values
 from feederscrew.bowl.devices.asked import Encounter, Lying, LyingPart
 from feederscrew.bowl.devices.features import Blade, Features, TrackOpening
 from feederscrew.bowl.devices.trade import Action, Trade, ValueSearch
-from feederscrew.bowl.devices.values import Corner
+from feederscrew.bowl.devices.values import Corner, DeviceFields
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -114,7 +115,7 @@ class Device:
     # -- as it is read and written
 
     @staticmethod
-    def read(entry: Entry) -> dict[str, Any]:
+    def read(entry: Entry) -> DeviceFields:
         """Return the fields that an entry of a bowl file gives: by default a length.
 
         Parameters
@@ -170,7 +171,7 @@ class Device:
         """
         return replace(self, limit=limit).rewritten()
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         """Return its values for a document, in mm."""
         if self.corners:
             return {"outline_mm": [[x / MM, y / MM] for x, y in self.corners]}

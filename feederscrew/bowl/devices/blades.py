@@ -4,12 +4,13 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 import shapely
 
 from feederscrew.base import value_forms as forms
+from feederscrew.base.columns import Document
 from feederscrew.base.errors import ConfigError
 from feederscrew.bowl.devices import orientation_names, values
 from feederscrew.bowl.devices.asked import Encounter, LyingPart
@@ -158,7 +159,7 @@ class Wiper(Overhead):
         ahead = 0.0 if self.face is None else track.extent / math.tan(self.sweep)
         return Features(0.5 * room + ahead, blades=(blade,))
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         own = {"sweep_deg": math.degrees(self.sweep)}
         own |= {} if self.friction is None else {"friction": self.friction}
         return super().document_values() | (own if self.face else {})

@@ -3,9 +3,10 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 from feederscrew.base import value_forms as forms
+from feederscrew.base.columns import Document
 from feederscrew.base.documents import Entry
 from feederscrew.bowl.devices import values
 from feederscrew.bowl.devices.asked import Encounter, Lying, LyingPart
@@ -19,6 +20,7 @@ from feederscrew.bowl.devices.base import (
 )
 from feederscrew.bowl.devices.features import Features, Slope
 from feederscrew.bowl.devices.trade import IS_ANGLE, Action, Trade
+from feederscrew.bowl.devices.values import DeviceFields
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -46,7 +48,7 @@ class Lean(Device):
     limits: ClassVar[tuple[float, float]] = (0.0, MAX_BANK_RAD)  # [rad] of the angle
 
     @classmethod
-    def read(cls, entry: Entry) -> dict[str, Any]:
+    def read(cls, entry: Entry) -> DeviceFields:
         name, arguments = entry.key, {entry.key: entry}
         if cls.key:
             name, arguments = cls.key, values.mapping(entry, (cls.key,), f"write {cls.trade.example}")
@@ -127,7 +129,7 @@ class Lean(Device):
     def label(self) -> str:
         return f"{self.kind} {self.text}"
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         return {"angle_deg": math.degrees(self.angle)}
 
 

@@ -3,12 +3,13 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 
 from feederscrew.base import value_forms as forms
 from feederscrew.base.arrays import Points
+from feederscrew.base.columns import Document
 from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
 from feederscrew.bowl.devices import values
@@ -27,6 +28,7 @@ from feederscrew.bowl.devices.base import (
 )
 from feederscrew.bowl.devices.features import Drop, Features, TrackOpening, box_ring
 from feederscrew.bowl.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
+from feederscrew.bowl.devices.values import DeviceFields
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -261,7 +263,7 @@ class Slot(Device):
     action = Action.CUT
 
     @classmethod
-    def read(cls, entry: Entry) -> dict[str, Any]:
+    def read(cls, entry: Entry) -> DeviceFields:
         return values.span(entry)[0]
 
     def value_text(self) -> str:
@@ -298,7 +300,7 @@ class Rails(Device):
     action = Action.HANG
 
     @classmethod
-    def read(cls, entry: Entry) -> dict[str, Any]:
+    def read(cls, entry: Entry) -> DeviceFields:
         span, arguments = values.span(entry, ("lead_in",))
         if "lead_in" not in arguments:
             return span
@@ -411,7 +413,7 @@ class Rails(Device):
         lead = f", lead-in {span_words(self.lead[:2])}" if self.lead else ""
         return f"slot {span_words(self.span)}{lead}"
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         names = ("from_mm", "to_mm", "length_mm", "taper_mm")
         lead = {name: size / MM for name, size in zip(names, self.lead)}
         return super().document_values() | ({"lead_in": lead} if self.lead else {})

@@ -7,13 +7,14 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feederscrew.base import units
 from feederscrew.base import value_forms as forms
 from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Document
 from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.polygons import turned
 from feederscrew.base.heavy import heavy
@@ -428,7 +429,7 @@ class Sorter(Device):
             f"{nozzles}, {self.pressure / BAR_PA:.4g} bar at the nozzle; {valve}",
         )
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         return {
             "value_mm": self.like[2] / MM,
             "sees": self.sees,
@@ -588,7 +589,7 @@ class SteadyJet(Device):
         bore, bar = length_words(self.nozzle), f"{self.pressure / BAR_PA:.4g} bar"
         return (f"1 nozzle of {bore} in the wall, blows steadily: regulator {bar}",)
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         return {
             "nozzle_mm": self.nozzle / MM,
             "pressure_bar": self.pressure / 1e5,

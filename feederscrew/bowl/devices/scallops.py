@@ -4,12 +4,13 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feederscrew.base import value_forms as forms
 from feederscrew.base.arrays import Points
+from feederscrew.base.columns import Document
 from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
 from feederscrew.base.units import MM
@@ -26,6 +27,7 @@ from feederscrew.bowl.devices.features import Features, TrackOpening
 from feederscrew.bowl.devices.ledges import SHOP_STEP_M
 from feederscrew.bowl.devices.openings import Across, judge_hole
 from feederscrew.bowl.devices.trade import ProposedBy, Trade, ValueSearch
+from feederscrew.bowl.devices.values import DeviceFields
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -88,7 +90,7 @@ class DishOut(_Bay):
     )
 
     @staticmethod
-    def read(entry: Entry) -> dict[str, Any]:
+    def read(entry: Entry) -> DeviceFields:
         own = values.mapping(entry, ("leaves", "radius"), "write {leaves: 7 mm, radius: 12 mm}")
         return {
             "limit": values.within(own, "leaves", "length", 0.0, values.MAX_LENGTH_M),
@@ -102,7 +104,7 @@ class DishOut(_Bay):
     def value_words(self) -> str:
         return f"leaves {length_words(self.limit)} of track, radius {length_words(self.radius)}"
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         return {"value_mm": self.limit / MM, "radius_mm": self.radius / MM}
 
     def ring(self, width: float) -> Points:
@@ -141,7 +143,7 @@ class CapSelector(_Bay):
     search = ValueSearch(ProposedBy.VALUE)
 
     @staticmethod
-    def read(entry: Entry) -> dict[str, Any]:
+    def read(entry: Entry) -> DeviceFields:
         own = values.mapping(entry, CAP_SELECTOR_KEYS, f"write {CAP_SELECTOR_EXAMPLE}")
         land, length, tongue, reach = (
             values.within(own, name, "length", 1e-5, values.MAX_LENGTH_M) for name in CAP_SELECTOR_KEYS
@@ -164,7 +166,7 @@ class CapSelector(_Bay):
         size = f"bay of {length_words(self.length)}, land of {length_words(self.limit)}"
         return f"{size}, tongue of {length_words(self.tongue)} up to {length_words(self.reach)} off the wall"
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         own = zip(CAP_SELECTOR_KEYS[1:], self.lengths[1:])
         return {"value_mm": self.limit / MM} | {f"{name}_mm": size / MM for name, size in own}
 

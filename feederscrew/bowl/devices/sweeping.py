@@ -3,13 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 from scipy import optimize
 
 from feederscrew.base import value_forms as forms
+from feederscrew.base.columns import Document
 from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
 from feederscrew.bowl.devices import values
@@ -27,6 +28,7 @@ from feederscrew.bowl.devices.base import (
 from feederscrew.bowl.devices.blades import SQUARE_FACE_RAD, Overhead
 from feederscrew.bowl.devices.features import BLADE, Blade, Features
 from feederscrew.bowl.devices.trade import IS_ANGLE, Trade
+from feederscrew.bowl.devices.values import DeviceFields
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -55,7 +57,7 @@ class CurvedDeflector(Overhead):
     )
 
     @staticmethod
-    def read(entry: Entry) -> dict[str, Any]:
+    def read(entry: Entry) -> DeviceFields:
         mend = "write {clearance: 11.5 mm, from: 12 deg, to: 50 deg}"
         own = values.mapping(entry, ("clearance", "from", "to"), mend)
         low, high = math.radians(1.0), math.radians(89.0)
@@ -75,7 +77,7 @@ class CurvedDeflector(Overhead):
         bend = f"bent from {degrees_words(self.begin)} to {degrees_words(self.end)}"
         return f"{super().value_words}, {bend}"
 
-    def document_values(self) -> dict[str, Any]:
+    def document_values(self) -> Document:
         ends = {"from_deg": math.degrees(self.begin), "to_deg": math.degrees(self.end)}
         return super().document_values() | ends
 

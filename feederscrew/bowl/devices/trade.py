@@ -2,7 +2,6 @@
 
 import enum
 from dataclasses import dataclass, field
-from typing import Any
 
 from feederscrew.base import value_forms as forms
 
@@ -73,7 +72,7 @@ class Trade:
 
     example: str = ""  # of its value, as written after 'kind:'
     meaning: str = ""  # a sentence of a bowl file's page
-    form: dict[str, Any] = field(default_factory=lambda: forms.LENGTH_FORM)  # of its value in a bowl file
+    form: forms.JsonSchema = field(default_factory=lambda: forms.LENGTH_FORM)  # of its value in a bowl file
     old_name: str = ""  # what files of before call it, as these are read too; '': the same
     measures: str = ""  # of a part, in the part's own terms
     serves: str = ""  # what one that returns nothing is for

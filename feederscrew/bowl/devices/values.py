@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from feederscrew.base.dxf import Outlines
 
 Corner = tuple[float, float]  # [m]
+DeviceFields = dict[str, Any]  # of a device by their names, in SI units: those that its value in a file says
 CORNER_ADVICE = "write [9 mm, 8 mm]"
 POLYGON = "write a list of three or more corners, as [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
 MAX_LENGTH_M = 1000.0  # [m] no bowl reaches so far
@@ -32,7 +33,7 @@ NOZZLE = {  # the same of a jet
 }
 
 
-def length(entry: Entry) -> dict[str, Any]:
+def length(entry: Entry) -> DeviceFields:
     """Read a length above 0.
 
     Parameters
@@ -55,7 +56,7 @@ def length(entry: Entry) -> dict[str, Any]:
     return {"limit": limit}
 
 
-def blade(entry: Entry) -> dict[str, Any]:
+def blade(entry: Entry) -> DeviceFields:
     """Read a clearance, or {clearance: 6 mm, sweep: 30 deg, friction: 0.2, contour: [[0 mm, 6 mm], ...]}.
 
     Parameters
@@ -75,7 +76,7 @@ def blade(entry: Entry) -> dict[str, Any]:
         return length(entry)
     mend, more = "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour")
     arguments = mapping(entry, ("clearance", *more), mend, more)
-    fields: dict[str, Any] = {
+    fields: DeviceFields = {
         name: within(arguments, key, dimension, low, high)
         for key, (name, dimension, low, high) in BLADE.items()
         if key in arguments
@@ -85,7 +86,7 @@ def blade(entry: Entry) -> dict[str, Any]:
     return fields
 
 
-def sensor(entry: Entry, views: Sequence[str]) -> dict[str, Any]:
+def sensor(entry: Entry, views: Sequence[str]) -> DeviceFields:
     """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}.
 
     Parameters
@@ -109,7 +110,7 @@ def sensor(entry: Entry, views: Sequence[str]) -> dict[str, Any]:
     if node.kind == "list" and not node.items:
         raise ConfigError(node.where, "of names no orientation", "write aspect@heading, as A@90")
     first, *rest = map(_orientation, node.items if node.kind == "list" else [node])
-    fields: dict[str, Any] = {"like": (*first, _play(arguments)), "also": tuple(rest)}
+    fields: DeviceFields = {"like": (*first, _play(arguments)), "also": tuple(rest)}
     if "sees" in arguments:
         node = arguments["sees"].value
         fields["sees"] = node.text.strip()
@@ -121,7 +122,7 @@ def sensor(entry: Entry, views: Sequence[str]) -> dict[str, Any]:
     return fields | (nozzle(arguments["jet"], ("time", "nozzles")) if "jet" in arguments else {})
 
 
-def nozzle(entry: Entry, more: Sequence[str] = (), needed: Sequence[str] = ()) -> dict[str, Any]:
+def nozzle(entry: Entry, more: Sequence[str] = (), needed: Sequence[str] = ()) -> DeviceFields:
     """Read {nozzle: 2 mm, pressure: 3 bar, height: 4 mm}, and the time of a pulse where there is one.
 
     Parameters
@@ -179,7 +180,7 @@ def within(entry: dict[str, Entry], name: str, dimension: str, low: float, high:
 
 def span(
     entry: Entry, more: Sequence[str] = (), needed: Sequence[str] = ()
-) -> tuple[dict[str, Any], dict[str, Entry]]:
+) -> tuple[DeviceFields, dict[str, Entry]]:
     """Read {from: 2 mm, to: 5 mm} with more entries beside it.
 
     Parameters
@@ -211,7 +212,7 @@ def span(
     return {"span": (first, last)}, arguments
 
 
-def shares(entry: Entry) -> dict[str, Any]:
+def shares(entry: Entry) -> DeviceFields:
     """Read the share that passes by aspect.
 
     Parameters
@@ -240,7 +241,7 @@ def shares(entry: Entry) -> dict[str, Any]:
     return {"shares": tuple(pairs)}
 
 
-def polygon(entry: Entry) -> dict[str, Any]:
+def polygon(entry: Entry) -> DeviceFields:
     """Read a polygon of lengths, or the DXF file that holds it.
 
     Parameters
@@ -308,7 +309,7 @@ def _remark_on_drawing(read: "Outlines", name: str) -> str:
     return f"{name} {facts} - {mends}" if remarks else ""
 
 
-def opening(entry: Entry) -> dict[str, Any]:
+def opening(entry: Entry) -> DeviceFields:
     """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}.
 
     Parameters

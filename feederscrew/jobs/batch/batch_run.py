@@ -13,9 +13,9 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from feederscrew import __version__
+from feederscrew.base.columns import Cells, Document
 from feederscrew.base.errors import FeederError
 from feederscrew.jobs.batch import summary
 from feederscrew.jobs.batch.task import (
@@ -155,7 +155,7 @@ class Store:
             mend = "make room there, then start this batch again with `resume`: what is finished is kept"
             raise FeederError(self.path, what, mend) from error
 
-    def record(self, name: str) -> dict[str, Any]:
+    def record(self, name: str) -> Document:
         """Return what is recorded of one part: key, status, reason, row, files.
 
         Empty if there is none, or it is not as it was written: its digest differs, or what it says cannot be.
@@ -168,13 +168,13 @@ class Store:
             return {}
 
 
-def _digest(record: dict[str, Any]) -> str:
+def _digest(record: Document) -> str:
     """SHA-256 of a record as JSON."""
     text = json.dumps(json.loads(tables.json_text(record)), sort_keys=True)
     return _sha256(text.encode())
 
 
-def _is_possible(record: dict[str, Any]) -> bool:
+def _is_possible(record: Document) -> bool:
     """Tell whether the kinds of a record's values and the order of its interval are those of a result."""
     row, inputs = record["row"], record["inputs"]
     kinds = (("row", dict), ("files", dict), ("inputs", list), ("warnings", list), ("effective", dict))
@@ -219,7 +219,7 @@ def _lock(folder: Path) -> int | None:
 class Batch:
     """Results of a finished batch."""
 
-    rows: tuple[dict[str, Any], ...]  # one a part, in the order asked for
+    rows: tuple[Cells, ...]  # one a part, in the order asked for
     reused: int  # parts whose results were there already
     foreign: tuple[str, ...]  # folders of parts that are not in this batch
     targets: tuple[Path, ...]  # files of the whole batch

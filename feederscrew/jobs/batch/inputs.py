@@ -14,7 +14,7 @@ from typing import Any
 
 from feederscrew import bowl as bowls
 from feederscrew.base import documents, units
-from feederscrew.base.columns import Frame
+from feederscrew.base.columns import Cells, Document, Frame
 from feederscrew.base.documents import found_as, raise_all
 from feederscrew.base.errors import ConfigError, Faults, FeederError
 from feederscrew.jobs.batch.task import FAILED as FAILED
@@ -92,7 +92,7 @@ def read_orders(path: str) -> tuple[DesignOrder, ...]:
     return tuple(orders)
 
 
-def order_row(order: DesignOrder, target: float, document: dict[str, Any]) -> dict[str, Any]:
+def order_row(order: DesignOrder, target: float, document: Document) -> Cells:
     """Return the row of a design, from its document.
 
     Parameters
@@ -113,7 +113,7 @@ def order_row(order: DesignOrder, target: float, document: dict[str, Any]) -> di
     return {"part": order.source, "target_per_minute": target / units.PER_MINUTE} | own
 
 
-def order_table(rows: list[dict[str, Any]]) -> Frame:
+def order_table(rows: list[Cells]) -> Frame:
     """Return what holds, a row a part."""
     return Frame.of({name: [row[name] for row in rows] for name in rows[0]})
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from feederscrew.base.columns import ColumnHead, Frame, share_head
+from feederscrew.base.columns import Cells, ColumnHead, Document, Frame, share_head
 from feederscrew.base.units import counted
 from feederscrew.jobs.batch.task import DONE, NOT_COMPUTED, PARTS, THUMBNAIL, Request
 from feederscrew.output.batch import ACROSS, DOWN
@@ -42,7 +42,7 @@ SUMMARY_COLUMNS = (
     "note",
     "warnings",
 )
-Rows = tuple[dict[str, Any], ...]
+Rows = tuple[Cells, ...]
 SUMMARY_HEADS = {  # of a table for people
     **{name: share_head(name) for name in ("passes_devices",)},
     **{f"p_{name}": share_head(name) for name in ("orientation", "drop")},
@@ -107,7 +107,7 @@ def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = No
     rows, titles = [], _titles({request.source for request in requests})
     for request in requests:
         is_done = finished is None or request.name in finished
-        record: dict[str, Any] = store.record(request.name) if is_done else {"status": NOT_COMPUTED}
+        record: Document = store.record(request.name) if is_done else {"status": NOT_COMPUTED}
         numbers = record.get("row", {}) | {
             "part": titles[request.source],
             "folder": request.name,
@@ -168,7 +168,7 @@ def sheets(store: Any, rows: Rows) -> Iterator[list[tuple[bytes | None, str, str
             yield tiles
 
 
-def _words(row: dict[str, Any]) -> str:
+def _words(row: Cells) -> str:
     if row["status"] != DONE:  # without the path of its file in front
         reason = row["reason"] or ""
         place, colon, rest = reason.partition(": ")
@@ -215,7 +215,7 @@ def index_pages(store: Any, rows: Rows) -> dict[str, Page]:
     return pages
 
 
-def _index_row(store: Any, row: dict[str, Any]) -> tuple[MarkedCell, ...]:
+def _index_row(store: Any, row: Cells) -> tuple[MarkedCell, ...]:
     name, path = row["folder"], f"{PARTS}/{quote(row['folder'])}/"
     remarks = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
     picture = None

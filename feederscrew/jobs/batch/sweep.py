@@ -12,7 +12,7 @@ from feederscrew.base import processes, units
 from feederscrew.base.errors import ArgumentError, FeederError
 from feederscrew.base.records import ReadableRecord
 from feederscrew.base.running import OnCores
-from feederscrew.base.signatures import with_shown_signature
+from feederscrew.base.signatures import Keywords, with_shown_signature
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.values import BY_WORD, refuse_unknown
 from feederscrew.output import record_views, tables
@@ -119,14 +119,14 @@ def _column(name: str, value: Any, is_of_bowl: bool) -> tuple[str, Any]:
 
 def _call(
     arguments: Sequence[Any], combination: Mapping[str, Any], of_bowl: Collection[str]
-) -> tuple[list[Any], dict[str, Any]]:
+) -> tuple[list[Any], Keywords]:
     """The arguments and keywords of a study at a combination."""
     values = {name: combination[name] for name in of_bowl}
     own = {name: value for name, value in combination.items() if name not in of_bowl}
     return [one.with_values(**values) if isinstance(one, Bowl) else one for one in arguments], own
 
 
-Call: TypeAlias = tuple[list[Any], dict[str, Any]]
+Call: TypeAlias = tuple[list[Any], Keywords]
 
 
 def _rows(function: Callable[..., ReadableRecord], table: str | None, call: Call) -> "DataFrame":

@@ -4,14 +4,15 @@ import functools
 import gc
 import io
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
 from feederscrew.arrivals.aspects_study import AspectsStudy, with_drops
 from feederscrew.arrivals.drop import drop
 from feederscrew.arrivals.entry import Shares, shares
+from feederscrew.base.columns import Cells, Document
 from feederscrew.base.errors import FeederError
+from feederscrew.base.signatures import Keywords
 from feederscrew.base.units import GRAM
 from feederscrew.feeding import well_oriented
 from feederscrew.feeding.rate import rate
@@ -57,7 +58,7 @@ def work(task: Task) -> Outcome:
 
 def _results(task: Task) -> Outcome:
     request, choices, files = task.request, task.choices, Files()
-    options: dict[str, Any] = dict(request.options)
+    options: Keywords = dict(request.options)
     part = load(request.source, **options, names=request.names, stdin=io.BytesIO(task.data))
     if choices.drops and part.vertices is not None:
         # its random numbers hang on the part's file alone; its answer is then the recommended one
@@ -77,7 +78,7 @@ def _results(task: Task) -> Outcome:
     conveying = travel(request.conditions)
     files.write("convey.json", tables.json_text(conveying))
     rated, rate_warnings = _rate(part, results, task, files)
-    own: dict[str, Any] = {"config": request.conditions.name, "material": part.material}
+    own: Cells = {"config": request.conditions.name, "material": part.material}
     own |= {"mass_g": part.mass / GRAM, "aspects": int(results.stable.sum())}
     own |= {name: conveying[name] for name in ("velocity_mm_s", "regime")}
     row = own | rated | tested
@@ -101,13 +102,13 @@ def _results(task: Task) -> Outcome:
 
 
 @functools.lru_cache(maxsize=64)
-def travel(conditions: Conditions) -> dict[str, Any]:
+def travel(conditions: Conditions) -> Document:
     """Return the document of ``convey.json``: the same for every part, a point mass."""
     well_oriented.velocity(conditions.bowl)  # raises where there is no steady state
     return convey_output.document(convey(conditions.bowl))
 
 
-def _rate(part: Part, aspects: Aspects, task: Task, files: Files) -> tuple[dict[str, Any], Iterable[str]]:
+def _rate(part: Part, aspects: Aspects, task: Task, files: Files) -> tuple[Cells, Iterable[str]]:
     """Rate the aspect wanted, else the orientation that leaves most often; what ``feeder rate`` warns of."""
     conditions, rule = task.request.conditions, task.choices.rule
     tried = conditions.tried, part, conditions.bowl  # what the bowl file says of its trial

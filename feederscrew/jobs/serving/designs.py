@@ -13,8 +13,8 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
+from feederscrew.base.columns import Document
 from feederscrew.base.errors import printable
 from feederscrew.base.running import STAGE_VARIABLE
 from feederscrew.jobs.serving import guard
@@ -93,7 +93,7 @@ class DesignJob:
         self._lines: deque[str] = deque(maxlen=LINES_SHOWN)
         self._stop_asked = False
         self._began, self._ended = time.monotonic(), 0.0
-        self._answer: dict[str, Any] | None = None
+        self._answer: Document | None = None
         try:
             self.results.mkdir(parents=True)
             # beside its files the call is the one that the page shows, and so are those that it ends in
@@ -160,7 +160,7 @@ class DesignJob:
         )
 
     @property
-    def stage(self) -> dict[str, Any]:
+    def stage(self) -> Document:
         """Return its progress: stage, done, total, seconds gone and to go; empty where nothing is said."""
         return _json_file(self._stage_file) if self.is_running else {}
 
@@ -175,13 +175,13 @@ class DesignJob:
         }
 
     @property
-    def answer(self) -> dict[str, Any]:
+    def answer(self) -> Document:
         """Return the document of its answer, ``design.json``; empty where there is none, or none yet."""
         if self._answer is None and not self.is_running:
             self._answer = _json_file(self.files().get("design.json"))
         return self._answer or {}
 
-    def document(self) -> dict[str, Any]:
+    def document(self) -> Document:
         """Return the row of the design in a list of designs, as JSON has it."""
         answer = self.answer
         names = ("status", "wanted", "delivered_per_minute")
@@ -193,7 +193,7 @@ class DesignJob:
             **{name: answer.get(name) for name in names},
         }
 
-    def progress(self) -> dict[str, Any]:
+    def progress(self) -> Document:
         """Return all that a page shows of it but the links to its files."""
         return {
             **self.document(),
@@ -207,7 +207,7 @@ class DesignJob:
         }
 
     @property
-    def steps(self) -> list[dict[str, Any]]:
+    def steps(self) -> list[Document]:
         """Return what to try after it, as its document and the command line have it."""
         return self.answer.get("next") or []
 
@@ -263,7 +263,7 @@ def _place(path: Path, folder: Path) -> None:
         shutil.copyfile(path, folder / path.name)
 
 
-def _json_file(path: Path | None) -> dict[str, Any]:
+def _json_file(path: Path | None) -> Document:
     """The document in a file; empty where there is none, or no document."""
     if path is not None:
         with contextlib.suppress(OSError, ValueError, RecursionError):

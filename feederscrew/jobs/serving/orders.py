@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
+from feederscrew.base.columns import Document
+from feederscrew.base.signatures import Keywords
 from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.jobs.serving.refusal import Refusal
 from feederscrew.jobs.serving.uploads import BowlUpload, Upload
@@ -145,7 +147,7 @@ class PageOrder:
         -------
         PageOrder
         """
-        other, fields = dict(options), dict[str, Any]()
+        other, fields = dict(options), Keywords()
         if target := other.pop("--target", None):
             fields["rate"] = float(target.removesuffix("/min"))
         if "--outcome" in other:
@@ -166,7 +168,7 @@ class PageOrder:
         kept = tuple((name, value) for name, value in more.items() if value is not None)
         return replace(self, **fields, more=kept, settings=(*{**dict(self.settings), **settings}.items(),))
 
-    def _with_side(self, options: Mapping[str, str | None]) -> dict[str, Any]:
+    def _with_side(self, options: Mapping[str, str | None]) -> Keywords:
         """The fields of the side up, with some of the options that say it changed."""
         side = {**self._side, **options}
         aspect, heading = side.get("--aspect"), side.get("--heading")
@@ -188,7 +190,7 @@ class PageOrder:
         return shlex.join(["feeder", "design", self.upload.name, *self.options, *config, *FOLDER])
 
     @property
-    def values(self) -> dict[str, Any]:
+    def values(self) -> Document:
         """Return the values of the page's fields for this order, and ``also``, what it asks beside them."""
         own = ("rate", "material", "machine", "up", "heading", "outcome", "may_use", "diameter")
         bowl = None if self.bowl is None else self.bowl.id

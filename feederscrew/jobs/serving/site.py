@@ -19,10 +19,12 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
+from wsgiref.types import WSGIEnvironment
 
 from werkzeug.exceptions import ClientDisconnected, HTTPException
 from werkzeug.wrappers import Request, Response
 
+from feederscrew.base.columns import Document
 from feederscrew.base.errors import FeederError, printable
 from feederscrew.jobs.serving.designs import MOST_DESIGNS, DesignJob, Guard
 from feederscrew.jobs.serving.orders import ANY_HEADING, BEST_HEADING, MACHINES, OUTCOMES, MayUse, PageOrder
@@ -87,7 +89,7 @@ class Site:
         """Return the address to open, with the token of this run."""
         return f"http://{self.hosts[0]}/?token={self.token}"
 
-    def __call__(self, environ: dict[str, Any], start_response: Callable[..., Any]) -> Iterable[bytes]:
+    def __call__(self, environ: WSGIEnvironment, start_response: Callable[..., Any]) -> Iterable[bytes]:
         """Answer one request as WSGI has it."""
         request = Request(environ)
         try:
@@ -201,7 +203,7 @@ class Site:
         filled = text.replace("{{values}}", json.dumps(values).replace("<", "\\u003c"))
         return Response(filled, mimetype="text/html")
 
-    def state(self) -> dict[str, Any]:
+    def state(self) -> Document:
         """Return what is here: parts, designs, and the id of the one at work."""
         running = [job.id for job in self.designs.values() if job.is_running]
         return {
@@ -210,7 +212,7 @@ class Site:
             "running": running[0] if running else None,
         }
 
-    def progress(self, job: DesignJob) -> dict[str, Any]:
+    def progress(self, job: DesignJob) -> Document:
         """Return everything that the page shows of a design.
 
         Parameters

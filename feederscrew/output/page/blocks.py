@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from feederscrew.base.columns import Frame
+from feederscrew.base.columns import Document, Frame
 from feederscrew.base.errors import Detail
 
 
@@ -82,7 +82,7 @@ class Pose:
 class Views:
     """The part, to be turned: on each aspect, over cuts, or on its way; ``scene`` is JSON for the viewer."""
 
-    scene: dict[str, Any]
+    scene: Document
     captions: tuple[tuple[str, str, tuple[ShareBar, ...]], ...]  # name, kind, bars
     name: str = "views"  # of the block; no two of a page have the same
     subject: str = "Aspect"  # what the captions name
@@ -110,7 +110,7 @@ class Knobs:
 
     knobs: tuple[Knob, ...]
     # JSON for the script: ``bowl``, ``rate``, ``regimes`` (name, colour, words), ``top``: ``report.knobs``
-    values: dict[str, Any]
+    values: Document
 
 
 @dataclass(frozen=True)

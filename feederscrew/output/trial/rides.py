@@ -2,7 +2,6 @@
 
 import itertools
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import shapely
@@ -10,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew.arrivals.kernel import body
 from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Document
 from feederscrew.base.units import MM
 from feederscrew.bowl.record import Track
 from feederscrew.output import shading, tooling_views
@@ -243,7 +243,7 @@ def _cone(start: Floats, direction: Floats, long: float, wide: float, wider: flo
     return corners, np.concatenate([np.column_stack(side) for side in sides])
 
 
-def scene(part: Part, *tried: TrialRun) -> tuple[dict[str, Any], list[tuple[str, str]]]:
+def scene(part: Part, *tried: TrialRun) -> tuple[Document, list[tuple[str, str]]]:
     """Return what the viewer plays, and captions: one part that passes a device, one that does not.
 
     For JSON: mesh, ``tracks`` and view as in the report's other scenes; ``paths`` (K, 8) float32 in

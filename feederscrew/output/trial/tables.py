@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew.arrivals.ensemble import wilson
 from feederscrew.base.arrays import Floats, Ints
-from feederscrew.base.columns import ColumnHead, Frame, heads, of_arrays, share_head, values
+from feederscrew.base.columns import Cells, ColumnHead, Document, Frame, heads, of_arrays, share_head, values
 from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM, MM_S, PER_MINUTE
 from feederscrew.designing.evidence import share_at_least
@@ -83,7 +83,7 @@ def pictures(study: TrialStudy) -> list[offer.Offer]:
     ]
 
 
-def document(study: TrialStudy) -> dict[str, Any]:
+def document(study: TrialStudy) -> Document:
     """Return a trial as the JSON document: of the first amplitude, and of all where there are more.
 
     Parameters
@@ -105,7 +105,7 @@ def document(study: TrialStudy) -> dict[str, Any]:
     return entries
 
 
-def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
+def _run(study: TrialStudy, run: TrialRun) -> Document:
     fallen, landing, queue = run.landing, None, None
     if fallen is not None:  # what became of the parts that fell onto the track
         landing = values(LANDING_COLUMNS, fallen) | {
@@ -140,7 +140,7 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
     }
 
 
-def filled_entry(filled: FilledQueue) -> dict[str, Any]:
+def filled_entry(filled: FilledQueue) -> Document:
     """Return what a queue did at one fill as a dict: rate and purity of wanted parts, with their bounds.
 
     Parameters
@@ -174,7 +174,7 @@ def queues_table(rows: Sequence[Mapping[str, Any]]) -> Frame:
     return Frame.of_rows(rows).headed(shares | {name: ColumnHead.of_name(name, "1/min") for name in names})
 
 
-def orientations(run: TrialRun) -> list[dict[str, Any]]:
+def orientations(run: TrialRun) -> list[Cells]:
     """Return one row an orientation tried, those that differ from the static rule first.
 
     Parameters
@@ -235,7 +235,7 @@ def _leaving_counts(run: TrialRun, leaving: Ints) -> list[tuple[str | None, int]
     return [(_name(run, k if k < len(leaving) - 1 else -1), int(n)) for k, n in enumerate(leaving) if n]
 
 
-def _landing_columns(study: TrialStudy, landing: course.Landing) -> dict[str, Any]:
+def _landing_columns(study: TrialStudy, landing: course.Landing) -> Cells:
     low, high = wilson(landing.landed_counts, landing.landed_counts.sum())
     shares = {"aspect": study.aspects.names, "landed": landing.landed_counts, "low": low, "high": high}
     return shares | dict(zip(course.FATES, landing.fates.T))
