@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -262,10 +262,17 @@ def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
         proofs.append((study, candidate))
         if study.status in HELD or study.partial or search.is_spent:
             return
-        other = _change_by_proof(search, study, candidate, [proved for _, proved in proofs])
-        if other is None or not other.attempt.clean:
+        proved = [one for _, one in proofs]
+        other = _change_by_proof(search, study, candidate, proved)
+        if other is None or not other.attempt.clean or _is_proved(other, proved):
             return
         candidate = other
+
+
+def _is_proved(candidate: Candidate, proved: Iterable[Candidate]) -> bool:
+    """Tell whether the chain of a candidate was proved at its drive: it would come out the same."""
+    own = candidate.proposal.chain, candidate.bowl.drive
+    return any((other.proposal.chain, other.bowl.drive) == own for other in proved)
 
 
 def _change_by_proof(
