@@ -287,6 +287,10 @@ def _change_by_proof(
     if study.proof.jams:
         # what stood there, and where, says what to change
         jammed = tuple(row for queue in study.proof.queues for row in queue.jammed)
+        names = [one.name for one in lying]
+        exploring.note_standing(
+            search, candidate, (names.index(stood.name) for stood in jammed if stood.name in names)
+        )
         mends = exploring.mends_of_jams(search, candidate, jammed)
         known = {other.proposal.chain for other in proved if other.bowl.drive == candidate.bowl.drive}
         fresh = (mended for mended in mends if mended.chain not in known)
