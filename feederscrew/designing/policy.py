@@ -44,6 +44,11 @@ JETS = Basis(
     "parts on their side stand at the blade of every chain of steel that was tried; with a jet before the "
     "rails a full track brought 83/min in 20 s, 22 of 22 right, and no jam",
 )
+DENIED = Basis(
+    ("tnut_m5", "cap_14x10"),
+    "558 s and 384 s of processor time until they fell short, four fifths of it in the queues of nine and "
+    "seven designs that were denied one after the other",
+)
 SIDES = Basis(
     (),
     "a cap of 16 x 9 mm with a pin of 2 x 5 mm off its middle, none of docs/designs.csv: 26 trials of seven "
@@ -111,6 +116,9 @@ class SearchPolicy:
     drawn_designs: int = _chosen(4)  # of a cost class that go through draws
     proof_changes: int = _chosen(3, MENDED_BY_PROOF)  # of one design, each by what its proof denied
     jam_mends: int = _chosen(3, JAMS)  # chains that are tried for a queue that jams, by what stood there
+    # [s] of queues that denied designs, after which no other design is proved: of a cost class, and near them
+    denied_in_class: float = _chosen(60.0, DENIED)
+    denied_near: float = _chosen(60.0, DENIED)
     lively_hop: float = _chosen(1.2e-4, MENDED_BY_PROOF)  # [m] from which jams ask for a device
     faster: float = _chosen(1.3, FASTER_DRIVE)  # [1] times the speed, where draws lose what creeps
     slow_reserve: float = _chosen(1.2)  # [1] times what the worst fill of a slow design lacks of the target

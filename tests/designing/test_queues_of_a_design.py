@@ -351,6 +351,11 @@ def test_a_chain_is_proved_once_at_a_drive_and_a_few_are(monkeypatch, mended, pr
     loop._prove(search, made("A", 1.0), proofs)
     assert seen == [(name, pytest.approx(stroke)) for name, stroke in proved]
     assert len(proofs) == len(seen) <= USUAL_POLICY.proof_changes + 1
+    # each queue was followed for 200 s: so long that nothing is changed after the first, or the second
+    for more, count in ((150.0, 1), (350.0, 2)):
+        proofs.clear()
+        loop._prove(search, made("A", 1.0), proofs, search.state.denied + more)
+        assert len(proofs) == count
 
 
 def test_what_draws_carry_through_or_jams_is_tried_with_another_value_drive_or_break(monkeypatch, prove):
@@ -481,6 +486,18 @@ def test_what_denies_it_ends_it_where_it_is_seen(fakes, fills, jobs):
     assert all(running[name].time in (seconds, 15.0) for name, seconds, _ in fills if name in running)
     again, _ = followed(*fakes, jobs=jobs, whole=True, longest=60.0, running=running)
     assert again == followed(*fakes, whole=True, longest=60.0)[0]
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_beside_a_fill_that_jams_the_others_are_followed_for_a_minute(jobs):
+    """Each is to be shown, and none decides anything any more: the third of them is open for 10 min."""
+    running = {}
+    fills, _ = followed(0.3, 0.1, (2.0, 9.0), whole=True, jobs=jobs, running=running)
+    assert fills == [("low", 60.0, False), ("normal", 60.0, False), ("high", 9.0, False)]
+    assert all(made.time <= 60.0 for made in running.values())
+    # what was followed before the jam was seen stays as it is
+    fills, _ = followed((2.0, 16.0), 0.3, 0.3, whole=True, jobs=jobs, longest=90.0)
+    assert fills == [("low", 16.0, False), ("normal", 90.0, False), ("high", 90.0, False)]
 
 
 @pytest.mark.parametrize(("fakes", "fills"), [
