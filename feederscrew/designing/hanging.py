@@ -397,8 +397,15 @@ def blow_off(
     rejected = [row for row in stands if row not in wanted]
     if not wanted or not rejected or Action.BLOW in placed or Action.HANG not in placed:
         return None
+    before = placed.index(Action.HANG)
+    # what falls from a cut before them, a queue may push past it as well
+    leaks = [
+        row
+        for row, orientation in enumerate(orientations)
+        if row not in wanted and any(orientation.name in cut.returns for cut in proposal.cuts[:before])
+    ]
     encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
-    own, others = ([encounters[row] for row in rows] for rows in (wanted, rejected))
+    own, others = ([encounters[row] for row in rows] for rows in (wanted, {*rejected, *leaks}))
     kinds: list[Any] = [
         kind for kind in KINDS.values() if kind.action is Action.BLOW and kind.search.is_proposed
     ]
@@ -408,7 +415,6 @@ def blow_off(
     if not jets:
         return None
     jet = max(jets, key=lambda one: (int(blown[one][rejected].sum()), int(blown[one].sum())))
-    before = placed.index(Action.HANG)
     cut = judge_cut(orientations, proposal.row, jet, blown[jet], jet, jet)
     cuts = [_leave_to(cut, blown[jet], wanted, orientations) for cut in proposal.cuts]
     move = Move(MoveKind.JET_BEFORE, 0.0, jet.kind, jet.text)

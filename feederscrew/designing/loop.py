@@ -120,7 +120,7 @@ def design(
         for cost_class in proposals.COST_CLASSES:
             classes.append(cost_class)
             first = len(proofs)  # the best chains of a class, until one holds or enough of them do not
-            most = search.state.denied + policy.denied_in_class
+            most = search.state.denied + policy.denied_in_class[proposals.COST_CLASSES.index(cost_class)]
             for candidate in exploring.candidates(search, cost_class):
                 _prove(search, candidate, proofs, most)
                 own, last = proofs[first:], proofs[-1][0]
