@@ -15,6 +15,7 @@ from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.base.arrays import Floats
 from feederscrew.bowl.device_list import check_written
 from feederscrew.bowl.devices.base import ComparedValue
+from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.bowl.devices.kinds import cost_class as cost_class_of
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl, Track
@@ -89,6 +90,8 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
             bare = proposals.propose_no_device(track.orientations, track.weights, search.request, own_devices)
             if bare is not None and not _was_tried(search, track, bare) and not search.is_spent:
                 yield from _try_and_mend(search, track, bare)
+        if number == proposals.AIR:
+            yield from _blown_off(search)
         yield from _chains(search, tracks, number)
 
 
@@ -148,6 +151,45 @@ def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Itera
     for idea in late.values():
         state.reach += policy.rails_given_up
         yield from _rails_by_trials(search, idea, cost_class)
+
+
+def _blown_off(search: Search) -> Iterator[Candidate]:
+    """Candidates with rails of steel and a jet before them, for what came to stand; the latest first."""
+    state = search.state
+    if set(search.request.without) & {kind.kind for kind in KINDS.values() if kind.action is Action.BLOW}:
+        return
+    for candidate, stands in reversed(state.stood[-search.policy.air_trials :]):
+        changed = hanging.blow_off(candidate.proposal, candidate.trial, stands, candidate.orientations.lying)
+        if (
+            changed is None
+            or chain_key(candidate.bowl.track, changed, candidate.orientations.lying) in state.chains
+        ):
+            continue
+        state.reach += 1  # no other chain is left out for it
+        if search.is_spent:
+            return
+        tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))
+        if not tried.attempt.clean:
+            state.failures.append(tried)
+            continue
+        state.clean.append(tried)
+        if tried.attempt.rate >= search.request.target:
+            yield tried
+
+
+def note_standing(search: Search, candidate: Candidate, rows: Iterable[int]) -> None:
+    """Keep which orientations came to stand at a chain with rails: a dearer class may take them off.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+    rows : iterable of int
+        Those that hang are left out.
+    """
+    stands = tuple(row for row in dict.fromkeys(rows) if row not in candidate.trial.wanted)
+    if stands and candidate.proposal.hangs and candidate.attempt.efficiency > 0.0:
+        search.state.stood.append((candidate, stands))
 
 
 def _rails_by_trials(search: Search, idea: _Idea, cost_class: int) -> Iterator[Candidate]:
@@ -623,8 +665,13 @@ def _try_rails(search: Search, track: BankedTrack, rails: hanging.RailsSearch) -
             )
         elif count >= policy.rails_given_up and not best.attempt.efficiency > 0.0:
             return
-    if best is not None and (chosen := (yield from _find_livelier(search, best))) is not None:
+    if best is None:
+        return
+    chosen = yield from _find_livelier(search, best)
+    if chosen is not None:
         yield chosen
+        return
+    note_standing(search, best, (fault.row for fault in best.attempt.faults if fault.kind is FaultKind.STAYS))
 
 
 def mends_of_jams(search: Search, candidate: Candidate, jammed: Sequence[JammedParts]) -> Iterator[Proposal]:

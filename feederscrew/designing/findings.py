@@ -123,6 +123,7 @@ class MoveKind(enum.Enum):
     BLADE_BEHIND = enum.auto()  # a blade behind the rails sweeps off what does not hang
     CUTS_BEFORE = enum.auto()  # cuts before the rails, by what a trial has shown to hang
     OTHER_CUTS = enum.auto()  # cuts of another kind before the rails, which return the same
+    JET_BEFORE = enum.auto()  # one device more: a steady jet before the rails, for what stands behind it
     BLADE_HEIGHT = enum.auto()  # it stands higher, by a value [m], or lower
     RAILS = enum.auto()  # rails for a head, before any trial
     LONGER_PULSE = enum.auto()

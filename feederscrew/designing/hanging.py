@@ -7,6 +7,7 @@ short flanged part rolls by the rule, and hangs in a trial.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from feederscrew.base.arrays import Bools, Floats
 from feederscrew.base.geometry import vectors
 from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.devices.blades import Wiper
-from feederscrew.bowl.devices.kinds import dearer
+from feederscrew.bowl.devices.kinds import KINDS, dearer
 from feederscrew.bowl.devices.ledges import Rails
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing import proposals
@@ -24,10 +25,20 @@ from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import SELDOM_SHARE, ShortTrial
 from feederscrew.feeding.stream import Orientations
 from feederscrew.sorting.isolating import chain, rails
-from feederscrew.sorting.isolating.chain import Design, DesignConstraints, DesignTask
+from feederscrew.sorting.isolating.chain import (
+    DESIGN_KEY,
+    Cut,
+    Design,
+    DesignConstraints,
+    DesignTask,
+    judge_cut,
+    limits,
+    margins_at,
+)
 from feederscrew.sorting.isolating.design import design_around_rails
 from feederscrew.sorting.isolating.rails import USUAL_RAILS, RailSetting, find_head
 from feederscrew.sorting.orientations import SAME_HEAD_COSINE, Neck, Orientation
+from feederscrew.sorting.verdicts import DeviceEncounter
 from feederscrew.trials.course import Fate
 from feederscrew.trials.fills import JammedParts
 
@@ -282,9 +293,11 @@ class RailsSearch:
             without = tuple(own_cuts) if kind is MoveKind.OTHER_CUTS else ()
             for built in self._build(Move(kind, value), other, sweep, shown, without):
                 cuts = built.cuts
+                if kind is MoveKind.OTHER_CUTS and cuts[0].device.action is Action.HANG:
+                    continue  # no other kind returns any of it
                 if kind not in (MoveKind.CUTS_BEFORE, MoveKind.OTHER_CUTS):  # as they were changed before
                     cuts = tuple(own_cuts.get(cut.device.kind, cut) for cut in cuts)
-                changed = replace(built, cuts=cuts)
+                changed = replace(built, cuts=_with_jets(cuts, proposal.cuts))
                 if changed.chain != proposal.chain:
                     yield changed
 
@@ -356,6 +369,74 @@ class RailsSearch:
         return rails.place_rails(own, head, width, self.constraints.step, setting)
 
 
+def blow_off(
+    proposal: Proposal, trial: ShortTrial, stands: Sequence[int], orientations: Sequence[Orientation]
+) -> Proposal | None:
+    """Return a chain with a steady jet before its rails, which blows off what would stand at them.
+
+    A queue pushes past a cut what single parts fall from, and a blade does not sweep what leans on it: air
+    meets no face. A cut that was to return the same goes to the middle of what is left to it: the less it
+    takes of the track, the less hooks there.
+
+    Parameters
+    ----------
+    proposal : Proposal
+        With rails.
+    trial : ShortTrial
+        That shows what hangs: the jet leaves it on the track.
+    stands : sequence of int
+        Orientations that came to stand, in a queue or in the trial.
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where the chain has a jet, or none surely tells one of those that stand from what hangs.
+    """
+    wanted, placed = trial.wanted, [cut.device.action for cut in proposal.cuts]
+    rejected = [row for row in stands if row not in wanted]
+    if not wanted or not rejected or Action.BLOW in placed or Action.HANG not in placed:
+        return None
+    before = placed.index(Action.HANG)
+    # what falls from a cut before them, a queue may push past it as well
+    leaks = [
+        row
+        for row, orientation in enumerate(orientations)
+        if row not in wanted and any(orientation.name in cut.returns for cut in proposal.cuts[:before])
+    ]
+    encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
+    own, others = ([encounters[row] for row in rows] for rows in (wanted, {*rejected, *leaks}))
+    kinds: list[Any] = [
+        kind for kind in KINDS.values() if kind.action is Action.BLOW and kind.search.is_proposed
+    ]
+    jets = [jet for kind in kinds for jet in kind.proposals(own, others, orientations, DESIGN_KEY)]
+    blown = {jet: margins_at(jet, tuple(orientations)) <= -MARGINS[-1] for jet in jets}
+    jets = [jet for jet in jets if blown[jet][rejected].any() and not blown[jet][wanted].any()]
+    if not jets:
+        return None
+    jet = max(jets, key=lambda one: (int(blown[one][rejected].sum()), int(blown[one].sum())))
+    cut = judge_cut(orientations, proposal.row, jet, blown[jet], jet, jet)
+    cuts = [_leave_to(cut, blown[jet], wanted, orientations) for cut in proposal.cuts]
+    move = Move(MoveKind.JET_BEFORE, 0.0, jet.kind, jet.text)
+    return replace(proposal, cuts=(*cuts[:before], cut, *cuts[before:]), move=move)
+
+
+def _leave_to(cut: Cut, gone: Bools, wanted: Sequence[int], orientations: Sequence[Orientation]) -> Cut:
+    """A cut amid what it passes and what it has to return beside those that are gone by another device."""
+    kind = type(cut.device)
+    returned = [row for row, one in enumerate(orientations) if one.name in cut.returns]
+    left = [row for row in returned if not gone[row] and row not in wanted]
+    if not kind.search.bound or not cut.device.action.carries or not left or len(left) == len(returned):
+        return cut
+    values = limits(kind, orientations)
+    is_lower = kind.search.bound == "lower"
+    passed = values[list(wanted)].min() if is_lower else values[list(wanted)].max()
+    nearest = values[left].max() if is_lower else values[left].min()
+    if (passed - nearest if is_lower else nearest - passed) < proposals.LEAST_WINDOW:
+        return cut
+    return proposals.move_cut(cut, 0.5 * (passed + nearest), orientations, wanted[0])
+
+
 def shown_by(trial: ShortTrial, proposal: Proposal, count: int) -> Shown:
     """Return what a trial shows of the orientations at rails.
 
@@ -387,6 +468,14 @@ def shown_by(trial: ShortTrial, proposal: Proposal, count: int) -> Shown:
         unswept[row] = not hangs[row] and not stands[row] and bool(at or trial.wrong[n])
         held_hanging = held_hanging or bool(hangs[row] and at)
     return Shown(hangs, gone, stands, unswept, held_hanging)
+
+
+def _with_jets(cuts: Sequence[Cut], own: Sequence[Cut]) -> tuple[Cut, ...]:
+    """Cuts with rails, and before these the jets of a chain, where there are none among them."""
+    actions = [cut.device.action for cut in cuts]
+    jets = () if Action.BLOW in actions else (cut for cut in own if cut.device.action is Action.BLOW)
+    before = actions.index(Action.HANG)
+    return (*cuts[:before], *jets, *cuts[before:])
 
 
 def _sweep_of(proposal: Proposal) -> float | None:

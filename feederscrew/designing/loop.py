@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -47,7 +47,7 @@ from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.sorting.isolating import chain as static
 from feederscrew.sorting.isolating.chain import DesignConstraints
 from feederscrew.sorting.tooling import ToolingStudy, check_named
-from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel, PoseKind
+from feederscrew.trials.fills import FedRow, FilledQueue, FillLevel, JammedParts, PoseKind
 from feederscrew.trials.long_ride import long_ride
 from feederscrew.trials.result import TrialRun
 
@@ -120,11 +120,13 @@ def design(
         for cost_class in proposals.COST_CLASSES:
             classes.append(cost_class)
             first = len(proofs)  # the best chains of a class, until one holds or enough of them do not
+            most = search.state.denied + policy.denied_in_class[proposals.COST_CLASSES.index(cost_class)]
             for candidate in exploring.candidates(search, cost_class):
-                _prove(search, candidate, proofs)
+                _prove(search, candidate, proofs, most)
                 own, last = proofs[first:], proofs[-1][0]
                 queued = sum(bool(study.proof.queues) for study, _ in own)
                 enough = queued >= policy.queued_designs or len(own) >= policy.drawn_designs
+                enough = enough or search.state.denied >= most
                 if last.status in HELD or last.partial or enough:
                     break
             if any(study.partial for study, _ in proofs):
@@ -255,17 +257,43 @@ def check_request(part: Part, plain: Bowl, request: DesignRequest, shares: Share
     check_named(part, track, request.aspect, request.heading, aspects=aspects, **names)
 
 
-def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
-    """Prove a design as far as it holds; then, a few times, one with what denied it changed."""
+def _prove(search: Search, candidate: Candidate, proofs: Proofs, most: float = math.inf) -> None:
+    """Prove a design as far as it holds; then, a few times, one with what denied it changed.
+
+    None is changed after queues that denied designs were followed for ``most`` [s] altogether.
+    """
     for _ in range(search.policy.proof_changes + 1):
         study = prove_design(search, candidate, whole=False)
         proofs.append((study, candidate))
-        if study.status in HELD or study.partial or search.is_spent:
+        if study.status in HELD or study.partial:
             return
-        other = _change_by_proof(search, study, candidate, [proved for _, proved in proofs])
-        if other is None or not other.attempt.clean:
+        search.state.denied += study.proof.queue_seconds
+        _note_jams(search, study, candidate)
+        if search.is_spent or search.state.denied >= most:
+            return
+        proved = [one for _, one in proofs]
+        other = _change_by_proof(search, study, candidate, proved)
+        if other is None or not other.attempt.clean or _is_proved(other, proved):
             return
         candidate = other
+
+
+def _jammed(study: DesignStudy) -> tuple[JammedParts, ...]:
+    """What stood in the queues of a design, and where."""
+    return tuple(stood for queue in study.proof.queues for stood in queue.jammed)
+
+
+def _note_jams(search: Search, study: DesignStudy, candidate: Candidate) -> None:
+    """Keep what stood in its queues at rails: a dearer class may take that off."""
+    names = [one.name for one in candidate.orientations.lying]
+    rows = (names.index(stood.name) for stood in _jammed(study) if stood.name in names)
+    exploring.note_standing(search, candidate, rows)
+
+
+def _is_proved(candidate: Candidate, proved: Iterable[Candidate]) -> bool:
+    """Tell whether the chain of a candidate was proved at its drive: it would come out the same."""
+    own = candidate.proposal.chain, candidate.bowl.drive
+    return any((other.proposal.chain, other.bowl.drive) == own for other in proved)
 
 
 def _change_by_proof(
@@ -279,7 +307,7 @@ def _change_by_proof(
     proposal, lying = candidate.proposal, candidate.orientations.lying
     if study.proof.jams:
         # what stood there, and where, says what to change
-        jammed = tuple(row for queue in study.proof.queues for row in queue.jammed)
+        jammed = _jammed(study)
         mends = exploring.mends_of_jams(search, candidate, jammed)
         known = {other.proposal.chain for other in proved if other.bowl.drive == candidate.bowl.drive}
         fresh = (mended for mended in mends if mended.chain not in known)

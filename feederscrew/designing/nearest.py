@@ -149,7 +149,13 @@ def nearest(
     near_by = (
         variant for variant in _in_turn(pending) if not _is_denied(variant, proved, policy.near_drives)
     )
-    for variant in itertools.chain(itertools.islice(near_by, policy.near_proofs), lower):
+    most = state.denied + policy.denied_near
+    coming = itertools.chain(itertools.islice(near_by, policy.near_proofs), lower)
+    while state.denied < most:  # what queues have denied so long, no change nearby mends
+        near_one = next(coming, None)
+        if near_one is None:
+            break
+        variant = near_one
         if _is_denied(variant, proved):
             continue
         proved.append(variant.candidate)
@@ -163,6 +169,7 @@ def nearest(
         if rate > 0.0:
             near = _describe_nearest(search, rate, variant, study, denials, len(proofs) + done)
             return near, study if variant.as_requested else None
+        state.denied += study.proof.queue_seconds
         slow = replace(study, request=replace(study.request, target=1e-9))  # what it lacks beside its rate
         lacks = next(iter(slow.shortfalls), "nothing is delivered")
         denials.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {lacks}")

@@ -50,7 +50,7 @@ TOUCHING_KINDS = tuple(
 )
 CLASSES = tuple(CostClass)
 COST_CLASSES = tuple(one.number for one in CLASSES)  # steel alone, steady air, a sensor with a valve
-SENSED = COST_CLASSES[-1]
+AIR, SENSED = COST_CLASSES[1:]
 MARGINS = (5e-4, 2.5e-4)  # [m] to either side
 SWEEPS = (35, 20, 45, 30, 55)  # [deg] of a blade's face, in the order in which they are tried
 RARE_ORIENTATION = 0.2  # [1] share below which an orientation is worth a device that turns others into it

@@ -19,6 +19,7 @@ FILLS = (
 )  # in turn: the fullest track first, for it fails most often
 LOOK_EVERY_S = 1.0  # [s] of each fill after which it is looked at
 SLIGHT_S = 1e-6  # [s] rounding of a time
+REFUSED_S = 60.0  # [s] for which a fill is followed beside one that is refused whatever the rate
 USUAL_PARTS = 100  # right parts of a pure fill until it is settled: of which progress makes its guess
 
 
@@ -111,8 +112,9 @@ def follow_fills(
     ----------
     row : FollowedRow
     whole : bool
-        Each fill ends by its own parts, however slow it is. Without it all of them end as soon as one is
-        refused: the design does not hold, and it is not proved at the other fills.
+        Each fill ends by its own parts, however slow it is; beside one that is refused, at ``REFUSED_S`` at
+        the latest. Without it all of them end as soon as one is refused: the design does not hold, and it is
+        not proved at the other fills.
     running : dict, optional
         Queues of the same row, by their fills, that go on where they are. It gets those that are followed
         here.
@@ -137,23 +139,23 @@ def follow_fills(
         return tuple(queue_of_fill[fill] for fill in FillLevel if fill in queue_of_fill)
 
     seconds, going = min(fill_verdicts.FIRST_LOOK_S, row.longest), list(FILLS)
+    is_refused = False
     while going:
         with _Fills(row, running, going, seconds, queue_of_fill) as followers:
             for fill in tuple(going):
                 try:
                     row.say(fill, seconds)
                     for until in followers.times[fill]:
+                        if is_refused and until > REFUSED_S + SLIGHT_S:
+                            going.remove(fill)
+                            break
                         queue = queue_of_fill[fill] = followers.follow(fill, until)
                         state = row.judge(queue)
                         if state is FillState.REFUSED and not whole:
                             followers.stop()
-                            # what other cores followed further than was asked for is not gone on with
-                            for other in [name for name in running if name not in queue_of_fill]:
-                                del running[other]
-                            for other, seen in queue_of_fill.items():
-                                if other in running and running[other].time > seen.seconds + SLIGHT_S:
-                                    del running[other]
+                            _forget_further(running, queue_of_fill)
                             return found()
+                        is_refused = is_refused or state is FillState.REFUSED
                         if state is not FillState.OPEN:
                             going.remove(fill)
                             break
@@ -170,7 +172,16 @@ def follow_fills(
         if seconds >= row.longest:
             break
         seconds = row.longest
+    if is_refused:
+        _forget_further(running, queue_of_fill)
     return found()
+
+
+def _forget_further(running: dict[FillLevel, PartsQueue], seen: dict[FillLevel, FilledQueue]) -> None:
+    """Drop the queues that other cores followed further than was asked for: they are not gone on with."""
+    for name, queue in list(running.items()):
+        if name not in seen or queue.time > seen[name].seconds + SLIGHT_S:
+            del running[name]
 
 
 class _Fills:

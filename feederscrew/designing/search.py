@@ -76,7 +76,10 @@ class SearchState:
     tried: Counter[str] = field(default_factory=Counter)  # short trials of this search, by orientation
     looked_at: set[str] = field(default_factory=set)  # orientations that had their turn before the others
     waiting: list["Candidate"] = field(default_factory=list)  # clean, of a dearer class than is searched
+    # chains with rails, and the rows that came to stand at them, in a trial or a queue
+    stood: list[tuple["Candidate", tuple[int, ...]]] = field(default_factory=list)
     proposals_left: float = np.inf  # chains that may still be looked for
+    denied: float = 0.0  # [s] bowl time of the queues of designs that did not hold
     nearest_limit: int | None = None  # trials at most, where the nearest that holds is looked for
     # queues of the designs that were proved last, those of searches beside it too, by all that decides them
     queues: dict[RowKey, dict[FillLevel, PartsQueue]] = field(default_factory=dict)

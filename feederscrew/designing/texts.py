@@ -182,6 +182,8 @@ def move_text(move: Move) -> str:
             return "cuts before the rails by what hangs in the trial"
         case MoveKind.OTHER_CUTS:
             return "other cuts before the rails, for those at which parts stand"
+        case MoveKind.JET_BEFORE:
+            return f"{move.device} of {move.device_text} before the rails, for what stands at them"
         case MoveKind.LONGER_PULSE:
             return f"pulse of {1e3 * move.value:.0f} ms"
         case MoveKind.DROP_BEFORE:

@@ -129,7 +129,8 @@ def test_what_was_clean_and_slow_is_proved_until_one_holds_and_counted_where_non
 
     def prove(_, one):
         asked.append(one.attempt.wanted)
-        return study(600.0, held=12 if one.attempt.wanted == "B@0" else 20)
+        denied = {"held": 12, "queues": ()}  # by draws: no queue is followed
+        return study(600.0, **(denied if one.attempt.wanted == "B@0" else {}))
 
     found, made = nothing_near(search, prove)
     assert asked == ["B@0", "A@0"] and made is not None and found.rate > 0.0
@@ -138,12 +139,24 @@ def test_what_was_clean_and_slow_is_proved_until_one_holds_and_counted_where_non
     search, _ = searching(*(candidate(ways, rate=20.0 + k, chain=(f"gap: {k} mm",)) for k in range(9)))
     monkeypatch.setattr(exploring, "candidates", lambda free: iter(()))
     search.state.attempts += [attempt()] * 9
-    found, made = nothing_near(search, lambda *_: study(600.0, queues=fills(jams=1)))
+    found, made = nothing_near(search, lambda *_: study(600.0, queues=fills(jams=1, seconds=6.0)))
     assert made is None and found.rate is None and len(found.denied) == USUAL_POLICY.near_proofs
     assert (found.trials, found.proofs) == (9, 3) and "nothing near it holds" in found.text
     assert designs.nearest(replace(study(600.0), nearest=found))["rate_per_minute"] is None
     with pytest.raises(KeyboardInterrupt):
         nothing_near(searching(candidate(ways))[0], lambda *_: study(600.0, partial=True))
+
+
+def test_no_more_designs_are_proved_nearby_once_queues_have_denied_them_long(ways, monkeypatch):
+    monkeypatch.setattr(exploring, "candidates", lambda free: pytest.fail("a lower rate was searched"))
+    limit = USUAL_POLICY.denied_near
+    for seconds, proofs in ((0.2 * limit, 2), (0.4 * limit, 1)):  # of each of three fills
+        search, _ = searching(*(candidate(ways, rate=20.0 + k, chain=(f"gap: {k} mm",)) for k in range(3)))
+        search.state.denied = 7.0 * limit  # what the search before it has denied does not count
+        found, _ = nothing_near(
+            search, lambda *_, own=seconds: study(600.0, queues=fills(jams=1, seconds=own))
+        )
+        assert (found.rate, found.proofs) == (None, proofs)
 
 
 def test_a_chain_is_proved_at_two_drives_at_most_and_not_twice_at_nearly_the_same(ways, monkeypatch):
@@ -162,7 +175,7 @@ def test_a_chain_is_proved_at_two_drives_at_most_and_not_twice_at_nearly_the_sam
 
     def prove(_, one):
         asked.append((one.attempt.chain[0], round(1e3 * one.attempt.peak_to_peak, 3)))
-        return study(600.0, queues=fills(right=60, left=90))
+        return study(600.0, queues=fills(right=60, left=90, seconds=6.0))
 
     found, _ = nothing_near(search, prove)
     assert asked == [("gap: 9 mm", 0.4), ("gap: 9 mm", 0.3), ("wiper: 6 mm", 0.4)]
@@ -291,7 +304,9 @@ def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_t
         assert calm_drive.speed(calmer) < 0.75 * calm_drive.speed(bowl)
 
 
-@pytest.mark.parametrize("more, word", [({"queues": fills(jams=1)}, "jam"), (CARRIED, "leaves too")])
+@pytest.mark.parametrize(
+    "more, word", [({"queues": fills(jams=1, seconds=6.0)}, "jam"), (CARRIED, "leaves too")]
+)
 def test_a_lower_rate_that_its_proof_denies_is_tried_at_a_calmer_drive(drives_tried, ways, more, word):
     """A cap of ABS at throw number 1.5: one jam in its queue; calmer it holds 16/min. At 3 draws deny it."""
     search, _ = searching(candidate(ways, calm_drive.drive_at(PLAIN, 0.18, hops=True)))
@@ -317,7 +332,7 @@ def test_where_nothing_near_it_holds_bowls_are_sought_for_half_the_rate_of_the_t
         yield candidate(ways, rate=45.0, wanted="A@0")
 
     def prove(other, _):
-        return study(60.0 * other.request.target) if other is not search else study(600.0, held=12)
+        return study(60.0 * other.request.target) if other is not search else study(600.0, held=12, queues=())
 
     monkeypatch.setattr(calm_drive, "find_calmer", lambda *_: None)
     monkeypatch.setattr(exploring, "candidates", candidates)
@@ -481,7 +496,7 @@ def test_it_stops_at_the_first_class_that_holds_unless_alternatives_are_asked(mo
         searched.append(cost_class)
         yield SimpleNamespace(number=cost_class)
 
-    def prove(search, candidate, proofs):
+    def prove(search, candidate, proofs, most):
         chain = (SORTER,) if candidate.number == 3 else (GAP,)
         proofs.append((study_with(*chain, right=180 + 20 * candidate.number), candidate))  # the dearest: most
 

@@ -103,6 +103,46 @@ def test_rails_of_each_head_have_trials_though_the_static_rule_used_up_those_of_
     assert sorted(tried) == [(row, 1, False) for row in rows]
 
 
+def test_what_stood_at_rails_of_steel_is_blown_off_in_the_class_of_air(monkeypatch, trials):
+    """The chain that was tried last first; each once, and none where the user leaves air out."""
+    search, blown = trials.search, []
+    trials.clean |= dict.fromkeys(SHARES, (2.0, 2))
+
+    def stood_at(number, efficiency=0.3, hangs=True):
+        proposal = SimpleNamespace(hangs=hangs, name=number)
+        seen = SimpleNamespace(wanted=[0])
+        ways = search.state.tracks[0].orientations
+        attempt = SimpleNamespace(efficiency=efficiency)
+        return SimpleNamespace(proposal=proposal, trial=seen, orientations=ways, attempt=attempt, bowl=BOWL)
+
+    def blow_off(proposal, trial, stands, lying):
+        blown.append((proposal.name, stands))
+        device = make_device("gap", "test", limit=1e-3 * (1 + proposal.name), text=f"{proposal.name} mm")
+        return proposals.Proposal(1, (), (device,), Move(MoveKind.JET_BEFORE))
+
+    monkeypatch.setattr(exploring.hanging, "blow_off", blow_off)
+    monkeypatch.setattr(exploring, "_chains", lambda *_: iter(()))
+    monkeypatch.setattr(
+        exploring, "try_again",
+        lambda search, one, proposal, bowl: exploring.try_proposal(search, None, proposal, None),
+    )  # fmt: skip
+    for number in range(4):
+        exploring.note_standing(search, stood_at(number), [0, 3, 3, 2])
+    exploring.note_standing(search, stood_at(7), [0])  # what hangs
+    exploring.note_standing(search, stood_at(8, hangs=False), [3])
+    exploring.note_standing(search, stood_at(9, efficiency=0.0), [3])
+    assert not list(exploring.candidates(search, 1)) and not blown
+    found = list(exploring.candidates(search, 2))
+    assert blown == [(3, (3, 2)), (2, (3, 2)), (1, (3, 2))]
+    assert (
+        [one.proposal.move.kind for one in found]
+        == [MoveKind.JET_BEFORE] * 3
+        == [one.proposal.move.kind for one in search.state.clean]
+    )
+    still = replace(search, request=replace(search.request, without=("air jet",)))
+    assert not list(exploring.candidates(still, 2)) and len(blown) == 3
+
+
 def test_what_is_clean_and_dearer_waits_for_its_class(trials):
     trials.clean["C@86"] = 2.0, 3
     assert not [one for one in exploring.candidates(trials.search, 1) if one.attempt.aspect == "C"]

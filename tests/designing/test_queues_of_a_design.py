@@ -362,6 +362,53 @@ def test_what_one_device_more_loses_is_tried_at_a_calmer_drive(monkeypatch, prov
     assert len(prove(first, second, {BOWL: impure})[0]) == 1
 
 
+@pytest.mark.parametrize(
+    ("mended", "proved"),
+    [
+        ({"A": "BC", "B": "AC", "C": "AB"}, [("A", 1.0), ("B", 1.0), ("C", 1.0)]),  # each asks for the others
+        ({"A": "A"}, [("A", 1.0), ("A", 1.2)]),  # a livelier drive, and back to the first
+        ({"A": "B", "B": "C", "C": "D", "D": "E"}, [("A", 1.0), ("B", 1.0), ("C", 1.0), ("D", 1.0)]),
+    ],
+)
+def test_a_chain_is_proved_once_at_a_drive_and_a_few_are(monkeypatch, mended, proved):
+    """A nut's queue jammed at one width of the track, then at another: each asks for the other again."""
+    first, _ = candidates_of(BOWL, BOWL.drive)
+    own = vars(first.proposal)
+    chains = {name: SimpleNamespace(**own | {"chain": (name,), "name": name}) for name in "ABCDE"}
+
+    def made(name, stroke):
+        bowl = replace(BOWL, drive=replace(BOWL.drive, amplitude=stroke * BOWL.drive.amplitude))
+        return SimpleNamespace(**vars(first) | {"proposal": chains[name], "bowl": bowl})
+
+    def other_drive(search, candidate):
+        return made(candidate.proposal.name, 1.2 if candidate.bowl == BOWL else 1.0)
+
+    seen, search, proofs = [], Search.begin(None, DesignRequest(1.0), BOWL), []
+
+    def proved_so(search, candidate, whole):
+        seen.append((candidate.proposal.name, candidate.bowl.drive.amplitude / BOWL.drive.amplitude))
+        return study(queue(jams=1))
+
+    def mends(search, candidate, jammed):
+        return iter([chains[name] for name in mended[candidate.proposal.name]])
+
+    lively = other_drive if mended == {"A": "A"} else lambda *_: None
+    monkeypatch.setattr(loop, "prove_design", proved_so)
+    monkeypatch.setattr(loop, "hop", lambda bowl: SimpleNamespace(height=0.0))
+    monkeypatch.setattr(loop.exploring, "mends_of_jams", mends)
+    monkeypatch.setattr(loop.exploring, "try_again", lambda search, one, chain, bowl: made(chain.name, 1.0))
+    monkeypatch.setattr(loop.exploring, "try_livelier", lively)
+    monkeypatch.setattr(loop.proposals, "add_pressure_break", lambda candidate: None)
+    loop._prove(search, made("A", 1.0), proofs)
+    assert seen == [(name, pytest.approx(stroke)) for name, stroke in proved]
+    assert len(proofs) == len(seen) <= USUAL_POLICY.proof_changes + 1
+    # each queue was followed for 200 s: so long that nothing is changed after the first, or the second
+    for more, count in ((150.0, 1), (350.0, 2)):
+        proofs.clear()
+        loop._prove(search, made("A", 1.0), proofs, search.state.denied + more)
+        assert len(proofs) == count
+
+
 def test_what_draws_carry_through_or_jams_is_tried_with_another_value_drive_or_break(monkeypatch, prove):
     first, second = candidates_of(BOWL, replace(BOWL.drive, frequency=2.0 * BOWL.drive.frequency))
     impure = study(robust=RobustRun(20, 16, carried("B@0").counted_in_draws(4, 20)))
@@ -377,10 +424,8 @@ def test_what_draws_carry_through_or_jams_is_tried_with_another_value_drive_or_b
     monkeypatch.setattr(loop.exploring, "replace", lambda one, **more: one)
     monkeypatch.setattr(loop.proposals, "add_pressure_break", lambda candidate: "with a pressure break")
     studies, tried = prove(first, second, {calm: jammed, second.bowl: jammed})
-    changes = USUAL_POLICY.proof_changes
-    assert [one.proof.jams for one in studies] == [1] * (changes + 1)
-    assert [one[1] for one in tried] == [second.bowl] * (changes + 1)
-    assert [one[0] for one in tried[1:]] == ["with a pressure break"] * changes
+    assert [one.proof.jams for one in studies] == [1, 1]  # the stand-in for a break is the chain again
+    assert [one[1] for one in tried] == [second.bowl] * 2 and tried[1][0] == "with a pressure break"
     studies, tried = prove(first, second, {calm: jammed, second.bowl: study()})
     assert [one.proof.jams for one in studies] == [1, 0] and len(tried) == 1
 
@@ -495,6 +540,18 @@ def test_what_denies_it_ends_it_where_it_is_seen(fakes, fills, jobs):
     assert all(running[name].time in (seconds, 15.0) for name, seconds, _ in fills if name in running)
     again, _ = followed(*fakes, jobs=jobs, whole=True, longest=60.0, running=running)
     assert again == followed(*fakes, whole=True, longest=60.0)[0]
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_beside_a_fill_that_jams_the_others_are_followed_for_a_minute(jobs):
+    """Each is to be shown, and none decides anything any more: the third of them is open for 10 min."""
+    running = {}
+    fills, _ = followed(0.3, 0.1, (2.0, 9.0), whole=True, jobs=jobs, running=running)
+    assert fills == [("low", 60.0, False), ("normal", 60.0, False), ("high", 9.0, False)]
+    assert all(made.time <= 60.0 for made in running.values())
+    # what was followed before the jam was seen stays as it is
+    fills, _ = followed((2.0, 16.0), 0.3, 0.3, whole=True, jobs=jobs, longest=90.0)
+    assert fills == [("low", 16.0, False), ("normal", 90.0, False), ("high", 90.0, False)]
 
 
 @pytest.mark.parametrize(("fakes", "fills"), [

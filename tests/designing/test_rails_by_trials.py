@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 import shapes
 import trimesh
 from design_counts import end_at, short_trial, stopped_at
@@ -14,7 +15,9 @@ from feederscrew.designing import calm_drive, exploring, hanging, proposals
 from feederscrew.designing.findings import MoveKind
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.search import Search
+from feederscrew.feeding import stream
 from feederscrew.resting.aspects import find
+from feederscrew.sorting.isolating import chain
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.sorting.isolating.rails import find_head
 from feederscrew.sorting.orientations import hang, may_hang
@@ -151,27 +154,106 @@ def test_what_stands_in_a_queue_says_what_is_changed(lying, rails_search):
         assert {changed.move.kind for changed in changes((other, place, "", 1))} <= before
 
 
-def test_what_hangs_and_stands_at_a_cut_before_the_rails_asks_for_another_kind_of_cut(lying, rails_search):
-    """A nut that hooks at a narrowed track went from one width to another and back."""
-    first = next(rails_search.start())
+OUTLINE = [(-5, 0), (5, 0), (5, 3), (3, 3), (3, 6), (-3, 6), (-3, 3), (-5, 3)]
+NUT = shapes.part(trimesh.creation.extrude_polygon(shapely.Polygon(OUTLINE), 16.0), "nut")
+NUT_TRACK = replace(bowls.default().track, width=18e-3, bank=np.radians(3.0))
+
+
+@pytest.fixture(scope="module")
+def nut():
+    """Orientations of a T-nut of 16 mm along a track of 18 mm: base of 10 x 3 mm, neck of 6 x 3 mm."""
+    return on_the_track(NUT, find(NUT), NUT_TRACK)
+
+
+def search_of(lying):
+    shares = np.full(len(lying), 1.0 / len(lying))
+    row = hanging.head_rows(lying, shares, range(len(lying)))[0]
+    return hanging.RailsSearch(lying, shares, row, (), DesignRequest(0.5), 1)
+
+
+def cut_before(lying, name):
+    """The chain with cuts before the rails because an orientation stood at the blade, and its trial."""
+    search = search_of(lying)
+    first, row = next(search.start()), next(k for k, one in enumerate(lying) if one.name == name)
     blade = [device.kind for device in first.proposal.devices if device.action.has_place].index("wiper") + 1
-    other = next(k for k in range(len(lying)) if find_head(lying[k]) is None)
-    trial = trial_of(lying, rails_search, first.proposal, other)
-    jam = JammedParts(lying[other].name, blade, "wiper", 1)
+    trial = trial_of(lying, search, first.proposal, row)
+    jam = JammedParts(name, blade, "wiper", 1)
     (proposal,) = (
         changed
-        for changed in rails_search.mends_of_jams(first.proposal, trial, [jam])
+        for changed in search.mends_of_jams(first.proposal, trial, [jam])
         if changed.move.kind is MoveKind.CUTS_BEFORE
     )
-    kinds = {cut.device.kind for cut in proposal.cuts if cut.device.action.carries}
-    assert kinds  # a cut before the rails
-    wanted = lying[rails_search.row].name
-    jam = JammedParts(wanted, 1, proposal.devices[0].kind, 1)
-    tries = list(rails_search.mends_of_jams(proposal, trial_of(lying, rails_search, proposal, other), [jam]))
-    others = [changed for changed in tries if changed.move.kind is MoveKind.OTHER_CUTS]
-    assert all(not kinds & {cut.device.kind for cut in changed.cuts} for changed in others)
-    moves = [changed.move.kind for changed in tries]
-    assert not others or MoveKind.CUTS_BEFORE not in moves[: moves.index(MoveKind.OTHER_CUTS)]
+    return proposal, trial_of(lying, search_of(lying), proposal, row)
+
+
+def kinds_before_rails(proposal):
+    actions = [cut.device.action for cut in proposal.cuts]
+    return [cut.device.kind for cut in proposal.cuts[: actions.index(Action.HANG)]]
+
+
+def test_what_hangs_and_stands_at_a_cut_before_the_rails_asks_for_another_kind_of_cut(lying, nut):
+    """A nut that hooks at a narrowed track went from one width to another and back."""
+    # C@90 stands 10 mm high, what hangs 6 mm: a blade does what the narrowed track does
+    proposal, trial = cut_before(nut, "C@90")
+    assert kinds_before_rails(proposal) == ["narrowed track"]
+    jam = JammedParts("B@0", 1, "narrowed track", 1)
+    tries = list(search_of(nut).mends_of_jams(proposal, trial, [jam]))
+    assert [changed.move.kind for changed in tries[:2]] == [MoveKind.VALUE, MoveKind.OTHER_CUTS]
+    other = tries[1]
+    assert kinds_before_rails(other) == ["wiper"] and "C@90" in other.cuts[0].returns
+    assert 6e-3 < other.cuts[0].device.limit < 10e-3
+    # no other kind of cut tells what stands as high as what hangs: then none is proposed
+    proposal, trial = cut_before(lying, "A@90")
+    assert kinds_before_rails(proposal) == ["narrowed track"]
+    wanted = lying[search_of(lying).row].name
+    tries = list(search_of(lying).mends_of_jams(proposal, trial, [JammedParts(wanted, 1, "", 1)]))
+    assert tries and all(changed.move.kind is not MoveKind.OTHER_CUTS for changed in tries)
+
+
+@pytest.mark.parametrize(
+    ("places", "first"),
+    [({"C@90": 3}, MoveKind.CUTS_BEFORE), ({"C@90": 3, "B@0": 1}, MoveKind.OTHER_CUTS)],
+)
+def test_any_cuts_come_first_unless_what_hangs_stands_at_them(nut, places, first):
+    """A track that was widened, as B@0 hooked there, lets C@90 past: it is narrowed, or a blade comes."""
+    narrow, trial = cut_before(nut, "C@90")
+    proposal = proposals.ease_cut(narrow, 1, nut)
+    jammed = [JammedParts(name, place, "", 1) for name, place in places.items()]
+    tries = list(search_of(nut).mends_of_jams(proposal, trial, jammed))
+    both = [one for one in tries if one.move.kind in (MoveKind.CUTS_BEFORE, MoveKind.OTHER_CUTS)]
+    assert next(one.move.kind for one in both) is first and len(both) == 2
+    chains = {one.move.kind: one.cuts[0].device for one in both}
+    assert chains[MoveKind.CUTS_BEFORE] == narrow.cuts[0].device
+    assert chains[MoveKind.OTHER_CUTS].kind == "wiper"
+
+
+def test_a_steady_jet_before_the_rails_blows_off_what_came_to_stand():
+    """On its side a nut stands at any blade, and a queue pushes it past a narrowed track."""
+    # with the friction of a track, which holds against air
+    nut = stream.follow_orientations(NUT, find(NUT), NUT_TRACK, (), bowl=bowls.default()).lying
+    proposal, trial = cut_before(nut, "C@270")
+    rows = {one.name: row for row, one in enumerate(nut)}
+    trial = replace(trial, shown=(rows["B@0"],))
+    blown = hanging.blow_off(proposal, trial, [rows["C@270"], rows["B@0"]], nut)
+    assert kinds_before_rails(blown) == ["narrowed track", "air jet"] and blown.cost_class == 2
+    narrowed, jet = blown.cuts[:2]
+    # above what hangs, 6 mm high, and below the top of what stands, 10 mm high
+    assert 6e-3 < jet.device.height < 10e-3
+    assert {"C@270", "C@90"} <= {*jet.returns} and not {"A@90", "B@0"} & {*jet.returns}
+    # amid the widths that carry B@0, 4.8 mm, and the next one that is left to it, A@90, 7.9 mm
+    needed = [chain.limits(type(narrowed.device), nut)[rows[name]] for name in ("B@0", "A@90")]
+    assert narrowed.device.limit == pytest.approx(np.mean(needed), abs=1e-4)
+    assert narrowed.device.limit > proposal.cuts[0].device.limit + 8e-4
+    assert blown.cuts[2:] == proposal.cuts[1:]
+    # one jet is enough, and none where only what hangs stood, or there are no rails
+    assert hanging.blow_off(blown, trial, [rows["C@270"]], nut) is None
+    assert hanging.blow_off(proposal, trial, [rows["B@0"]], nut) is None
+    assert hanging.blow_off(replace(proposal, cuts=()), trial, [rows["C@270"]], nut) is None
+    # what changes it after a jam keeps the jet where it is
+    swept = end_at(Fate.RETURNED, "wiper", 4)
+    trial = replace(trial, ends=tuple({} if row == rows["B@0"] else {swept: 2} for row in range(len(nut))))
+    changed = list(search_of(nut).mends_of_jams(blown, trial, [JammedParts("B@0", 3, "rails", 1)]))
+    assert changed and all(kinds_before_rails(one)[-1] == "air jet" for one in changed)
 
 
 def test_standing_counts_more_against_a_chain_than_coming_back(lying, rails_search):
