@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Container, Iterable, Sequence
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 
 from feederscrew.base import documents, units
 from feederscrew.base.documents import Entry
@@ -205,4 +205,5 @@ def _device(item: documents.Node) -> Device:
     if kind is None:
         what = f"unknown device {units.quantity_text(entry.key)}"
         raise ConfigError(entry.where, what, documents.hint(entry.key, list(KINDS)))
-    return kind(entry.where, text=written(entry.value), **kind.read(entry))
+    named = replace(entry, key=kind.kind)  # faults of a file of before have the name of today
+    return kind(entry.where, text=written(entry.value), **kind.read(named))

@@ -5,11 +5,9 @@ from collections.abc import Iterable, Iterator
 from types import ModuleType
 
 import numpy as np
-import shapely
 
 from feederscrew.base.arrays import Floats, Values
 from feederscrew.bowl.devices.features import TrackOpening
-from feederscrew.bowl.devices.openings import beyond_borders
 from feederscrew.cad.facets import Body
 from feederscrew.cad.plan import CONICAL, DIP, FULL_TURN_RAD, BowlPlan
 from feederscrew.sorting.tooled_track import GrooveStretch
@@ -22,7 +20,6 @@ CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut ov
 OUTLET_OVERRUN_M = 5e-3  # [m] by which a slot that is open at the outlet is cut beyond its end
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
-BEYOND_TRACK_M = 10.0  # [m] beyond any track
 LEDGE_SINK_M = 1e-5  # [m] by which a ledge lies lower than the plate before it: no face on a face
 PLATE_OVERLAP_M = 3e-5  # [m] by which the side of the outlet reaches into the plate: no face on a face
 TWISTED = 4  # facets where the bank changes in place of one
@@ -295,19 +292,12 @@ def holes(plan: BowlPlan, kit: ModuleType, *, hang: bool) -> list[Body]:
     """
     solid, plate = [], plan.material.plate
     for opening in _openings(plan, hang):
-        # carried a little over the edge of the track that it reaches, and into the wall
-        corners = opening.ring
-        if corners[:, 1].min() < 0.0:  # a side that only ends in the wall keeps its direction
-            on_track = shapely.box(-BEYOND_TRACK_M, 0.0, BEYOND_TRACK_M, BEYOND_TRACK_M)
-            corners = shapely.get_coordinates(shapely.Polygon(corners).intersection(on_track))[:-1]
-        s, y = corners.T
-        corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
-        beyond = beyond_borders(corners.tolist(), plan.width - 1e-9, CUT_OVERRUN_M)
-        ring = np.array(beyond) + [plan.first, 0.0]
-        heights = plan.path.height(ring[:, 0], ring[:, 1])
-        low, high = heights.min() - (plate + fillet(plan) + TRACK_PIECE_OVERLAP_M), heights.max()
-        low = heights.min() - plate - plan.hanging if hang else low
-        solid.append(kit.over(plan.path, ring, low, high + TRACK_PIECE_OVERLAP_M, 0.2 * plan.chord))
+        for outline in opening.carried_over(plan.width, CUT_OVERRUN_M):
+            ring = outline + [plan.first, 0.0]
+            heights = plan.path.height(ring[:, 0], ring[:, 1])
+            deep = plan.hanging if hang else fillet(plan) + TRACK_PIECE_OVERLAP_M
+            low, high = heights.min() - plate - deep, heights.max() + TRACK_PIECE_OVERLAP_M
+            solid.append(kit.over(plan.path, ring, low, high, 0.2 * plan.chord))
     return solid
 
 

@@ -103,7 +103,7 @@ def draw_sheets(
     if trial is not None and trial.condition:
         _draw_condition(drawing, trial)
     if solid.plan.stretch is not None:
-        _draw_devices(drawing, whole.plan, solid.plan.stretch, order.part.name, fields, f"2 of {count}")
+        draw_devices(drawing, whole.plan, solid.plan.stretch, order.part.name, fields, f"2 of {count}")
         drawing.mark(of_trial(trial, mark))
     for k, group in enumerate(of_poses, start=3 if solid.plan.stretch is not None else 2):
         drawing.new_sheet()
@@ -475,14 +475,27 @@ def _stretches(path: TrackPath) -> Iterator[tuple[tuple[float, float], float]]:
     return zip(stops, _climbs(path))
 
 
-def _draw_devices(
+def draw_devices(
     drawing: Drawing, plan: BowlPlan, stretch: TooledTrack, part: str, fields: SheetFields | None, sheet: str
 ) -> None:
-    """Sheet 2: the tooled stretch unrolled, seen from above, with its dimensions and the list of devices."""
+    """Draw sheet 2: the tooled stretch unrolled, seen from above, with its dimensions and list of devices.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    plan : BowlPlan
+    stretch : TooledTrack
+        Of that bowl.
+    part : str
+        Name.
+    fields : SheetFields or None
+        Date and revision.
+    sheet : str
+        '2 of 5'
+    """
     length = stretch.length
     if _first_rails(plan) is not None:  # with the outlet
-        to_end = length + plan.path.end - plan.first - length + plan.outlet
-        length = min(to_end, 2.0 * length)
+        length = min(plan.path.end - plan.first + plan.outlet, 2.0 * length)
     scale = min(_scale(length / MM, 330.0), _scale(plan.width / MM, 45.0))
     drawing.new_sheet()
     _draw_title(drawing, part, scale, fields, sheet)
@@ -495,8 +508,7 @@ def _draw_devices(
     for placed in opened.devices:
         for layer, ring in tooling_drawing.edges(placed, plan.width):
             drawing.outline(view.placed(ring), layer)
-        for opening in placed.openings:
-            ring = np.clip(opening.ring, [-np.inf, 0.0], [np.inf, plan.width])
+        for ring in (ring for opening in placed.openings for ring in opening.on_track(plan.width)):
             drawing.outline(view.placed(ring), "CUT")
         for ring in placed.footprints:
             drawing.outline(view.placed(ring), "GATE")

@@ -219,8 +219,9 @@ def dimension_devices(drawing: Drawing, devices: Sequence[PlacedDevice], view: V
         lengths = [origin + jet.at[0] for jet in features.jets[:1]]
         if features.sensor is not None:
             lengths.insert(0, origin + features.sensor.at)
-        for opening in placed.openings:
-            corners = [float(x) for x in np.unique(np.round(_cut_corners(opening.ring)[:, 0], 9))]
+        cuts = [(opening, ring) for opening in placed.openings for ring in opening.on_track(width)]
+        for opening, ring in cuts:
+            corners = [float(x) for x in np.unique(np.round(_cut_corners(ring)[:, 0], 9))]
             far = min(opening.end, view.right) - 1e-9 if opening.hangs else np.inf
             lengths += [x for x in corners if x < far]
         lengths += [float(ring[0, 0]) for ring in placed.footprints]
@@ -231,10 +232,10 @@ def dimension_devices(drawing: Drawing, devices: Sequence[PlacedDevice], view: V
         along += [place for place in places if place <= view.right]
         name = view.placed([places[0], width]) + [0.5, 13.0 + 4.0 * (number % 2 == 0)]
         drawing.text(float(name[0]), float(name[1]), f"{number}  {placed.device.kind}", 2.5)
-        for opening in placed.openings:
-            _dimension_cut(drawing, opening.ring, view, width)
         if features.drop is not None and features.drop.aside > 0.0:
-            _dimension_cut(drawing, ledge_ring(placed, width), view, width)
+            cuts.append((beside := features.drop.beside(width, made=True).shifted(origin), beside.ring))
+        for _, ring in cuts:
+            _dimension_cut(drawing, ring, view, width)
         if features.sensor is not None:
             middle = view.placed([origin + features.sensor.at, 0.5 * width])
             arms = np.array([[-CROSS, 0.0], [CROSS, 0.0], [0.0, -CROSS], [0.0, CROSS]])
@@ -481,26 +482,6 @@ def edges(placed: PlacedDevice, width: float) -> list[tuple[str, Floats]]:
         corners = [(middle - near, 0.0), (middle + near, 0.0), (middle + far, width), (middle - far, width)]
         drawn.append(("NOZZLE", np.array(corners)))
     return drawn
-
-
-def ledge_ring(placed: PlacedDevice, width: float) -> Floats:
-    """Return what is missing of the upper track beside a ledge, as it is made.
-
-    Parameters
-    ----------
-    placed : PlacedDevice
-    width : float [m]
-        Of the track.
-
-    Returns
-    -------
-    (4, 2) array [m]
-        Along the wall and off it; (0, 2) where it is no ledge.
-    """
-    drop = placed.features.drop
-    if drop is None:
-        return np.empty((0, 2))
-    return box_ring(placed.begin, placed.begin + drop.length, drop.aside, width)
 
 
 def _outline_in_bowl(outline: Floats, place: float, radius: float) -> Floats:

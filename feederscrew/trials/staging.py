@@ -24,7 +24,6 @@ from feederscrew.bowl.devices.features import (
     TrackOpening,
     box_ring,
 )
-from feederscrew.bowl.devices.openings import beyond_borders
 from feederscrew.bowl.record import Track
 from feederscrew.sorting.fates import leading_devices
 from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M, Orientation
@@ -395,20 +394,21 @@ def build_track(
     borders : (B,) record
         ``trials.kernel.workspace.BORDER`` [m], [1].
     """
-    level, aside, first, holes = 0.0, 0.0, ends[0], []
+    level, aside, first = 0.0, 0.0, ends[0]
+    holes: list[TrackOpening] = []
     plates: list[Plate] = []
     raised: list[Plate] = []  # blades and ramps
     behind = DRAWN_BEHIND_WALL * size
-    slots = [opening.ring for item in placements for opening in item.openings if opening.hangs]
+    slots = [opening for item in placements for opening in item.openings if opening.hangs]
     if slot:  # between the rails before them, up to the first of their own
-        until = min((ring[:, 0].min() + SMOOTHING_M for ring in slots), default=ends[1] + behind)
-        slots.append(box_ring(ends[0] - behind, until, *slot))
+        until = min((own.begin + SMOOTHING_M for own in slots), default=ends[1] + behind)
+        slots.append(TrackOpening(box_ring(ends[0] - behind, until, *slot)))
     for item in placements:
-        holes += [opening.ring for opening in item.openings if not opening.hangs]
+        holes += [opening for opening in item.openings if not opening.hangs]
         raised += [_blade(blade, track, item.begin, size, level, aside) for blade in item.features.blades]
         drop = item.features.drop
         if drop is not None and drop.height > 0.0:
-            holes.append(drop.beside(track.extent) + [item.begin, 0.0])
+            holes.append(drop.beside(track.extent).shifted(item.begin))
             last = item.last if drop.aside <= 0.0 else item.begin + drop.length
             depth = drop.height + TRACK_DEPTH_M
             plates.append(_floor([*holes, *slots], track, size, ends, (first, last), (level, aside), depth))
@@ -428,7 +428,7 @@ def build_track(
 
 
 def _floor(
-    holes: Sequence[Floats],
+    holes: Sequence[TrackOpening],
     track: Track,
     size: float,
     ends: tuple[float, float],
@@ -452,13 +452,13 @@ def _floor(
         for places, off in ((coarse, radius + behind - aside), (fine, radius - width - aside))
     ]
     area = shapely.Polygon(np.vstack(ring))
-    for outline in holes:
-        if outline[:, 0].min() >= last + behind:  # of a device further on, on a lower track
+    for hole in holes:
+        if hole.begin >= last + behind:  # of a device further on, on a lower track
             continue
-        taken = np.column_stack([np.minimum(outline[:, 0], last + behind), outline[:, 1]])
-        beyond = np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind))
-        bent = bend_ring(beyond + [0.0, aside], radius, sagitta=MAX_SAGITTA_M)
-        area = area.difference(shapely.make_valid(shapely.Polygon(bent)))
+        taken = replace(hole, ring=np.minimum(hole.ring, [last + behind, np.inf]))
+        for outline in taken.carried_over(width, 2.0 * behind):
+            bent = bend_ring(outline + [0.0, aside], radius, sagitta=MAX_SAGITTA_M)
+            area = area.difference(shapely.make_valid(shapely.Polygon(bent)))
     frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     near = 1e-6 * radius
 

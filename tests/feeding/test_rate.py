@@ -210,8 +210,9 @@ def test_heights_decide_wiper_and_bar(chain):
     (":\n  - wipr: 6 mm\n", "2:5: unknown device 'wipr' - did you mean wiper?"),
     (":\n  - wiper: 6\n", "2:12: wiper: '6' has no unit - write 6 mm"),
 
-    (":\n  - yield:\n      A: 1.5\n", "3:10: yield of A is 1.5 - give 0 to 1"),
-    (":\n  - yield: 0.5\n", "2:5: yield names no aspect - write below it one line an aspect, as 'A: 0.9'"),
+    (":\n  - yield:\n      A: 1.5\n", "3:10: measured yield of A is 1.5 - give 0 to 1"),
+    (":\n  - yield: 0.5\n",
+     "2:5: measured yield names no aspect - write below it one line an aspect, as 'A: 0.9'"),
 ])  # fmt: skip
 def test_faults_of_devices(tmp_path, chain, text, line):
     with pytest.raises(FeederError) as caught:

@@ -49,7 +49,7 @@ def unbent(area, radius):
 
 def trial(stage, start, track, bank):
     """A stage of the trial, its device at ``start`` [m]; ``bank`` [rad] there."""
-    plates = [_plate(stage, row) for row in stage.plates]
+    plates = [plate_of(stage, row) for row in stage.plates]
     floors = [one for one in plates if abs(one[1][2, 2]) > 1.0 - 1e-9]
     ramps = [one for one in plates if 0.5 < abs(one[1][2, 2]) <= 1.0 - 1e-9]
     blades = [one for one in plates if abs(one[1][2, 2]) <= 0.5]
@@ -102,7 +102,7 @@ def _plates(height, blades, laid):
     return laid([_slab(one, height) for one in blades])
 
 
-def _plate(stage, row):
+def plate_of(stage, row):
     """Origin (3,), axes (3, 3), depth [m] and area of a plate in its own plane."""
     names = [f"{head}_{end}" for head in ("origin", "first", "second", "front") for end in "xyz"]
     frame = np.array([row[name] for name in names]).reshape(4, 3)

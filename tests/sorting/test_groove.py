@@ -109,7 +109,7 @@ def test_friction_acts_as_over_the_cosine(angle):
 @pytest.mark.parametrize(
     ("lines", "fault"),
     [
-        (["groove: 30 deg"], "groove has no angle - write {angle: 30 deg}"),
+        (["groove: 30 deg"], "V groove has no angle - write {angle: 30 deg}"),
         (["groove: {angle: 70 deg}"], "angle is 70 deg - give 10 to 60 deg"),
         (["groove: {angle: 5 deg}"], "angle is 5 deg - give 10 to 60 deg"),
         (["groove: {angle: 30 deg}", "gap: 4 mm"], "gap stands in a groove - list 'banked track: 6 deg'"),

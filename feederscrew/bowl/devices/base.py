@@ -480,8 +480,7 @@ def opening_at(device: Device, orientation: LyingPart) -> TrackOpening | None:
         return opening.lasting(ENDLESS_HOLE_LENGTHS * size_of(orientation))
     if features.drop is None or features.drop.aside <= 0.0:
         return None
-    ledge, width = features.drop, orientation.track.extent
-    beside = TrackOpening(ledge.beside(width), (ledge.aside, width))
+    beside = features.drop.beside(orientation.track.extent)
     return beside.lasting(ENDLESS_HOLE_LENGTHS * size_of(orientation))
 
 

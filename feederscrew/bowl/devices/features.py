@@ -7,6 +7,7 @@ bowl's solid are made of them, and verdicts read the same openings; none of thes
 
 import enum
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,9 +15,12 @@ import shapely
 
 from feederscrew.base.arrays import Points
 from feederscrew.bowl.devices.asked import LyingPart
+from feederscrew.bowl.devices.values import Corner
 
 BLADE = 1.5e-3  # [m] thickness of a blade
 BEYOND_BLADES_M = 10.0  # [m] beyond any blade
+BEYOND_TRACK_M = 10.0  # [m] beyond any track
+WALL_OVERCUT_M = 1e-3  # [m] a hole that reaches the wall is cut on into it
 LONGEST_RAMP_SINE = 0.9  # [1] of the angle about the bowl's axis over which a ramp comes down at most
 FOOTPRINT_STEP_M = 1e-3  # [m] between places of a plate that are unrolled
 FOOTPRINT_CHORD_M = 1e-6  # [m] by which its unrolled sides may be seen too flat
@@ -103,6 +107,48 @@ class TrackOpening:
         """
         return replace(self, ring=self.ring + [along, 0.0])
 
+    def on_track(self, width: float = BEYOND_TRACK_M) -> list[Points]:
+        """Return the outlines of what it takes of the track: a side that ends in the wall does not turn.
+
+        Parameters
+        ----------
+        width : float [m], optional
+            Of the track; else all that lies off the wall.
+
+        Returns
+        -------
+        list of (K, 2) float [m]
+            One of most openings.
+        """
+        y = self.ring[:, 1]
+        if y.min() >= 0.0 and y.max() <= width:
+            return [self.ring]
+        track = shapely.box(-BEYOND_TRACK_M, 0.0, BEYOND_TRACK_M, width)
+        taken = shapely.get_parts(shapely.Polygon(self.ring).intersection(track))
+        return [shapely.get_coordinates(part)[:-1] for part in taken if part.geom_type == "Polygon"]
+
+    def carried_over(self, width: float, far: float) -> list[Points]:
+        """Return its outlines with each side along the wall or the free edge carried beyond it.
+
+        Sides that only end there keep their direction: what lies beside them in a corner carries parts.
+
+        Parameters
+        ----------
+        width : float [m]
+            Of the track.
+        far : float [m]
+            By which such a side is moved out.
+
+        Returns
+        -------
+        list of (K, 2) float [m]
+        """
+        carried = []
+        for s, y in (ring.T for ring in self.on_track()):
+            corners = np.column_stack([s, np.where(y <= SAME_PLACE_M, 0.0, y)]).tolist()
+            carried.append(np.array(_beyond_borders(corners, width - SAME_PLACE_M, far)))
+        return carried
+
     def shop_work(self, width: float) -> tuple[ShopWork, ...]:
         """Return what the shop must do to it, beside cutting its outline.
 
@@ -153,20 +199,22 @@ class Drop:
         ahead = self.height / math.tan(self.ramp) / (radius - self.aside)
         return radius * math.asin(min(ahead, LONGEST_RAMP_SINE))
 
-    def beside(self, width: float) -> Points:
-        """Return what is missing of the upper track.
+    def beside(self, width: float, *, made: bool = False) -> TrackOpening:
+        """Return what is missing of the upper track, as an opening of it.
 
         Parameters
         ----------
         width : float [m]
             Of the track.
+        made : bool, optional
+            Up to where a ledge comes down, as it is made; else as far as it is tried.
 
         Returns
         -------
-        (4, 2) float [m]
-            Along the wall, and from it.
+        TrackOpening
         """
-        return box_ring(0.0, self.reach, self.aside, width)
+        far = self.length if made else self.reach
+        return TrackOpening(box_ring(0.0, far, self.aside, width), (self.aside, width))
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,10 +283,10 @@ class Blade:
         Returns
         -------
         (K, 2) float [m]
-            The first corner is that of its face at the wall.
+            The first corner is that where its face begins: at the wall, or at its foot on the track.
         """
         near, _, far, _ = self.solid.bounds
-        flat = shapely.box(near, 0.0, far, self.thickness).exterior
+        flat = shapely.box(near, 0.0, far, self.thickness, ccw=False).exterior  # from where its face begins
         places = shapely.get_coordinates(shapely.segmentize(flat, FOOTPRINT_STEP_M))[:-1]
         x, y = (places[:, :1] * self.axes[0] + places[:, 1:] * self.axes[1]).T
         y = y + self.foot[1]
@@ -246,7 +294,10 @@ class Blade:
         on_track = shapely.box(s.min() - 1.0, 0.0, s.max() + 1.0, radius)
         ring = shapely.Polygon(np.column_stack([s, off])).intersection(on_track).simplify(FOOTPRINT_CHORD_M)
         corners = shapely.get_coordinates(shapely.geometry.polygon.orient(ring))[:-1]
-        first = np.lexsort((corners[:, 0], corners[:, 1] > FOOTPRINT_CHORD_M))[0]
+        if self.foot[1] > FOOTPRINT_CHORD_M:
+            first = np.argmin(((corners - [s[0], off[0]]) ** 2).sum(axis=1))
+        else:
+            first = np.lexsort((corners[:, 0], corners[:, 1] > FOOTPRINT_CHORD_M))[0]
         return np.roll(corners, -int(first), axis=0)
 
     def opening(self) -> list[Points]:
@@ -361,3 +412,37 @@ def box_ring(x0: float, x1: float, y0: float, y1: float) -> Points:
     (4, 2) float [m]
     """
     return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+
+
+def through_the_wall(corners: Sequence[Corner]) -> list[Corner]:
+    """Return the corners of a hole with every edge along the wall moved behind it.
+
+    Parameters
+    ----------
+    corners : sequence of (float, float) [m]
+        Along the wall, and from it.
+
+    Returns
+    -------
+    list of (float, float) [m]
+    """
+    return _moved_out(corners, math.inf, WALL_OVERCUT_M)
+
+
+def _beyond_borders(corners: Sequence[Corner], width: float, far: float) -> list[Corner]:
+    """The corners of a hole with edges along the wall, and along the free edge from ``width`` on, moved."""
+    out = _moved_out(corners, width, far)
+    sides = zip((out[-1], *out[:-1]), out, (*out[1:], out[0]))
+    return [here for before, here, after in sides if not before[0] == here[0] == after[0]]
+
+
+def _moved_out(corners: Sequence[Corner], width: float, far: float) -> list[Corner]:
+    """As ``_beyond_borders``, with the corners between what is moved and straight sides to it."""
+    out = []
+    for (s0, y0), (s1, y1) in zip(corners, (*corners[1:], corners[0])):
+        out.append((s0, y0))
+        if y0 <= 0.0 and y1 <= 0.0:
+            out += [(s0, min(y0, y1) - far), (s1, min(y0, y1) - far)]
+        elif y0 >= width and y1 >= width:
+            out += [(s0, max(y0, y1) + far), (s1, max(y0, y1) + far)]
+    return out

@@ -15,7 +15,7 @@ from feederscrew.base.geometry.compiled import frozen_rows, record_type
 from feederscrew.bowl.devices import values
 from feederscrew.bowl.devices.asked import Encounter, LyingPart
 from feederscrew.bowl.devices.base import UNSURE, Device, Verdict, carried, corners_text
-from feederscrew.bowl.devices.features import Features, TrackOpening
+from feederscrew.bowl.devices.features import WALL_OVERCUT_M, Features, TrackOpening, through_the_wall
 from feederscrew.bowl.devices.trade import Action, Bound, ProposedBy, Trade, ValueSearch
 from feederscrew.bowl.devices.values import Corner
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
 FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
-WALL_OVERCUT_M = 1e-3  # [m] a hole that reaches the wall is cut on into it
 FAR_M = 10.0  # [m] beyond any hole across the track
 GAP_EDGE_POINTS = 33  # points along the edge of a gap that is parallel to a radial one
 DRAWN = forms.mapping(dxf=forms.TEXT_FORM, layer={"type": ["string", "number"]})
@@ -131,56 +130,6 @@ def hole_edges(opening: TrackOpening | None, track: "Track") -> HoleEdges | None
 
 def _sides(corners: Sequence[Corner]) -> list[tuple[Corner, Corner]]:
     return list(zip(corners, (*corners[1:], corners[0])))
-
-
-def through_the_wall(corners: Sequence[Corner]) -> list[Corner]:
-    """Return the corners of a hole with every edge along the wall moved behind it.
-
-    Parameters
-    ----------
-    corners : sequence of (float, float) [m]
-        Along the wall, and from it.
-
-    Returns
-    -------
-    list of (float, float) [m]
-    """
-    return _moved_out(corners, math.inf, WALL_OVERCUT_M)
-
-
-def beyond_borders(corners: Sequence[Corner], width: float, far: float) -> list[Corner]:
-    """Return the corners of a hole with edges along the wall and the free edge moved out.
-
-    Edges that only end there stay as they are: what lies beside them in a corner carries parts.
-
-    Parameters
-    ----------
-    corners : sequence of (float, float) [m]
-        Along the wall, and from it.
-    width : float [m]
-        Off the wall: edges from there on are along the free edge.
-    far : float [m]
-        By which they are moved.
-
-    Returns
-    -------
-    list of (float, float) [m]
-    """
-    out = _moved_out(corners, width, far)
-    sides = zip((out[-1], *out[:-1]), out, (*out[1:], out[0]))
-    return [here for before, here, after in sides if not before[0] == here[0] == after[0]]
-
-
-def _moved_out(corners: Sequence[Corner], width: float, far: float) -> list[Corner]:
-    """As ``beyond_borders``, with the corners between what is moved and straight sides to it."""
-    out = []
-    for (s0, y0), (s1, y1) in _sides(corners):
-        out.append((s0, y0))
-        if y0 <= 0.0 and y1 <= 0.0:
-            out += [(s0, min(y0, y1) - far), (s1, min(y0, y1) - far)]
-        elif y0 >= width and y1 >= width:
-            out += [(s0, max(y0, y1) + far), (s1, max(y0, y1) + far)]
-    return out
 
 
 class Across(Device):

@@ -230,12 +230,12 @@ def shares(entry: Entry) -> DeviceFields:
     """
     if entry.value.kind != "mapping" or not entry.value.entries:
         mend = "write below it one line an aspect, as 'A: 0.9'"
-        raise ConfigError(entry.where, "yield names no aspect", mend)
+        raise ConfigError(entry.where, f"{entry.key} names no aspect", mend)
     pairs = []
     for aspect in entry.value.entries:
-        share = _quantity(aspect.value, f"yield of {aspect.key}", "number")
+        share = _quantity(aspect.value, f"{entry.key} of {aspect.key}", "number")
         if not 0.0 <= share <= 1.0:
-            what = f"yield of {aspect.key} is {units.one_line(aspect.value.text)}"
+            what = f"{entry.key} of {aspect.key} is {units.one_line(aspect.value.text)}"
             raise ConfigError(aspect.value.where, what, "give 0 to 1")
         pairs.append((aspect.key, share))
     return {"shares": tuple(pairs)}
@@ -273,7 +273,9 @@ def polygon(entry: Entry) -> DeviceFields:
         if len(read.rings) != 1:
             count = f"holds {len(read.rings)} closed polylines"
             what = f"layer {units.quantity_text(layer)} of {path.name} {count}"
-            raise ConfigError(arguments["layer"].value.where, what, "give each cut_out a layer of its own")
+            raise ConfigError(
+                arguments["layer"].value.where, what, f"give each {entry.key} a layer of its own"
+            )
         corners, assumption = (
             read.rings[0],
             _remark_on_drawing(read, f"{node.where}: {units.printable(path.name)}"),

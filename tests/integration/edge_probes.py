@@ -1,0 +1,223 @@
+"""Places 0.03 mm to either side of every edge that a feature has, and whether they are solid there.
+
+They are made of the features alone, by formulas of their own: no consumer is asked where anything lies. A
+place is s along the wall, y from it and z over the track, square to it, at a level that fell upright.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+ASIDE = 3e-5  # [m] of an edge
+UNDER = 1e-4  # [m] below a surface: there its edge is looked at
+CLEAR = 2e-4  # [m] of other edges
+SHORT = 1e-3  # [m] a side of a curved edge: its middle is looked at
+SURE = 1e-5  # [m] by which a flat plate that reaches ahead may lean otherwise than the track below its end
+IN_WALL = 5e-4  # [m] behind the wall's face
+SHARES = (0.17, 0.55, 0.83)  # of a side, of a width
+ABOVE = 4e-3  # [m] over the track, where a wall is met
+
+
+@dataclass(frozen=True)
+class Probe:
+    """A place and whether something is solid there."""
+
+    what: str  # 'gap opening'
+    s: float  # [m] along the wall
+    y: float  # [m] from it
+    level: float  # [m] upright, of the track there
+    z: float  # [m] over that, square to it
+    solid: bool
+
+
+def probes(tooled):
+    """Return the probes of a tooled track, device by device: a list for each."""
+    return [_of_device(tooled, placed) for placed in tooled.devices]
+
+
+def _of_device(tooled, placed):
+    kind, width = placed.device.kind, tooled.width
+    return [
+        Probe(f"{kind} {what}", float(s), float(y), float(level), float(z), solid)
+        for what, s, y, level, z, solid in (
+            *_openings(placed, width),
+            *_drops(placed, width),
+            *_ramps(tooled, placed),
+            *_blades(tooled, placed),
+            *_bores(placed),
+            *_wall(tooled, placed),
+        )
+    ]
+
+
+def _openings(placed, width):
+    """Below the surface, beside each side of an opening; an edge of a slot that goes on is none."""
+    track = shapely.box(-10.0, 0.0, 10.0, width)
+    holes = [shapely.Polygon(opening.ring) for opening in placed.openings]
+    for opening in placed.openings:
+        ring = opening.ring
+        inner = float(np.sign(_area(ring)))
+        for start, stop in zip(ring, np.roll(ring, -1, axis=0)):
+            along = stop - start
+            size = np.hypot(*along)
+            if size < CLEAR or (opening.hangs and min(start[0], stop[0]) >= opening.end - 1e-9):
+                continue
+            inwards = inner * np.array([-along[1], along[0]]) / size
+            for share, off in itertools.product(SHARES if size > SHORT else (0.5,), (ASIDE, -ASIDE)):
+                place = shapely.Point(start + share * along + off * inwards)
+                if track.exterior.distance(place) > CLEAR and track.contains(place):
+                    is_open = any(hole.contains(place) for hole in holes)
+                    assert is_open == (off > 0.0)
+                    yield "opening", place.x, place.y, placed.level, -UNDER, not is_open
+
+
+def _area(ring):
+    x, y = ring.T
+    return 0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum()
+
+
+def _drops(placed, width):
+    """To either side of the edge of a step or a ledge, and of the surface below it."""
+    drop, begin = placed.drop, placed.begin
+    if drop is None:
+        return
+    is_ledge = drop.aside > 0.0
+    far = begin + (drop.length if is_ledge else 4e-3)
+    ways = np.linspace(begin + 1e-3, far - 1e-3, 3)
+    across = drop.aside + np.array(SHARES) * (width - drop.aside)
+    for y in across:
+        yield "edge", begin - ASIDE, y, placed.level, -UNDER, True
+        yield "edge", begin + ASIDE, y, placed.level, -UNDER, False
+        for s in ways:
+            yield "lower track", s, y, placed.level - drop.height, -ASIDE, True
+            yield "lower track", s, y, placed.level - drop.height, ASIDE, False
+    for s in ways if is_ledge else ():
+        yield "ledge", s, drop.aside - ASIDE, placed.level, -UNDER, True
+        yield "ledge", s, drop.aside + ASIDE, placed.level, -UNDER, False
+
+
+def _ramps(tooled, placed):
+    """Above and below the ramp on which a ledge comes down: a plane bent down at the ledge's end."""
+    drop = placed.drop
+    for ledge in tooled.ledges:
+        if drop is None or ledge.drop is not drop:
+            continue
+        for y in np.array(SHARES) * drop.aside:
+            turn = np.arcsin(drop.height / np.tan(drop.ramp) / (placed.radius - y))
+            for share in (0.2, 0.5, 0.8):
+                ahead = (placed.radius - y) * np.sin(share * turn)
+                fall = -ahead * np.tan(drop.ramp)
+                s = placed.begin + drop.length + placed.radius * share * turn
+                yield "ramp", s, y, placed.level + fall - ASIDE, 0.0, True
+                yield "ramp", s, y, placed.level + fall + ASIDE, 0.0, False
+
+
+def _blades(tooled, placed):
+    """Beside each side of a blade's face, half its thickness behind it, and beside its face and its back.
+
+    A flat plate that reaches ahead along a banked or climbing track cannot stand square to all of it: where
+    that is more than ``SURE`` nothing is looked at. Nor is anything where two plates of a device meet.
+    """
+    lean = float(tooled.bank_at(placed.begin)) + float(tooled.climb_at(placed.begin))
+    prints = [shapely.Polygon(ring) for ring in placed.footprints]
+    for blade, own in zip(placed.features.blades, prints):
+        others = shapely.union_all([ring for ring in prints if ring is not own])
+        for x, z, behind, solid in _of_plate(blade):
+            (c, s), (ahead, inwards) = blade.axes
+            far, off = x * c + behind * ahead, blade.foot[1] + x * s + behind * inwards
+            y = placed.radius - np.hypot(far, placed.radius - off)
+            at = placed.begin + blade.foot[0] + placed.radius * np.arctan2(far, placed.radius - off)
+            leans = z * abs(np.sin(lean)) * abs(far) / placed.radius
+            is_alone = not prints[1:] or others.distance(shapely.Point(at, y)) > CLEAR
+            is_over = CLEAR + z * abs(np.tan(lean)) < y < tooled.width - CLEAR and z > CLEAR
+            if is_over and is_alone and leans < SURE:
+                yield "blade", at, y, placed.level, z, solid
+
+
+def _of_plate(blade):
+    """Yield places of a plate: along its face, up, behind it, and whether it is solid there."""
+    for part in (one for one in shapely.get_parts(blade.solid) if one.geom_type == "Polygon"):
+        for ring in (part.exterior, *part.interiors):
+            for start, stop in itertools.pairwise(shapely.get_coordinates(ring)):
+                along = stop - start
+                size = np.hypot(*along)
+                across = np.array([-along[1], along[0]]) / size
+                for share, off in itertools.product(SHARES if size > SHORT else (), (ASIDE, -ASIDE)):
+                    x, z = start + share * along + off * across
+                    yield x, z, 0.5 * blade.thickness, bool(blade.solid.contains(shapely.Point(x, z)))
+        x, z = shapely.get_coordinates(part.representative_point())[0]
+        for behind in (ASIDE, blade.thickness - ASIDE, -ASIDE, blade.thickness + ASIDE):
+            yield x, z, behind, 0.0 < behind < blade.thickness
+
+
+def _bores(placed):
+    """To either side of the rim of a bore, within the wall."""
+    for bore in placed.features.bores:
+        for turn, off in itertools.product(np.radians([10.0, 100.0, 190.0, 280.0]), (ASIDE, -ASIDE)):
+            r = 0.5 * bore.diameter + off
+            s = placed.begin + bore.place + r * np.cos(turn)
+            yield "bore", s, -IN_WALL, placed.level, bore.height + r * np.sin(turn), off > 0.0
+
+
+def _wall(tooled, placed):
+    """Before and behind the wall over the bare track before a device; in a groove it leans."""
+    s = 0.5 * (placed.start + placed.begin)
+    bank, lean = float(tooled.bank_at(s)), float(tooled.wall_lean_at(s))
+    if 0.0 < lean < np.radians(3.5):  # as it opens it is made to lean so much at once
+        return
+    # over the track, off the wall: it leans over a banked track, and back from it in a groove
+    high, foot = ABOVE * np.cos(lean - bank), -ABOVE * np.sin(lean - bank)
+    for off in (ASIDE, -ASIDE):
+        y, z = foot + off * np.cos(lean - bank), high + off * np.sin(lean - bank)
+        yield "wall", s, y, placed.level, z, off < 0.0
+
+
+def in_section(tooled, probe):
+    """Return where a probe is in the printed section: (3,) [m], the wall tangent to X at the origin."""
+    bank, theta = float(tooled.bank_at(probe.s)), probe.s / tooled.track.radius
+    r = tooled.track.radius - probe.y * np.cos(bank) + probe.z * np.sin(bank)
+    up = probe.level + probe.y * np.sin(bank) + probe.z * np.cos(bank)
+    return np.array([r * np.sin(theta), tooled.track.radius - r * np.cos(theta), up])
+
+
+def in_trial(tooled, placed, probe):
+    """Return where a probe is in the stage of its device alone: (3,) [m], the plane of the track level."""
+    bank, level = float(tooled.bank_at(placed.begin)), probe.level - placed.level
+    return _in_plane(tooled, probe, probe.s - placed.begin, level * np.cos(bank), level * np.sin(bank))
+
+
+def in_queue(tooled, placed, probe):
+    """Return where a probe is on the track of a queue, which has every device: (3,) [m]."""
+    falls = [(-height, float(tooled.bank_at(s))) for s, height in tooled.drops if s < placed.begin - ASIDE]
+    falls.append((probe.level - placed.level, float(tooled.bank_at(placed.begin))))
+    low, out = (sum(fall * turn(bank) for fall, bank in falls) for turn in (np.cos, np.sin))
+    return _in_plane(tooled, probe, probe.s, low, out)
+
+
+def _in_plane(tooled, probe, s, low, out):
+    """Where a probe is whose track is so low and so far out: what falls upright does so on a bank."""
+    radius = tooled.track.radius
+    r, theta = radius - probe.y - out, s / radius
+    return np.array([r * np.sin(theta), radius - r * np.cos(theta), low + probe.z])
+
+
+def in_bowl(tooled, plan, probe):
+    """Return where a probe is in a bowl: (3,) [m], its outlet at the angle 0, right-handed."""
+    radius, outlet = tooled.track.radius, plan.path.end - plan.first
+    bank, climb = float(tooled.bank_at(probe.s)), float(tooled.climb_at(probe.s))
+    # the climb from the probe to the outlet: between its changes it is constant
+    ends = sorted({probe.s, outlet, *(at for at, _ in tooled.climbs if probe.s < at < outlet)})
+    rise = sum((b - a) * np.tan(float(tooled.climb_at(0.5 * (a + b)))) for a, b in itertools.pairwise(ends))
+    foot = plan.outlet_height + tooled.fallen - rise
+    theta = (probe.s - outlet) / radius
+    outward, ahead = (
+        np.array([np.cos(theta), np.sin(theta), 0.0]),
+        np.array([-np.sin(theta), np.cos(theta), 0.0]),
+    )
+    up = np.array([0.0, 0.0, 1.0])
+    inwards = -np.cos(bank) * outward + np.sin(bank) * up
+    square = np.cross(ahead + np.tan(climb) * up, inwards)
+    square = square / np.sqrt((square**2).sum())
+    return radius * outward + (foot + probe.level) * up + probe.y * inwards + probe.z * square

@@ -1,0 +1,259 @@
+"""Every edge of every feature lies where its device says, to 0.03 mm, in all that a tooled track becomes."""
+
+import functools
+import io
+import itertools
+from types import SimpleNamespace
+
+import edge_probes as edges
+import ezdxf
+import numpy as np
+import pytest
+import shapely
+import test_one_track as chains
+import track_views as views
+
+from feederscrew.bowl.devices.kinds import KINDS, make_device
+from feederscrew.bowl.record import Track
+from feederscrew.cad import facets
+from feederscrew.cad import section as printed
+from feederscrew.cad.closed_body import pieces
+from feederscrew.cad.exact import exact_body, exact_file
+from feederscrew.output import bowl_sheet, tooling_drawing
+from feederscrew.output.drafting import Drawing
+from feederscrew.resting.aspects import find
+from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.tooled_track import lay_out
+from feederscrew.trials import queue, staging
+
+MM = 1e-3
+NEAR = 2e-5  # [m] within which places agree
+FAR_MM = 611.0, 373.0, 4999.0  # beyond every body, along no axis of it
+CORNERS = ((0.0, 2e-3), (8e-3, 1e-3), (6e-3, 9e-3))
+HOLE = {"corners": CORNERS}
+JET = {"nozzle": 2e-3, "pressure": 2e4, "height": 4e-3}
+DROPS = {  # what falls on a bank lies further out as well, and so does all behind it
+    "steps on a bank": [("banked track", {"angle": 7.0}), ("step", {"limit": 4e-3}), ("cut-out", HOLE),
+                        ("step ", {"limit": 3e-3}), ("height bar", {"limit": 8e-3}), ("air jet", JET)],
+    "ledges on a bank": [("banked track", {"angle": 6.0}), ("tipping ledge", {"limit": 7e-3}),
+                         ("slot", {"span": (5e-3, 8e-3)}), ("tipping ledge ", {"limit": 9e-3}),
+                         ("air jet", JET)],
+    "a ledge between twists": [("step", {"limit": 4e-3}), ("banked track", {"angle": 5.0}),
+                               ("tipping ledge", {"limit": 8e-3}), ("banked track ", {"angle": 2.0}),
+                               ("wiper", {"limit": 6e-3}), ("gap", {"limit": 7e-3})],
+    "spaced within a groove": [("V groove", {"angle": 25.0}), ("spacing section", {"angle": 1.0}),
+                               ("banked track", {"angle": 3.0}), ("canyon", {"limit": 4e-3})],
+}  # fmt: skip
+CASES = [*range(chains.CHAINS), *DROPS]
+
+
+def laid_out(case):
+    """Track, orientations, chain and tooled track of a seed or of one of ``DROPS``."""
+    if case not in DROPS:
+        return chains.drawn(case, 0.15)
+    track = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=24e-3)
+    every = orientations(chains.part(), find(chains.part()), track)
+    chain = []
+    for kind, values in DROPS[case]:
+        own = {k: np.radians(x) if k == "angle" else x for k, x in values.items()}
+        chain.append(make_device(kind.strip(), "test", **own))
+    return track, every, chain, lay_out(track, chain, every)
+
+
+def of_facets(bodies):
+    """Whether a place (3,) [m] is within bodies [mm] of facets: a ray from it leaves them once more."""
+
+    def is_solid(place):
+        ends = tuple(place / MM), tuple(place / MM + FAR_MM)
+        return any(len(one.ray_cast(*ends)) % 2 for one in bodies)
+
+    return is_solid
+
+
+def of_exact(bodies):
+    """Whether a place (3,) [m] is within bodies [mm] of OpenCASCADE."""
+    from OCP import BRepClass3d, TopAbs
+
+    own = [BRepClass3d.BRepClass3d_SolidClassifier(one) for one in bodies]
+
+    def is_solid(place):
+        for one in own:
+            one.Perform(exact_body.point(place / MM), 1e-7)
+        return any(one.State() == TopAbs.TopAbs_IN for one in own)
+
+    return is_solid
+
+
+def of_stage(stage):
+    """Whether a place (3,) [m] is within a plate of the trial."""
+    plates = [views.plate_of(stage, row) for row in stage.plates]
+
+    def is_solid(place):
+        inner = [((place - at) @ axes.T, depth, area) for at, axes, depth, area in plates]
+        return any(-deep < z < 0.0 and area.contains(shapely.Point(x, y)) for (x, y, z), deep, area in inner)
+
+    return is_solid
+
+
+TRIED = ("opening", "edge", "lower track", "ledge", "blade")  # plates; walls and bores are numbers there
+
+
+def wrong(tooled, place, is_solid, whats=()):
+    """Probes of which a consumer says otherwise: ``place`` and ``is_solid`` are asked of each device."""
+    found, seen = [], 0
+    for number, (placed, own) in enumerate(zip(tooled.devices, edges.probes(tooled))):
+        for probe in own:
+            if not whats or probe.what.endswith(whats):
+                seen += 1
+                if is_solid(number)(place(placed, probe)) != probe.solid:
+                    found.append(probe)
+    assert seen > 10
+    return found
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_edges_of_the_trial_and_of_its_queue(case):
+    track, every, chain, tooled = laid_out(case)
+    wide = lay_out(track, chain, every, whole=True)
+    alone = [of_stage(staging.stage_placed(wide, k, track, every)) for k in range(len(chain))]
+    assert not wrong(tooled, lambda *one: edges.in_trial(tooled, *one), alone.__getitem__, TRIED)
+    crowd = of_stage(queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1).stage)
+    assert not wrong(tooled, lambda *one: edges.in_queue(tooled, *one), lambda _: crowd, TRIED)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_edges_of_the_print_and_of_the_bowl(case):
+    _, every, _, tooled = laid_out(case)
+    section = of_facets([views.mesh(*printed.solid(tooled))])
+    assert not wrong(tooled, lambda _, probe: edges.in_section(tooled, probe), lambda _: section)
+    plan, _ = chains.bowl_of(tooled, every)
+    whole, gates = pieces(plan, facets)
+    bowl = of_facets([whole, *(gate for _, gate in gates)])
+    assert not wrong(tooled, lambda _, probe: edges.in_bowl(tooled, plan, probe), lambda _: bowl)
+
+
+@pytest.mark.needs("OCP")
+@pytest.mark.parametrize("case", CASES)
+def test_edges_of_the_step_file(case):
+    *_, tooled = laid_out(case)
+    section = of_exact([exact_file.exact_section(tooled)])
+    assert not wrong(tooled, lambda _, probe: edges.in_section(tooled, probe), lambda _: section)
+
+
+@pytest.mark.needs("OCP")
+@pytest.mark.parametrize("case", [4, "ledges on a bank"])
+def test_edges_of_the_exact_bowl(case):
+    _, every, _, tooled = laid_out(case)
+    plan, _ = chains.bowl_of(tooled, every)
+    whole, gates = pieces(plan, exact_body)
+    bowl = of_exact([whole, *(gate for _, gate in gates)])
+    assert not wrong(tooled, lambda _, probe: edges.in_bowl(tooled, plan, probe), lambda _: bowl)
+
+
+@functools.cache
+def files(case):
+    """DXF files of a track section, and of its bowl with one sheet for the devices."""
+    _, every, _, tooled = laid_out(case)
+    plan, _ = chains.bowl_of(tooled, every)
+    sheets = Drawing(tooling_drawing.DEVICE_PENS)
+    bowl_sheet.draw_devices(sheets, plan, tooled, "part", None, "2 of 3")
+    return {
+        name: ezdxf.read(io.StringIO(data.decode())).modelspace()
+        for name, data in (("tooling", tooling_drawing.dxf(tooled)), ("bowl", sheets.dxf()))
+    }
+
+
+def outlines(space, tooled):
+    """Outlines [m] by layer, its number left out: along the wall from the datum, and off the wall."""
+    rings = {}
+    for line in space.query("LWPOLYLINE"):
+        layer = line.dxf.layer.rstrip("0123456789").rstrip("_")
+        rings.setdefault(layer, []).append(np.array([point[:2] for point in line.get_points()]))
+    low, high = rings["TRACK"][0].min(axis=0), rings["TRACK"][0].max(axis=0)
+    scale = (high - low)[1] / tooled.width
+    return {layer: [(ring - low) / scale for ring in own] for layer, own in rings.items()}
+
+
+@pytest.mark.parametrize("name", ["tooling", "bowl"])
+@pytest.mark.parametrize("case", CASES)
+def test_edges_of_the_drawings(case, name):
+    *_, tooled = laid_out(case)
+    rings = outlines(files(case)[name], tooled)
+    track, *cuts = (
+        shapely.union_all([shapely.Polygon(ring) for ring in rings.get(layer, ())])
+        for layer in ("TRACK", "CUT")
+    )
+    left = track.difference(shapely.union_all(cuts))
+    shapely.prepare(left)
+    for own in edges.probes(tooled):
+        for probe in own:
+            if probe.what.endswith("opening"):
+                assert left.contains(shapely.Point(probe.s, probe.y)) == probe.solid, probe
+    for placed in tooled.devices:
+        if placed.drop is not None:
+            layer = "LEDGE" if placed.drop.aside > 0.0 else "STEP"
+            foot = placed.begin, placed.drop.aside
+            assert min(np.abs(ring.min(axis=0) - foot).max() for ring in rings[layer]) < NEAR
+    blades = [ring for placed in tooled.devices for ring in placed.footprints]
+    for ring, drawn in itertools.zip_longest(blades, rings.get("GATE", [])):
+        assert np.hypot(*(ring[:, None] - drawn).transpose(2, 0, 1)).min(axis=1).max() < NEAR
+
+
+def dimensions(space):
+    """Numbers of ordinates: along the track, off the wall or over the track [m]."""
+    along, off = [], []
+    for one in space.query("DIMENSION"):
+        if one.dimtype == 6:
+            value, factor = one.get_measurement(), one.get_dim_style().dxf.dimlfac
+            is_along = bool(one.dxf.dimtype & 64)
+            (along if is_along else off).append(factor * (value.x if is_along else value.y) * MM)
+    return np.array(along), np.array(off)
+
+
+def on_track(placed, width):
+    """Corners (K, 2) [m] of what each opening of a device takes of the track, as its features have it."""
+    track = shapely.box(-1.0, 0.0, 1.0, width)
+    rings = [shapely.Polygon(opening.ring).intersection(track) for opening in placed.features.openings]
+    return [shapely.get_coordinates(ring) + [placed.begin, 0.0] for ring in rings]
+
+
+def plate_begins(placed):
+    """Lengths [m] from the datum at which the faces of blades begin."""
+    for blade in placed.features.blades:
+        near, (c, s) = blade.solid.bounds[0], blade.axes[0]
+        turn = np.arctan2(near * c, placed.radius - blade.foot[1] - near * s)
+        yield placed.begin + blade.foot[0] + placed.radius * turn
+
+
+@pytest.mark.parametrize("name", ["tooling", "bowl"])
+@pytest.mark.parametrize("case", CASES)
+def test_every_feature_has_its_numbers_in_the_drawings(case, name):
+    *_, tooled = laid_out(case)
+    along, off = dimensions(files(case)[name])
+    known = []  # every place along the track of which a number may be
+    for placed in tooled.devices:
+        own, cuts = placed.features, on_track(placed, tooled.width)
+        places = [*(slope.begin for slope in own.slopes), *(jet.at[0] for jet in own.jets[:1])]
+        places += [] if own.sensor is None else [own.sensor.at]
+        places += [] if placed.drop is None else [0.0]
+        wanted = [*(placed.begin + place for place in places), *plate_begins(placed)]
+        wanted += [float(corners[:, 0].min()) for corners in cuts]
+        across = [bore.height for bore in own.bores]
+        across += [placed.drop.aside] if placed.drop is not None and placed.drop.aside > 0.0 else []
+        for corners in cuts:
+            first = corners[corners[:, 0] <= corners[:, 0].min() + 1e-9]
+            across += [float(y) for y in first[:, 1] if 1e-9 < y < tooled.width - 1e-9]
+        for place, numbers in (*((s, along) for s in wanted), *((y, off) for y in across)):
+            assert np.abs(numbers - place).min() < NEAR, (placed.label, place)
+        known += [*wanted, placed.start, *(float(s) for corners in cuts for s in corners[:, 0])]
+        if name == "tooling":  # openings of gates, beside the track
+            known += [float(y) for blade in own.blades for ring in blade.opening() for y in ring[:, 0]]
+    known += [opening.end for _, opening in tooled.openings]
+    assert max(np.abs(np.array(known) - number).min() for number in along) < NEAR
+
+
+def test_every_kind_that_has_an_edge_is_looked_at():
+    whats = {probe.what for case in CASES for own in edges.probes(laid_out(case)[-1]) for probe in own}
+    kinds = {kind for kind, own in KINDS.items() if own.action.has_place and not own.action.leans}
+    shapes = {what.rpartition(" ")[0] for what in whats if not what.endswith("wall")}
+    assert {kind for kind in kinds if any(what.startswith(kind) for what in shapes)} == kinds
