@@ -5,7 +5,22 @@ from dataclasses import replace
 import awkward
 import numpy as np
 import pytest
-from block_rides import ALONG, ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SHARES, SOLID, laid, lying, still
+import shapes
+from block_rides import (
+    ALONG,
+    ASPECTS,
+    BOWL,
+    EVERY,
+    FLAT,
+    LENGTH,
+    PART,
+    SHARES,
+    SOLID,
+    aspects_of,
+    laid,
+    lying,
+    still,
+)
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.kernel import body
@@ -59,9 +74,9 @@ def queued(bowl, *planned, run=USUAL_RUN, **own):
     return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, SHARES, plan, run)
 
 
-def row_of(bowl, *planned, shares=SHARES, seed=3):
-    every = lying(PART, bowl)
-    return queue.PartsQueue(PART, bowl, ASPECTS, (every, shares), every, QueuePlan(*planned), seed)
+def row_of(bowl, *planned, shares=SHARES, seed=3, part=PART):
+    every = lying(part, bowl)
+    return queue.PartsQueue(part, bowl, aspects_of(part), (every, shares), every, QueuePlan(*planned), seed)
 
 
 def ways(row):
@@ -107,7 +122,7 @@ def test_a_part_on_another_bears_with_its_weight_and_falling_over_it_wins_no_ene
     assert (np.array([on.reaches([n])[n][2] for n in range(3)]) * LENGTH > -2e-4).all()
 
 
-@pytest.mark.parametrize("room", [0, 6])
+@pytest.mark.parametrize("room", [0, 2])
 def test_lists_of_what_may_touch_decide_nothing(monkeypatch, room):
     """Parts that fall onto each other move by the same bytes where lists have no room, or only some have."""
     rows = [row_of(HOPPING, 8, 0.5, None), None]
@@ -120,6 +135,21 @@ def test_lists_of_what_may_touch_decide_nothing(monkeypatch, room):
     assert kept.states.tobytes() == without.states.tobytes() and kept.strains.any()
     assert (kept.pair_lists.reach > 0.0).sum() > 1 and (without.pair_lists.reach < 0.0).any()
     assert (without.pair_lists.reach > 0.0).any() == (room > 0)
+
+
+def test_lists_leave_out_nothing_that_touches_of_parts_with_many_corners(monkeypatch):
+    """Gears that fall onto each other move by the same bytes with lists and where these have no room."""
+    part = shapes.part(shapes.spur_gear())
+    shares = np.full(len(lying(part, HOPPING)), 1.0 / len(lying(part, HOPPING)))
+    row = row_of(HOPPING, 5, 0.5, None, shares=shares, part=part)
+    monkeypatch.setattr(runs, "MAX_NEAR_FACES", 0)
+    monkeypatch.setattr(runs, "MAX_CROSSINGS", 0)
+    rows = [row, row_of(HOPPING, 5, 0.5, None, shares=shares, part=part)]
+    for each in rows:
+        each.follow(0.4)
+    kept, without = (each.crowd.arrays for each in rows)
+    assert kept.states.tobytes() == without.states.tobytes() and kept.strains.any()
+    assert (kept.pair_lists.reach > 0.0).any() and not (without.pair_lists.reach > 0.0).any()
 
 
 @pytest.mark.parametrize(("bowl", "gaps", "seconds", "near"), [

@@ -14,6 +14,7 @@ import os
 import secrets
 import struct
 import threading
+from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -176,7 +177,8 @@ LOADING = threading.RLock()
 KINDS: dict[Any, int] = {}  # of arguments, numbered as they come
 KIND_OF: dict[int, Any] = {}
 MAX_REMEMBERED_TUPLES = 64  # of arguments whose words are remembered
-BLOCKS: dict[int, tuple[tuple[Any, ...], tuple[int, bytes]]] = {}  # of tuples, by their identity
+# of tuples, by their identity, the one used last at the end
+BLOCKS: OrderedDict[int, tuple[tuple[Any, ...], tuple[int, bytes]]] = OrderedDict()
 ENTERED: set[Callable[..., Any]] = set()  # functions of entries that numba is told of
 LOADED: list[Any] = []  # holds the code that is loaded
 
@@ -239,11 +241,14 @@ def _block(value: Any) -> tuple[int, bytes]:
     if isinstance(value, tuple):
         remembered = BLOCKS.get(id(value))
         if remembered is not None and remembered[0] is value:
+            with contextlib.suppress(KeyError):  # another thread may have let it go
+                BLOCKS.move_to_end(id(value))
             return remembered[1]
         blocks = [_block(item) for item in value]
         kind = (type(value), *(number for number, _ in blocks))
         words = b"".join([words for _, words in blocks])
     elif isinstance(value, np.ndarray):
+        value = np.asarray(value)  # attributes of records are slow to ask for
         if not value.flags.c_contiguous:
             raise ValueError(f"a kernel takes arrays in C order, not of strides {value.strides}")
         kind = value.dtype, value.ndim
@@ -261,7 +266,8 @@ def _block(value: Any) -> tuple[int, bytes]:
             KIND_OF[number] = kind
     if isinstance(value, tuple):
         if len(BLOCKS) >= MAX_REMEMBERED_TUPLES:
-            BLOCKS.clear()
+            with contextlib.suppress(KeyError):
+                BLOCKS.popitem(last=False)
         BLOCKS[id(value)] = value, (number, words)
     return number, words
 

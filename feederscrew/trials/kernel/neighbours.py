@@ -15,6 +15,7 @@ from feederscrew.trials.kernel.plate_views import (
     box_is_off,
     circle_height,
     circle_to_wall,
+    crosses,
     distance_to_border,
     distance_to_wall,
     extent_of,
@@ -119,14 +120,15 @@ def _list_plate(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: 
     """Add what of a part is near one plate; ``work.frame`` is how that sees it."""
     plate, borders, box = surface.plates[k], surface.borders, work.box
     count = total = blocks = 0
-    if _border_comes(solid, work, plate, borders, margin):
-        for e in range(plate.begin, plate.end):  # a line along the plate from a point in the box may cross it
-            border = borders[e]
-            level = max(border.start_y, border.end_y) >= box[2] - margin
-            level = level and min(border.start_y, border.end_y) <= box[3] + margin
-            if level and max(border.start_x, border.end_x) >= box[0] - margin:
-                work.rounds[n, work.list_counts[0].rounds] = e
-                work.list_counts[0].rounds += 1
+    comes = _border_comes(solid, work, plate, borders, margin)
+    for e in range(plate.begin, plate.end):  # a line along the plate from a point in the box may cross it
+        border = borders[e]
+        level = max(border.start_y, border.end_y) >= box[2] - margin
+        level = level and min(border.start_y, border.end_y) <= box[3] + margin
+        if level and max(border.start_x, border.end_x) >= box[0] - margin:
+            work.rounds[n, work.list_counts[0].rounds] = e
+            work.list_counts[0].rounds += 1
+    if comes:
         # which blocks of edges come to the plate's height, and their box
         top, bottom = margin, -plate.depth - margin
         for e in range(2):
@@ -164,13 +166,32 @@ def _comes_into(border: Row, box: Floats, margin: float) -> bool:
 
 @compiled
 def _border_comes(solid: TrueSolid, work: Workspace, plate: Row, borders: Rows, margin: float) -> bool:
-    """Tell whether any border of a plate comes into the box of a ball around the part."""
+    """Tell whether any border of a plate comes into the box of a ball around the part, ``work.box``."""
     box, far, comes = work.box, solid.radius, False
     for e in range(2):
         box[2 * e], box[2 * e + 1] = work.frame[9 + e] - far, work.frame[9 + e] + far
     for k in range(plate.begin, plate.end):
-        comes = comes or _comes_into(borders[k], box, margin)
+        comes = _comes_into(borders[k], box, margin)
+        if comes:
+            break
     return comes
+
+
+@compiled
+def _is_over_solid(
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, a: float, b: float
+) -> bool:
+    """Tell whether a point (a, b) [L] of a plate, below the part, is solid: within its borders.
+
+    Of a point in the box of a ball around the part the ``work.rounds`` listed tell; of any other, as the
+    middle of an arc may be, all borders.
+    """
+    plate, radius, odd = surface.plates[k], solid.radius, False
+    if abs(b - work.frame[10]) > radius or a < work.frame[9] - radius:
+        return is_solid(surface.borders, plate.begin, plate.end, a, b)
+    for e in range(work.ends[n, k].rounds, work.list_counts[0].rounds):
+        odd = odd != crosses(surface.borders[work.rounds[n, e]], a, b)
+    return odd
 
 
 @compiled
@@ -207,9 +228,9 @@ def _list_corners(
                     work.borders_close[close_count] = work.borders_near[e]
                     close_count += 1
         a, b = work.views[begin, 0], work.views[begin, 1]
-        if not is_bare or is_solid(borders, plate.begin, plate.end, a, b):
+        if not is_bare or _is_over_solid(surface, solid, work, n, k, a, b):
             for m in range(begin, end):
-                _list_corner(surface, solid, work, n, plate, m, close_count, is_bare, margin)
+                _list_corner(surface, solid, work, n, k, m, close_count, is_bare, margin)
 
 
 @compiled
@@ -218,14 +239,14 @@ def _list_corner(
     solid: TrueSolid,
     work: Workspace,
     n: int,
-    plate: Row,
+    k: int,
     m: int,
     close_count: int,
     is_bare: bool,
     margin: float,
 ) -> None:
     """Add a corner with the borders near it, of those that come close to the corners around it."""
-    borders, filled = surface.borders, work.list_counts[0]
+    borders, plate, filled = surface.borders, surface.plates[k], work.list_counts[0]
     a, b, c = work.views[m, 0], work.views[m, 1], work.views[m, 2]
     count, first = filled.corners, filled.sides
     sides, nearest = first, math.inf
@@ -239,7 +260,7 @@ def _list_corner(
     if sides == first:
         if -plate.depth + MAX_DEPTH + margin < c and (c < -MAX_DEPTH - margin or solid.on_circle[corner]):
             return
-        if not is_bare and not is_solid(borders, plate.begin, plate.end, a, b):
+        if not is_bare and not _is_over_solid(surface, solid, work, n, k, a, b):
             return
     if count < work.near_corners.shape[1]:
         near = work.near_corners[n, count]
@@ -281,7 +302,7 @@ def _list_circles(
             for e in range(total):
                 border = surface.borders[work.borders_near[e]]
                 clear = clear and not _comes_into(border, box, margin + MAX_DEPTH)
-        if clear and not is_solid(surface.borders, plate.begin, plate.end, a, b):
+        if clear and not _is_over_solid(surface, solid, work, n, k, a, b):
             continue
         near = work.near_circles[n, work.list_counts[0].circles]
         near.circle, near.clear = m, clear

@@ -7,7 +7,7 @@ Everything is looked for in the body axes of the part that is touched, the secon
 import math
 
 from feederscrew.arrivals.kernel.body import X
-from feederscrew.base.arrays import Floats, Ints, Triple
+from feederscrew.base.arrays import Floats, Ints, Rows, Triple
 from feederscrew.base.geometry.compiled import compiled, outlined
 from feederscrew.trials.kernel.contact import set_axes, set_levers
 from feederscrew.trials.kernel.plate_views import (
@@ -17,6 +17,7 @@ from feederscrew.trials.kernel.plate_views import (
     NORMAL_SLACK,
     box_is_off,
     cross,
+    distance_beside_face,
     dot,
     extent_of,
     height_over_face,
@@ -32,8 +33,9 @@ from feederscrew.trials.kernel.workspace import IntPair, TrueSolid, Vec3, Worksp
 FACE_MARGIN = 2e-3  # by which a corner may lie outside the face it touches
 ROUNDING = 1e-9  # more than rounding moves a box
 # how far around two parts their lists look
-LEAST_LIST_MARGIN = 0.03  # at least
+LEAST_LIST_MARGIN = 0.05  # at least
 LIST_MARGIN_SHARE = 2.0  # times the reach
+MAX_NORMAL_TURN = 0.5  # [1] sine of the angle by which the normal of two edges may turn while lists hold
 LIST_REACH = 0.1  # greater than any reach: what is so near to a part is within its radius and that
 
 
@@ -43,7 +45,9 @@ def find_pair_contacts(solid: TrueSolid, work: Workspace, i: int, j: int, reach:
 
     Which corners may touch which faces, and which edges cross, is listed once in a while. The lists hold as
     long as neither part has moved further, as the other sees it, than they look around: L. Verlet, Phys. Rev.
-    159, 98-103, 1967. They never decide what touches: every contact is the same as without them.
+    159, 98-103, 1967. They never decide what touches: every contact is the same as without them. Left out of
+    them is what no motion for which they hold brings to touch: a corner before which another one lies, edges
+    whose normal is not between their faces. Beside each stands how much nearer it must come.
     """
     if _balls_are_apart(solid, work, i, j, reach + FACE_MARGIN):
         return
@@ -59,7 +63,8 @@ def find_pair_contacts(solid: TrueSolid, work: Workspace, i: int, j: int, reach:
         work.pair_lists[i, slot].partner, work.pair_lists[i, slot].reach = j, 0.0
     lists = work.pair_lists[i, slot]
     own, theirs, edges = work.own_corners[i, slot], work.their_corners[i, slot], work.near_crossings[i, slot]
-    if _shift_of(solid, work.frame, work.pair_frames[i, slot]) + reach > abs(lists.reach):
+    far = _shift_of(solid, work.frame, work.pair_frames[i, slot]) + reach
+    if far > abs(lists.reach):
         for e in range(12):
             work.pair_frames[i, slot, e] = work.frame[e]
         wide = reach + max(LEAST_LIST_MARGIN, LIST_MARGIN_SHARE * reach)
@@ -68,6 +73,10 @@ def find_pair_contacts(solid: TrueSolid, work: Workspace, i: int, j: int, reach:
         _place_in(work, j, i)
         lists.theirs = _list_corners(work, solid, wide, wide - reach, theirs)
         _place_in(work, i, j)
+        lists.nearest = min(
+            _nearest_of(own, lists.own), _nearest_of(edges, lists.edges), _nearest_of(theirs, lists.theirs)
+        )
+        far = reach
         is_full = lists.own == len(own) or lists.theirs == len(theirs) or lists.edges == len(edges)
         lists.reach = -wide if is_full else wide
     if lists.reach < 0.0:  # there is more than they have room for
@@ -76,10 +85,21 @@ def find_pair_contacts(solid: TrueSolid, work: Workspace, i: int, j: int, reach:
         _place_in(work, j, i)
         work.pair_rows[0] = _add_corners(work, solid, j, i, reach, count)
         return
-    count = _touch_corners(work, solid, (i, j), own, lists.own, reach, work.pair_rows[0])
-    count = _touch_edges(work, solid, (i, j), edges, lists.edges, reach, count)
+    if lists.nearest > far:
+        return
+    count = _touch_corners(work, solid, (i, j), own, lists.own, reach, far, work.pair_rows[0])
+    count = _touch_edges(work, solid, (i, j), edges, lists.edges, reach, far, count)
     _place_in(work, j, i)
-    work.pair_rows[0] = _touch_corners(work, solid, (j, i), theirs, lists.theirs, reach, count)
+    work.pair_rows[0] = _touch_corners(work, solid, (j, i), theirs, lists.theirs, reach, far, count)
+
+
+@compiled
+def _nearest_of(near: Rows, count: int) -> float:
+    """Return how much nearer [L] the first of so many that are listed must come to touch."""
+    nearest = math.inf
+    for m in range(count):
+        nearest = min(nearest, near[m].off)
+    return nearest
 
 
 @compiled
@@ -166,27 +186,34 @@ def _add_contact(
 
 @compiled
 def _touched_face(
-    work: Workspace, solid: TrueSolid, near: Ints, faces: IntPair, p: Triple, reach: float
+    work: Workspace, solid: TrueSolid, near: Rows, faces: IntPair, p: Triple, reach: float, far: float
 ) -> tuple[int, float]:
     """Triangle that a corner at a place touches, the least deep of some it may, and the gap; -1 for none.
 
-    ``near`` (R, 2) are corners and triangles, ``faces`` where those of the corner begin and end.
+    ``near`` (R,) are corners and triangles, ``faces`` where those of the corner begin and end. Those that had
+    to come nearer by more than ``far`` [L] are not looked at.
     """
-    gap, face, k = -MAX_DEPTH, -1, near[faces[0], 0]
+    gap, face, k = -MAX_DEPTH, -1, near[faces[0]].ours
     for f in range(faces[0], faces[1]):
-        m = near[f, 1]
+        if near[f].off > far:
+            continue
+        m = near[f].theirs
         off = height_over_face(solid, m, p[0], p[1], p[2])
         if not gap < off < reach or not is_over_face(solid, m, p[0], p[1], p[2], FACE_MARGIN):
             continue
-        lowest = True  # of the corners around it
-        for n in range(solid.firsts[k], solid.firsts[k + 1]):
-            away = subtract(place_of(work.frame, solid.corners[solid.neighbours[n]]), p)
-            if dot(away, solid.normals[m]) < -NORMAL_SLACK * math.sqrt(dot(away, away)):
-                lowest = False
-                break
-        if lowest:
+        if _is_lowest(work, solid, k, m, p, NORMAL_SLACK):
             gap, face = off, m
     return face, gap
+
+
+@compiled
+def _is_lowest(work: Workspace, solid: TrueSolid, k: int, m: int, p: Triple, slack: float) -> bool:
+    """Tell whether corner k, at a place, is the lowest of those around it over triangle m, by a slack [1]."""
+    for n in range(solid.firsts[k], solid.firsts[k + 1]):
+        away = subtract(place_of(work.frame, solid.corners[solid.neighbours[n]]), p)
+        if dot(away, solid.normals[m]) < -slack * math.sqrt(dot(away, away)):
+            return False
+    return True
 
 
 @compiled
@@ -263,15 +290,17 @@ def _list_faces(
     k: int,
     reach: float,
     margin: float,
-    near: Ints,
+    near: Rows,
     count: int,
 ) -> int:
-    """Add the faces that corner k may touch to ``near`` (R, 2), after so many; how many there are then.
+    """Add the faces that corner k may touch to ``near`` (R,), after so many; how many there are then.
 
     They are looked for ``reach`` [L] ahead, by ``margin`` [L] of it because the parts move on. It is R where
     there are more than that.
     """
-    p = place_of(work.frame, solid.corners[k])
+    p, slack = place_of(work.frame, solid.corners[k]), NORMAL_SLACK + ROUNDING
+    if margin > 0.0:
+        slack += _turn_within(solid, reach)
     for f in range(blocks):
         block = work.face_blocks[f]
         if box_is_off(solid.face_blocks[block], p, p, reach + MAX_DEPTH):
@@ -280,15 +309,22 @@ def _list_faces(
             off = height_over_face(solid, m, p[0], p[1], p[2])
             if not -MAX_DEPTH - margin < off < reach or count == len(near):
                 continue
-            if is_over_face(solid, m, p[0], p[1], p[2], FACE_MARGIN + margin):
-                near[count, 0], near[count, 1] = k, m
+            beside = distance_beside_face(solid, m, p[0], p[1], p[2]) - FACE_MARGIN - ROUNDING
+            if beside < margin and _is_lowest(work, solid, k, m, p, slack):
+                near[count].ours, near[count].theirs, near[count].off = k, m, max(off, beside)
                 count += 1
     return count
 
 
 @compiled
-def _list_corners(work: Workspace, solid: TrueSolid, reach: float, margin: float, near: Ints) -> int:
-    """Write which corners may touch which faces to ``near`` (R, 2); how many, R where there are more."""
+def _turn_within(solid: TrueSolid, wide: float) -> float:
+    """Return by how much [1] directions of two parts turn at most against each other while lists hold."""
+    return wide / (solid.radius + LIST_REACH)
+
+
+@compiled
+def _list_corners(work: Workspace, solid: TrueSolid, reach: float, margin: float, near: Rows) -> int:
+    """Write which corners may touch which faces to ``near`` (R,); how many, R where there are more."""
     corners, count = _near_corners(work, solid, reach), 0
     blocks = _near_blocks(solid.face_blocks, work.box, reach + MAX_DEPTH, work.face_blocks) if corners else 0
     for c in range(corners):
@@ -298,20 +334,32 @@ def _list_corners(work: Workspace, solid: TrueSolid, reach: float, margin: float
 
 @compiled
 def _touch_corners(
-    work: Workspace, solid: TrueSolid, parts: IntPair, near: Ints, listed: int, reach: float, count: int
+    work: Workspace,
+    solid: TrueSolid,
+    parts: IntPair,
+    near: Rows,
+    listed: int,
+    reach: float,
+    far: float,
+    count: int,
 ) -> int:
-    """Add contacts of the first part's corners with faces of the other, among so many that are listed."""
+    """Add contacts of the first part's corners with faces of the other, among so many that are listed.
+
+    ``far`` [L] is the reach and what the parts have moved since.
+    """
     begin = 0
     while begin < listed:
-        k, end = near[begin, 0], begin + 1
-        while end < listed and near[end, 0] == k:
+        k, end, comes = near[begin].ours, begin, False
+        while end < listed and near[end].ours == k:
+            comes = comes or near[end].off <= far
             end += 1
-        p = place_of(work.frame, solid.corners[k])
-        if _is_in_box(p, work.least, work.most, reach):
-            m, gap = _touched_face(work, solid, near, (begin, end), p, reach)
-            if m >= 0:
-                n = solid.normals[m]
-                count = _add_contact(work, solid, parts, p, (n[0], n[1], n[2]), gap, count)
+        if comes:
+            p = place_of(work.frame, solid.corners[k])
+            if _is_in_box(p, work.least, work.most, reach):
+                m, gap = _touched_face(work, solid, near, (begin, end), p, reach, far)
+                if m >= 0:
+                    n = solid.normals[m]
+                    count = _add_contact(work, solid, parts, p, (n[0], n[1], n[2]), gap, count)
         begin = end
     return count
 
@@ -323,7 +371,7 @@ def _add_corners(work: Workspace, solid: TrueSolid, i: int, j: int, reach: float
     blocks = _near_blocks(solid.face_blocks, work.box, reach + MAX_DEPTH, work.face_blocks) if corners else 0
     for c in range(corners):
         faces = _list_faces(work, solid, blocks, work.indices[c], reach, 0.0, near, 0)
-        count = _touch_corners(work, solid, (i, j), near, faces, reach, count)
+        count = _touch_corners(work, solid, (i, j), near, faces, reach, math.inf, count)
     return count
 
 
@@ -354,8 +402,8 @@ def _near_edges(work: Workspace, solid: TrueSolid, reach: float) -> int:
 
 
 @compiled
-def _list_edges(work: Workspace, solid: TrueSolid, reach: float, near: Ints) -> int:
-    """Write which edges may cross which to ``near`` (R, 2); how many, R where there are more."""
+def _list_edges(work: Workspace, solid: TrueSolid, reach: float, near: Rows) -> int:
+    """Write which edges may cross which to ``near`` (R,); how many, R where there are more."""
     edges, count = _near_edges(work, solid, reach), 0
     blocks = _near_blocks(solid.edge_blocks, work.box, reach, work.second_blocks) if edges else 0
     for m in range(edges):
@@ -368,26 +416,71 @@ def _list_edges(work: Workspace, solid: TrueSolid, reach: float, near: Ints) -> 
                 continue
             for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
                 r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
-                if count < len(near) and not _edges_are_apart((p, q), (r, s), reach):
-                    near[count, 0], near[count, 1] = k, n
+                if count == len(near) or _edges_are_apart((p, q), (r, s), reach):
+                    continue
+                off = _distance_to_crossing(work, solid, (k, n), (p, q), reach)
+                if off < reach:
+                    near[count].ours, near[count].theirs, near[count].off = k, n, off
                     count += 1
     return count
 
 
 @compiled
+def _distance_to_crossing(
+    work: Workspace, solid: TrueSolid, edges: IntPair, ends: tuple[Triple, Triple], wide: float
+) -> float:
+    """Return how much nearer [L] two edges (2,) of two parts must come at least to touch, as ``_add_edge``.
+
+    Of all motions for which lists that look so far hold; infinite where none lets them touch. Directions that
+    turn by t turn the normal of edges that cross at an angle c by t / sin c.
+    """
+    (ours, theirs), (p, q) = edges, ends
+    r, s = solid.corners[solid.edges[theirs, 0]], solid.corners[solid.edges[theirs, 1]]
+    a, u, way = subtract(q, p), subtract(s, r), subtract(r, p)
+    across, turn = cross(a, u), _turn_within(solid, wide)
+    size, most = math.sqrt(dot(across, across)), math.sqrt(dot(a, a) * dot(u, u))
+    if turn * most > MAX_NORMAL_TURN * size:  # it may be any direction
+        return -math.inf
+    slack = 1.2 * turn * most / size  # chord of an angle whose sine is up to MAX_NORMAL_TURN
+    blur, off = slack * (math.sqrt(dot(way, way)) + wide), math.inf
+    own, side = solid.sides[ours], solid.sides[theirs]
+    for _ in range(2):
+        size = -size  # either way
+        normal = across[0] / size, across[1] / size, across[2] / size
+        by_first = rotate_back(work.frame, normal)
+        most = max(dot(side[:3], normal), dot(side[3:], normal))
+        least = min(dot(own[:3], by_first), dot(own[3:], by_first))
+        if most <= NORMAL_SLACK + slack and least >= -NORMAL_SLACK - slack - turn:
+            off = min(off, -dot(way, normal) - blur)
+    return off
+
+
+@compiled
 def _touch_edges(
-    work: Workspace, solid: TrueSolid, parts: IntPair, near: Ints, listed: int, reach: float, count: int
+    work: Workspace,
+    solid: TrueSolid,
+    parts: IntPair,
+    near: Rows,
+    listed: int,
+    reach: float,
+    far: float,
+    count: int,
 ) -> int:
-    """Add contacts of the first part's edges with those of the other, among so many that are listed."""
-    begin = 0
-    while begin < listed:
-        k, m = near[begin, 0], begin
-        p = place_of(work.frame, solid.corners[solid.edges[k, 0]])
-        q = place_of(work.frame, solid.corners[solid.edges[k, 1]])
-        while m < listed and near[m, 0] == k:
-            count = _add_edge(work, solid, parts, (k, near[m, 1]), (p, q), reach, count)
-            m += 1
-        begin = m
+    """Add contacts of the first part's edges with those of the other, among so many that are listed.
+
+    ``far`` [L] is the reach and what the parts have moved since.
+    """
+    last = -1
+    p = q = (0.0, 0.0, 0.0)
+    for m in range(listed):
+        if near[m].off > far:
+            continue
+        k = near[m].ours
+        if k != last:
+            p = place_of(work.frame, solid.corners[solid.edges[k, 0]])
+            q = place_of(work.frame, solid.corners[solid.edges[k, 1]])
+            last = k
+        count = _add_edge(work, solid, parts, (k, near[m].theirs), (p, q), reach, count)
     return count
 
 

@@ -184,6 +184,17 @@ def is_over_face(solid: TrueSolid, k: int, x: float, y: float, z: float, margin:
 
 
 @compiled
+def distance_beside_face(solid: TrueSolid, k: int, x: float, y: float, z: float) -> float:
+    """Return how far [L] a point lies outside triangle k, along it; negative where it lies over it."""
+    n, most = solid.normals[k], -math.inf
+    for i in range(3):
+        p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]
+        along = subtract(q, p)
+        most = max(most, -dot(n, cross(along, subtract((x, y, z), p))) / math.sqrt(dot(along, along)))
+    return most
+
+
+@compiled
 def height_over_face(solid: TrueSolid, k: int, x: float, y: float, z: float) -> float:
     """Return how far a point [L] lies outside the plane of triangle k [L]."""
     return dot(subtract((x, y, z), solid.vertices[solid.triangles[k, 0]]), solid.normals[k])

@@ -118,6 +118,7 @@ def _find_islands(solid: TrueSolid, work: Workspace, active: Bools, dt: float) -
     for n in range(len(work.states)):
         if active[n]:
             body.rotation(work.states[n], work.turns[n])
+            work.reaches[n] = steps.reach_ahead(solid, work.states[n], dt)
             work.order[count] = n
             count += 1
     first = 0
@@ -129,9 +130,7 @@ def _find_islands(solid: TrueSolid, work: Workspace, active: Bools, dt: float) -
             n = work.order[first]
             for m in range(last, count):
                 k = work.order[m]
-                reach = steps.reach_ahead(solid, work.states[n], dt)
-                reach += steps.reach_ahead(solid, work.states[k], dt)
-                if pairs.may_meet(solid, work, n, k, reach):
+                if pairs.may_meet(solid, work, n, k, work.reaches[n] + work.reaches[k]):
                     work.order[m], work.order[last] = work.order[last], k
                     last += 1
             first += 1

@@ -124,11 +124,18 @@ LIST_COUNTS = record_type(*LISTS, whole=LISTS)  # how many of each list are near
 PAIR_LISTS = record_type(
     "reach",  # how far off the lists of two parts look; negative where they have no room for what is near
     "partner",
+    "nearest",  # how much nearer the first of them must come to touch
     # how many there are
     "own",
     "theirs",
     "edges",
     whole=("partner", "own", "theirs", "edges"),
+)
+PAIR_NEAR = record_type(
+    "ours",  # corner, or edge, of the one part
+    "theirs",  # face, or edge, of the other that it may touch
+    "off",  # how much nearer it must come at least, as the lists were made
+    whole=("ours", "theirs"),
 )
 JOURNAL = record_type(
     # taken, along the wall, the greatest
@@ -227,6 +234,7 @@ class Workspace(NamedTuple):
     starts: Floats  # (N, 13) at the start of a step
     push: Floats  # (N, 13) velocities that take parts out of what they are too deep in
     turns: Floats  # (N, 9) body to bowl, at the start of a step
+    reaches: Floats  # (N,) how far ahead contacts are looked for, at the start of a step of the floor
     tangents: Floats  # (N, 2) of the wall where each is
     leans: Floats  # (N, 7) gravity, the bowl's axis and the wall where each is, in the track's frame
     changes: Floats  # (N, 6) of velocity and rates by gravity, drive and jets over a step
@@ -268,10 +276,10 @@ class Workspace(NamedTuple):
     pair_lists: Rows  # (N, S) PAIR_LISTS of a part with some others
     next_lists: Ints  # (N,) which of them make room for the next
     pair_frames: Floats  # (N, S, 12) how the other part saw the first as they were made
-    own_corners: Ints  # (N, S, R, 2) its corners, and the faces of the other that they may touch
-    their_corners: Ints  # (N, S, R, 2) the other's corners, and its own faces
-    near_crossings: Ints  # (N, S, R, 2) its edges, and those of the other that they may cross
-    faces_of_corner: Ints  # (T, 2) a corner, and the faces that it may touch
+    own_corners: Rows  # (N, S, R) PAIR_NEAR: its corners, and the faces of the other that they may touch
+    their_corners: Rows  # (N, S, R) the other's corners, and its own faces
+    near_crossings: Rows  # (N, S, R) its edges, and those of the other that they may cross
+    faces_of_corner: Rows  # (T,) a corner, and the faces that it may touch
     strains: Floats  # (N, 2) impulse from behind along the track, and from below, of other parts
     order: Ints  # (N,) parts by islands: those that may touch each other
     islands: Ints  # (N + 1,) where each begins
