@@ -58,7 +58,7 @@ class BlameGround(enum.Enum):
     FAULT_OF_DRAWS = enum.auto()
     LITTLE_LEAVES = enum.auto()  # nothing leaves as wanted at the worst fill
     FEW_PARTS = enum.auto()  # to show that it is pure
-    FOLLOWED_BRIEFLY = enum.auto()  # the time alone was too short
+    NONE_OF_THESE = enum.auto()  # what it lacks is all that is known
     SLOW = enum.auto()
 
 
@@ -190,9 +190,9 @@ def _blame(study: "DesignStudy", status: Status, lacks: tuple[Shortfall, ...]) -
         return Blame(Cause.ARRIVAL, BlameGround.LITTLE_LEAVES)
     if proof.delivered[1] < RATE_KEPT * study.request.target:
         return Blame(Cause.ARRIVAL, BlameGround.SLOW)
-    if kinds == {FillLack.FOLLOWED_BRIEFLY}:
-        return Blame(Cause.UNKNOWN, BlameGround.FOLLOWED_BRIEFLY)
-    return Blame(Cause.ARRIVAL, BlameGround.FEW_PARTS)
+    if kinds & {FillLack.PURITY_NOT_SHOWN, FillLack.PURITY_OPEN}:
+        return Blame(Cause.ARRIVAL, BlameGround.FEW_PARTS)
+    return Blame(Cause.UNKNOWN, BlameGround.NONE_OF_THESE)
 
 
 def _blame_of_draws(study: "DesignStudy") -> Blame | None:
