@@ -195,11 +195,12 @@ def aspects(
         What is done to the part: 'place', 'drop', 'flip', 'roll', 'feed'; the last without it.
     drops : int, optional
         Drop it so often; with 0 never: the answer is then the closed form. Without it the part is dropped
-        until every share is known to AIM.
+        until every share is known to 1.6 % to either side (95 %).
     jobs : int, optional
         Cores to use; all there are without it. Nothing else depends on it.
     progress : callable, optional
-        As in ``ensemble.drop``.
+        Called as drops end: how many are done, of how many at most, and how wide the longest interval of a
+        share is [1].
     before : callable, optional
         Called before a drop test begins, with the number of drops, None where that is not known.
 
@@ -265,6 +266,12 @@ def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = Fal
     Returns
     -------
     Aspects
+        Those of ``aspects`` alone: a row a class, the likeliest named 'A'.
+
+    Raises
+    ------
+    FeederError
+        As for ``aspects``.
     """
     return aspects(part, unstable=unstable, as_published=as_published).aspects
 

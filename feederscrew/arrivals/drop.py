@@ -181,7 +181,8 @@ def drop(
     dropped : Drops, optional
         Of an earlier run of the same arguments: nothing is dropped then.
     progress : callable, optional
-        As in ``ensemble.drop``.
+        Called as drops end: how many are done, of how many at most, and how wide the longest interval of a
+        share is [1].
     before : callable, optional
         Called once all inputs are found right, before anything is compiled.
 

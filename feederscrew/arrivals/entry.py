@@ -70,10 +70,11 @@ def shares(
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
 ) -> Shares:
-    """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
+    """Return in which shares the aspects of a part come to the track, for ``rate``, ``tooling`` and others.
 
-    Without a launch, a file or a rule of its own that is what lies at the track's entry: parts fed from a
-    hopper onto the moving floor of the bowl.
+    Parts are fed from a hopper onto the moving floor of the bowl, and what lies at the track's entry is
+    counted. With a launch they land on a floor at rest; with a file its counts are taken; with a rule nothing
+    is simulated.
 
     Parameters
     ----------
@@ -83,9 +84,9 @@ def shares(
     launch : str, optional
         What is done to the part, on a floor at rest.
     probabilities : str or Path, optional
-        File of counts in place of an answer of ours, by aspect or by orientation.
+        File of counts that are taken instead, by aspect or by orientation.
     rule : str
-        Whose probabilities will be taken: with another one than the recommended answer nothing is simulated.
+        Whose probabilities are taken, 'csa'; with 'recommended' parts are fed onto the floor.
     fed : int, optional
         Parts that are fed onto the floor; without it as many as make every share known to 2.5 %.
     seed : int
@@ -93,12 +94,12 @@ def shares(
     jobs : int, optional
         Cores for that; all there are without it. Nothing else depends on it.
     progress, before : callable, optional
-        Of drops and of parts on the floor, as for ``aspects``.
+        As for ``aspects``; of parts on the floor as well as of drops.
 
     Returns
     -------
     Shares
-        To be handed on as ``known``: what takes long is computed once.
+        To be handed on as ``aspect_shares``: what takes long is then computed once for several calls.
 
     Raises
     ------

@@ -124,7 +124,7 @@ def floor(
     aspect : str, optional
         Its name, 'A', or with its heading, 'A@354'; the likeliest without it.
     heading : str or float [rad]
-        '90 deg': how it lies to the drive.
+        By which the part is turned from the direction of the drive, '90 deg'.
 
     Returns
     -------
@@ -133,7 +133,12 @@ def floor(
     Raises
     ------
     FeederError
-        If the part has no such aspect, or the drive is not ``limits.plain``.
+        If the part has no such aspect, the drive is elliptical or has a second harmonic, or friction is
+        another one backwards.
+
+    References
+    ----------
+    docs/mechanics.md; the thesis's equations of a part on the floor are in docs/equations.md.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     aspect, named = arguments.an_orientation(aspect, None)

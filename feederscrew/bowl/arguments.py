@@ -17,7 +17,7 @@ from feederscrew.base.signatures import Keywords, with_shown_signature
 from feederscrew.base.units import Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.bowl.devices.orientation_names import split_name
-from feederscrew.bowl.reading import Setting, record, settings_of_text, with_part_material
+from feederscrew.bowl.reading import OVERRIDES, Setting, record, settings_of_text, with_part_material
 from feederscrew.bowl.values import BowlValues, Overrides, adjusted, refuse_unknown, value_texts
 from feederscrew.part.record import PART_MEND, Part
 from feederscrew.resting.aspects import Aspects
@@ -29,7 +29,6 @@ Function = TypeVar("Function", bound=Callable[..., object])
 Fold: TypeAlias = Callable[[Keywords, Any], None]  # puts a former keyword's value into the arguments
 EXPONENT_RANGE = -10.0, 10.0  # [1] of a surface: calibrate tries some below 0 as well
 BOWL_MEND = "give a Bowl, as read_bowl returns it"
-OVERRIDES = "overrides"
 
 
 def former_keywords(

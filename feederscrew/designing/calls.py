@@ -11,7 +11,7 @@ from feederscrew.part.record import Part
 
 PROGRAM, COMMAND = "feeder", "design"
 USUAL_UNITS = "mm"  # of a file, where the call says nothing
-FOLDER = ("-o", "results")
+FOLDER = ("-o", "results")  # of the files of a design, beside its part
 
 
 def _target(request: DesignRequest) -> str:

@@ -139,12 +139,11 @@ def design(
     tolerance : str or float [m]
         Of the part's size, to either side.
     drive : str
-        Kind of drive: 'leaf-spring' (one magnet), 'two-axis' (two magnets) or 'any', leaf springs first.
+        'leaf-spring' (one magnet), 'two-axis' (two magnets) or 'any', leaf springs first.
     aspect_shares : Shares, optional
         Of ``shares``; what lies on the moving floor of the designed bowl without it.
     search : DesignSearch, optional
-        Rule, number of short trials and of draws, whether dearer chains are proved too, the jams that a
-        buyer tolerates, and whether these are shown ('long'). With ``quick`` nothing is proved.
+        Rule, trials, draws, the jams that a buyer tolerates, how it is proved; ``quick`` proves nothing.
     seed : int
         Of everything that is drawn.
     jobs : int
@@ -155,9 +154,13 @@ def design(
     Returns
     -------
     DesignStudy
-        Its ``status`` is one of four words, 'not proved' where the user stopped it or asked for a
-        ``quick`` look; its ``bowl`` has the devices. Of several parts a FamilyStudy: its ``members``,
-        whether all is ``shared``, and the worst ``status``.
+        Its ``status`` says whether it 'holds', ``why`` where not; its ``bowl`` has the devices. Of several
+        parts a FamilyStudy: its ``members``, whether all is ``shared``, and the worst ``status``.
+
+    Raises
+    ------
+    FeederError
+        If a part has no shape or no such aspect, or an argument is out of range.
     """
     looked = check.kind("search", search or DesignSearch(), DesignSearch, "give a DesignSearch")
     wanted, angle = arguments.an_orientation(aspect, heading)

@@ -37,6 +37,18 @@ class FillState(enum.Enum):
     REFUSED = enum.auto()
 
 
+class FillLack(enum.Enum):
+    """Criterion that a fill does not meet; one that holds meets all of them."""
+
+    JAM = enum.auto()
+    RATE = enum.auto()  # the low end of the rate is too low
+    PURITY = enum.auto()  # too little of what left is wanted
+    PURITY_NOT_SHOWN = enum.auto()  # too few parts left to show that it is pure
+    PURITY_REFUSED = enum.auto()  # by the sequential test
+    PURITY_OPEN = enum.auto()  # the sequential test has not decided
+    FOLLOWED_BRIEFLY = enum.auto()  # for less than ``FIRST_LOOK_S``, and nothing else is lacking
+
+
 def longest_time(target: float) -> float:
     """Return for how long a fill is followed at the most: until it brings ``SETTLING_PARTS`` at the target.
 
@@ -113,13 +125,45 @@ def sequential_test(queue: FilledQueue) -> FillState:
     return FillState.OPEN if likelier < -math.log(HOLDS_IN_ERROR) else FillState.HOLDS
 
 
+def lacks_of_fill(queue: FilledQueue, least_rate: float) -> tuple[FillLack, ...]:
+    """Return the criteria that a fill does not meet, whether or not more of its parts may meet them.
+
+    Parameters
+    ----------
+    queue : FilledQueue
+    least_rate : float [1/s]
+        Wanted parts below which a fill does not hold.
+
+    Returns
+    -------
+    tuple of FillLack
+        () of a fill that holds.
+    """
+    lacks = list[FillLack]()
+    if queue.jams:
+        lacks.append(FillLack.JAM)
+    if not shows_rate(queue, least_rate):
+        lacks.append(FillLack.RATE)
+    test = sequential_test(queue)
+    if queue.left and queue.right < PURE * queue.left:
+        lacks.append(FillLack.PURITY)
+    elif not shows_purity(queue):
+        lacks.append(FillLack.PURITY_NOT_SHOWN)
+    elif test is not FillState.HOLDS:
+        lacks.append(FillLack.PURITY_REFUSED if test is FillState.REFUSED else FillLack.PURITY_OPEN)
+    if not lacks and queue.seconds < 0.99 * FIRST_LOOK_S:
+        lacks.append(FillLack.FOLLOWED_BRIEFLY)
+    return tuple(lacks)
+
+
 def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillState:
     """Return what the queue at a fill has shown.
 
-    It holds where nothing has jammed, the lower end of its rate is the least that is asked for, at least
-    ``PURE`` of what left is right, the lower bound of that share (one-sided, 95 %) is above ``SHOWN_PURITY``,
-    and the sequential test says so too. It is refused where a part has jammed; where the upper end of
-    the rate is less; where the upper bound of the purity (one-sided, ``REFUSED_CONFIDENCE``) is below
+    It holds where it meets every criterion of ``lacks_of_fill``: nothing has jammed, the lower end of its
+    rate is the least that is asked for, at least ``PURE`` of what left is right, the lower bound of that
+    share (one-sided, 95 %) is above ``SHOWN_PURITY``, and the sequential test says so too. It is refused
+    where more parts cannot meet one any more: where a part has jammed; where the upper end of the rate is
+    less; where the upper bound of the purity (one-sided, ``REFUSED_CONFIDENCE``) is below
     ``PURE``; where the sequential test refuses it; and where so many parts were wrong that it would not hold
     even if all others until the end were right.
 
@@ -152,15 +196,12 @@ def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillSta
     wrong = queue.left - queue.right
     if queue.left and evidence.share_at_most(queue.right, queue.left, REFUSED_CONFIDENCE) < PURE:
         return FillState.REFUSED
-    test = sequential_test(queue)
-    if test is FillState.REFUSED:
+    if sequential_test(queue) is FillState.REFUSED:
         return FillState.REFUSED
     coming = int(queue.left * max(longest / max(queue.seconds, 1e-300) - 1.0, 0.0))
     if wrong and not _is_pure(queue.right + coming, queue.left + coming):
         return FillState.REFUSED
-    if queue.seconds < 0.99 * FIRST_LOOK_S or test is FillState.OPEN:
-        return FillState.OPEN
-    return FillState.HOLDS if shows_rate(queue, least_rate) and shows_purity(queue) else FillState.OPEN
+    return FillState.OPEN if lacks_of_fill(queue, least_rate) else FillState.HOLDS
 
 
 def time_to_settle(queue: FilledQueue, longest: float) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.arrivals.plate_test import throw_number
+from feederscrew.base.units import MINUTE
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT
 from feederscrew.designing import calm_drive, exploring, proposals, queues, texts
@@ -19,7 +20,6 @@ from feederscrew.motion.hop import hop
 from feederscrew.sorting.isolating.chain import OutcomeKind
 from feederscrew.trials.wanted import wanted_states
 
-MINUTE = 60.0
 SLIGHT = 1e-9  # of rounding
 SAME_DRIVE = 0.05  # [1] by which drives differ that are one: half of what a draw changes
 RATE_DIGITS = 2  # of a rate that holds: it is rounded down

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT, Status
 from feederscrew.designing.fill_verdicts import (
+    FillLack,
     FillState,
     judge_fill,
+    lacks_of_fill,
     longest_time,
-    sequential_test,
-    shows_purity,
 )
 from feederscrew.designing.findings import Cause, FaultKind, Hooking
 from feederscrew.trials.fills import FilledQueue, LeavingPose, PoseKind
@@ -23,15 +23,9 @@ if TYPE_CHECKING:
 
 
 class Shortage(enum.Enum):
-    """In which way a design does not do what was asked."""
+    """In which way a design does not do what was asked, apart from what one of its fills lacks."""
 
     LOST_IN_TRIALS = enum.auto()  # in the short trials no chain let a wanted orientation pass
-    RATE = enum.auto()  # the low end of the rate of a fill is too low
-    PURITY = enum.auto()  # too little of what left at a fill is wanted
-    PURITY_NOT_SHOWN = enum.auto()  # too few parts left at a fill to show that it is pure
-    PURITY_REFUSED = enum.auto()  # by the sequential test of a fill
-    PURITY_OPEN = enum.auto()  # the sequential test of a fill has not decided
-    FOLLOWED_BRIEFLY = enum.auto()  # a fill was followed for less than ``FIRST_LOOK_S``
     NO_QUEUE = enum.auto()
     JAMS_OF_FILL = enum.auto()  # in a long proof
     JAMS = enum.auto()
@@ -43,7 +37,7 @@ class Shortage(enum.Enum):
 class Shortfall:
     """One thing in which a design does not do what was asked."""
 
-    kind: Shortage
+    kind: Shortage | FillLack
     queue: FilledQueue | None = None  # of the fill, where it is of one
     trials: "WantedTrials | None" = None  # in which an orientation was lost
     machine: str = ""  # what the machine lacks, as its sheet says it
@@ -64,7 +58,7 @@ class BlameGround(enum.Enum):
     FAULT_OF_DRAWS = enum.auto()
     LITTLE_LEAVES = enum.auto()  # nothing leaves as wanted at the worst fill
     FEW_PARTS = enum.auto()  # to show that it is pure
-    FOLLOWED_BRIEFLY = enum.auto()  # the time alone was too short
+    NONE_OF_THESE = enum.auto()  # what it lacks is all that is known
     SLOW = enum.auto()
 
 
@@ -152,7 +146,8 @@ def _tooling_shortfalls(study: "DesignStudy") -> tuple[Shortfall, ...]:
     proof, lacks = study.proof, list[Shortfall]()
     refused = fills_of(proof.queues, study.request, FillState.REFUSED)
     for queue in refused or fills_of(proof.queues, study.request, FillState.OPEN):
-        lacks += _lacks_of_fill(queue, study.request.target)
+        found = lacks_of_fill(queue, RATE_KEPT * study.request.target)
+        lacks += [Shortfall(lack, queue) for lack in found if lack is not FillLack.JAM]  # told together below
     if not proof.queues and proof.robust.share >= DRAWS_HELD:  # draws that fail end a proof
         lacks.append(Shortfall(Shortage.NO_QUEUE))
     if study.request.is_long:
@@ -162,26 +157,6 @@ def _tooling_shortfalls(study: "DesignStudy") -> tuple[Shortfall, ...]:
     if proof.robust.share < DRAWS_HELD:
         lacks.append(Shortfall(Shortage.DRAWS))
     return tuple(lacks)
-
-
-def _lacks_of_fill(queue: FilledQueue, target: float) -> list[Shortfall]:
-    """What a fill lacks; its jams are counted with those of the others."""
-    lacks = []
-    if queue.ends[0] < RATE_KEPT * target:
-        lacks.append(Shortfall(Shortage.RATE, queue))
-    if queue.left and queue.right < PURE * queue.left:
-        lacks.append(Shortfall(Shortage.PURITY, queue))
-    elif not shows_purity(queue):
-        lacks.append(Shortfall(Shortage.PURITY_NOT_SHOWN, queue))
-    else:
-        match sequential_test(queue):
-            case FillState.REFUSED:
-                lacks.append(Shortfall(Shortage.PURITY_REFUSED, queue))
-            case FillState.OPEN:
-                lacks.append(Shortfall(Shortage.PURITY_OPEN, queue))
-    if not (lacks or queue.jams):
-        lacks.append(Shortfall(Shortage.FOLLOWED_BRIEFLY, queue))
-    return lacks
 
 
 def _blame(study: "DesignStudy", status: Status, lacks: tuple[Shortfall, ...]) -> Blame:
@@ -201,7 +176,7 @@ def _blame(study: "DesignStudy", status: Status, lacks: tuple[Shortfall, ...]) -
     if not proof.delivered[0] > 0.0 and not any(queue.left for queue in proof.queues):
         return Blame(Cause.DRIVE, BlameGround.NOTHING_ARRIVES)
     kinds = {lack.kind for lack in lacks}
-    if not proof.purity[0] >= PURE or Shortage.PURITY_REFUSED in kinds:
+    if not proof.purity[0] >= PURE or FillLack.PURITY_REFUSED in kinds:
         off = sum(count for pose, count in proof.left_instead if _is_heading_off(pose, study.wanted_aspect))
         if 2 * off >= sum(count for _, count in proof.left_instead) > 0:
             return Blame(Cause.DRIVE, BlameGround.HEADINGS_TURN)
@@ -215,9 +190,9 @@ def _blame(study: "DesignStudy", status: Status, lacks: tuple[Shortfall, ...]) -
         return Blame(Cause.ARRIVAL, BlameGround.LITTLE_LEAVES)
     if proof.delivered[1] < RATE_KEPT * study.request.target:
         return Blame(Cause.ARRIVAL, BlameGround.SLOW)
-    if kinds == {Shortage.FOLLOWED_BRIEFLY}:
-        return Blame(Cause.UNKNOWN, BlameGround.FOLLOWED_BRIEFLY)
-    return Blame(Cause.ARRIVAL, BlameGround.FEW_PARTS)
+    if kinds & {FillLack.PURITY_NOT_SHOWN, FillLack.PURITY_OPEN}:
+        return Blame(Cause.ARRIVAL, BlameGround.FEW_PARTS)
+    return Blame(Cause.UNKNOWN, BlameGround.NONE_OF_THESE)
 
 
 def _blame_of_draws(study: "DesignStudy") -> Blame | None:

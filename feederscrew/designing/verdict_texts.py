@@ -6,7 +6,7 @@ from feederscrew.base.units import HOUR, MINUTE, counted
 from feederscrew.bowl.verified import HELD, PURE, RATE_KEPT, SHOWN_PURITY
 from feederscrew.designing import texts
 from feederscrew.designing.evidence import rate_at_most, share_at_least
-from feederscrew.designing.fill_verdicts import GOOD_PURITY
+from feederscrew.designing.fill_verdicts import GOOD_PURITY, FillLack
 from feederscrew.designing.verdict import Blame, BlameGround, Shortage, Shortfall
 from feederscrew.trials.fills import FilledQueue
 
@@ -102,30 +102,30 @@ def shortfall_text(study: "DesignStudy", lack: Shortfall) -> str:
     return lack.machine
 
 
-def _text_of_fill(study: "DesignStudy", kind: Shortage, queue: FilledQueue) -> str:
+def _text_of_fill(study: "DesignStudy", kind: Shortage | FillLack, queue: FilledQueue) -> str:
     """A shortfall of the queue at one fill."""
     minute, (low, high), target = 60.0, queue.ends, study.request.target
     at = f"at {queue.fill} fill"
     match kind:
-        case Shortage.RATE:
+        case FillLack.RATE:
             return (
                 f"{at} {minute * queue.rate:.3g}/min are delivered (95 % interval {minute * low:.3g} to "
                 f"{minute * high:.3g}), {minute * target:.3g}/min are asked for"
             )
-        case Shortage.PURITY:
+        case FillLack.PURITY:
             return (
                 f"{at} the purity is {100.0 * queue.right / queue.left:.3g} % ({queue.right} of "
                 f"{counted(queue.left, 'part')}), {100.0 * PURE:.3g} % are asked for{_instead(study, queue)}"
             )
-        case Shortage.PURITY_NOT_SHOWN:
+        case FillLack.PURITY_NOT_SHOWN:
             shown = 100.0 * share_at_least(queue.right, queue.left)
             return (
                 f"{at} {queue.right} of {counted(queue.left, 'part')} left as wanted, which shows a purity "
                 f"of {shown:.3g} % (lower bound, 95 %, one-sided), and more than "
                 f"{100.0 * SHOWN_PURITY:.3g} % have to be shown"
             )
-        case Shortage.PURITY_REFUSED | Shortage.PURITY_OPEN:
-            says = "refuses" if kind is Shortage.PURITY_REFUSED else "has not yet decided for"
+        case FillLack.PURITY_REFUSED | FillLack.PURITY_OPEN:
+            says = "refuses" if kind is FillLack.PURITY_REFUSED else "has not yet decided for"
             return (
                 f"{at} {queue.right} of {counted(queue.left, 'part')} left as wanted: the sequential test "
                 f"{says} a purity of {100.0 * GOOD_PURITY:.3g} % against {100.0 * SHOWN_PURITY:.3g} %"

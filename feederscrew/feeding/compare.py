@@ -247,8 +247,8 @@ def compare(
         What was done to the part; without it what the head of the file says, else 'feed'.
     as_published : bool
         Count each class once in the PMI rule, as the thesis's tables do.
-    progress, before : function, optional
-        Of the parts on the moving floor, as for ``entry.shares``; a file by device needs them.
+    progress, before : callable, optional
+        As for ``shares``: for a file by device, parts are fed onto the moving floor of its bowl.
 
     Returns
     -------

@@ -491,6 +491,16 @@ def size_bowl(
     -------
     MachineSheet
         At the stroke that was tried, where the file has a trial that is still of this part and bowl.
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape or no such aspect, nothing leaves, or no bowl within ``sizing`` brings the
+        rate.
+
+    References
+    ----------
+    docs/bowl.md, whose sections name the handbooks.
     """
     space = arguments.amount("gap", gap, "length", 0.0)
     wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)

@@ -163,6 +163,10 @@ def convey(bowl: Bowl) -> ConveyStudy:
     ------
     ConfigError
         If the bowl cannot convey.
+
+    References
+    ----------
+    docs/conveying.md: a point on the track, solved from event to event.
     """
     bowl = arguments.a_bowl(bowl)
     return ConveyStudy(bowl, answer.answer(bowl))

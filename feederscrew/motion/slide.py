@@ -91,7 +91,7 @@ def slide(
     angles : iterable of str or float [rad]
         Vibration angles, a map each; the bowl's without them.
     as_published : bool
-        Keep mu_limit where [4.27] is negative, as past the hop.
+        Keep the limiting friction of [4.27] where it is negative, past the hop; else it is NaN there.
 
     Returns
     -------
@@ -100,11 +100,11 @@ def slide(
     Raises
     ------
     ConfigError
-        If the drive is not ``limits.plain``.
+        If the drive is elliptical or has a second harmonic, or friction is another one backwards.
 
     References
     ----------
-    ``motion.limits``.
+    Thesis, eq. [4.27] (docs/equations.md); on a climbing and banked track docs/conveying.md.
     """
     bowl = arguments.a_bowl(bowl)
     betas = [arguments.amount("angles", angle, "angle") for angle in angles]

@@ -896,23 +896,6 @@ CAPTION = 34
 EDGE = 12
 THIN, OVER = 0.05, 0.3  # of a part's size: how thick walls are drawn; how far they go on
 VIEWS = {"shingles": (-0.25, -1.0, 0.25), "wedges": (-0.45, -0.35, 1.0)}  # from where, along, across and up
-BOX = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-SIDES = np.array(
-    [
-        (0, 1, 3),
-        (0, 3, 2),
-        (4, 6, 7),
-        (4, 7, 5),
-        (0, 4, 5),
-        (0, 5, 1),
-        (2, 3, 7),
-        (2, 7, 6),
-        (0, 2, 6),
-        (0, 6, 4),
-        (1, 5, 7),
-        (1, 7, 3),
-    ]
-)
 Body = tuple[Floats, Ints]  # corners (V, 3) [m] and faces (F, 3)
 
 
@@ -973,5 +956,6 @@ def bodies(part: Part, pair: Pair) -> tuple[Body, Body]:
     middle, low = 0.5 * (least + most), least - OVER * size
     long = np.array([most[0] - least[0] + 2.0 * OVER * size, THIN * size, 0.6 * (most[2] - least[2])])
     sides = (middle[1] - 0.5 * pair.walls - THIN * size, middle[1] + 0.5 * pair.walls)
-    walls = [BOX * long + np.array([low[0], y, least[2]]) for y in sides]
-    return (first, faces), (np.vstack(walls), np.vstack([SIDES, SIDES + len(BOX)]))
+    starts = [np.array([low[0], y, least[2]]) for y in sides]
+    walls = [shading.box_mesh(start, start + long) for start in starts]
+    return (first, faces), shading.join_meshes(walls)

@@ -34,22 +34,6 @@ ASIDE = 0.25
 THICK = 0.04
 WALL = 0.45
 ARROW = np.array([(0.0, -0.26), (0.0, 0.26), (1.0, 0.0)])  # of the direction of travel, ahead and inwards
-SLAB = np.array(
-    [
-        (0, 1, 3),
-        (0, 3, 2),
-        (4, 6, 7),
-        (4, 7, 5),
-        (0, 4, 5),
-        (0, 5, 1),
-        (2, 3, 7),
-        (2, 7, 6),
-        (0, 2, 6),
-        (0, 6, 4),
-        (1, 5, 7),
-        (1, 7, 3),
-    ]
-)
 WEDGE = np.array([(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)])
 
 
@@ -145,19 +129,14 @@ def bare_track(points: Floats) -> Mesh:
     high = low + min(WALL * long, 0.8 * (top - low))
     arrow = ARROW * 0.8 * AHEAD * long + [right + 0.2 * AHEAD * long, 0.5 * (wall + edge)]
     bodies = [
-        _slab((begin, wall, low - thick), (end, edge + 0.5 * ASIDE * long, low)),
-        _slab((begin, wall - thick, low - thick), (end, wall, high)),
+        shading.box_mesh((begin, wall, low - thick), (end, edge + 0.5 * ASIDE * long, low)),
+        shading.box_mesh((begin, wall - thick, low - thick), (end, wall, high)),
         (
             np.vstack([np.column_stack([arrow, np.full(3, low + up)]) for up in (-0.5 * thick, 0.5 * thick)]),
             WEDGE,
         ),
     ]
     return shading.join_meshes(bodies)
-
-
-def _slab(low: Sequence[float], high: Sequence[float]) -> Mesh:
-    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-    return np.asarray(low) + corners * np.subtract(high, low), SLAB
 
 
 def name_part(text: str, part: str) -> str:

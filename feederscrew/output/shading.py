@@ -28,6 +28,22 @@ ndimage = heavy("scipy.ndimage")
 mpl_patches = heavy("matplotlib.patches")
 
 Mesh = tuple[Array, Array]  # corners (V, 3) [m] and faces (F, 3)
+BOX_FACES = np.array(
+    [
+        (0, 1, 3),
+        (0, 3, 2),
+        (4, 6, 7),
+        (4, 7, 5),
+        (0, 4, 5),
+        (0, 5, 1),
+        (2, 3, 7),
+        (2, 7, 6),
+        (0, 2, 6),
+        (0, 6, 4),
+        (1, 5, 7),
+        (1, 7, 3),
+    ]
+)  # corners in the order of ``itertools.product``
 AWAY = 4.0  # sizes from the centre of mass to where rays start
 MISSED = -1
 SINGLE_PRECISION = np.float32  # what the caster keeps, and more than a picture shows
@@ -901,6 +917,24 @@ def shown_share(track: Mesh, part: Mesh, centre: Vector, camera: Camera, half: f
     there = np.isfinite(near)
     is_seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
     return float(is_seen.sum() / max(there.sum(), 1))
+
+
+def box_mesh(low: Sequence[float] | Vector, high: Sequence[float] | Vector) -> Mesh:
+    """Return a box along the axes as a closed mesh.
+
+    Parameters
+    ----------
+    low, high : (3,) float [m]
+        Two opposite corners.
+
+    Returns
+    -------
+    corners : (8, 3) float [m]
+    faces : (12, 3) int
+        Counter-clockwise seen from outside.
+    """
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    return np.asarray(low) + corners * np.subtract(high, low), BOX_FACES
 
 
 def join_meshes(meshes: Sequence[Mesh]) -> Mesh:

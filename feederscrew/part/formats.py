@@ -122,6 +122,9 @@ MESH_FORMATS = {
     "step": Format("STEP", ("step", "stp", "stpz"), ("cascadio",), "step"),
     CARD_FORMAT: Format("a part card", ("yaml", "yml")),
 }
+MESH_NAMES = tuple(  # as people say them: 'STL', 'OBJ' ...
+    dict.fromkeys(form.title.split()[-1] for kind, form in MESH_FORMATS.items() if kind != CARD_FORMAT)
+)
 FORMAT_MARKS = (  # pattern at the start of a file, and its format
     (rb"glTF", "glb"),
     (rb"ply[ \t]*[\r\n]", "ply"),

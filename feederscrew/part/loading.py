@@ -115,7 +115,8 @@ def read_soup(file: PartFile) -> Soup:
             **dict.fromkeys(formats.WIDE_TEXT_FAULTS, "save it as ASCII or UTF-8 text"),
             documents.POINTER: documents.PULL,
         }
-        mend = mends.get(alien or "", "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP")
+        *most, last = formats.MESH_NAMES
+        mend = mends.get(alien or "", f"export the part as {', '.join(most)} or {last}")
         raise MeshError(file.where, alien or "is a part card, not a mesh", mend)
     title, data, where = MESH_FORMATS[kind].title, file.data, file.where
     try:

@@ -91,9 +91,10 @@ def headings(
         From a mesh.
     bowl : Bowl
     aspect : str, optional
-        One alone; every stable one without it.
+        Its name, 'A'; every stable one without it.
     aspects : Aspects, optional
-        Of the part, with the answer to take; what arrives from the bowl's moving floor without it.
+        Of the part, with their probabilities, as ``aspects`` or ``shares`` found them. Without it the shares
+        are those in which parts come from the bowl's moving floor.
 
     Returns
     -------

@@ -101,8 +101,12 @@ def track(
     Raises
     ------
     FeederError
-        If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or the
-        drive is not ``limits.plain``.
+        If there is no such aspect, the bowl is smaller than the part, the part falls off the track, the drive
+        is elliptical or has a second harmonic, or friction is another one backwards.
+
+    References
+    ----------
+    docs/mechanics.md; the thesis's equations of a part on the track are in docs/equations.md.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)
     aspect, angle = arguments.an_orientation(aspect, heading)

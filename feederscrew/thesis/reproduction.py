@@ -152,7 +152,13 @@ class Reproduction(ReadableRecord):
 
 
 def reproduce() -> Reproduction:
-    """Compute every table, then every figure again."""
+    """Compute every table and every figure of the thesis again, and compare each cell with what it prints.
+
+    Returns
+    -------
+    Reproduction
+        An item for each table, then for each figure; ``to_frame("3-9")`` is a table with its verdicts.
+    """
     tables = [Item(number, "table", table(number).caption, cells(number)) for number in TABLES]
     drawn = [Item(figure.number, "figure", figure.caption, figure.claims) for figure in THESIS_FIGURES]
     return Reproduction((*tables, *drawn))

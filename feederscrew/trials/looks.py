@@ -16,13 +16,13 @@ from feederscrew.resting.aspects import Aspects, require_ground
 from feederscrew.resting.half_edges import Edges, half_edges
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.sorting.verdicts import HEADING_OFFSETS
 from feederscrew.trials import part_poses
 from feederscrew.trials.kernel.workspace import TrueSolid
 from feederscrew.trials.part_poses import State
 
 SAME_REACH_SHARE = 0.05  # of the part's size: one whose outline is off by more lies in no known orientation
 OUTLINE_DIRECTIONS = 160
-ASKEW_ANGLES = np.radians(np.linspace(-10.0, 10.0, 11))  # by which a part may lie turned and be known
 ALL_HEADINGS = np.radians(np.arange(0.0, 360.0, 2.0))  # the same where any heading of its aspect will do
 HANGING_COSINE = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
 OTHER = -1  # orientation: none of the known
@@ -82,7 +82,7 @@ class Looks:
                 rows.append(vectors.product(turned / length, self.directions.T).max(axis=0))
             return np.array(rows)
 
-        self.reaches = np.array([reaches(orientation, ASKEW_ANGLES) for orientation in orientations])
+        self.reaches = np.array([reaches(orientation, HEADING_OFFSETS) for orientation in orientations])
         free = [k for k, orientation in enumerate(orientations) if orientation.any_heading]
         self.heading_reaches = {k: reaches(orientations[k], ALL_HEADINGS) for k in free}
 

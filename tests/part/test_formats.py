@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import struct
 import subprocess
 import sys
@@ -17,8 +18,10 @@ from readings import AGAIN, BOX, archived, exported, loaded, mm3, refused, zippe
 
 from feederscrew import bowl
 from feederscrew.base.errors import FeederError, MeshError
-from feederscrew.part import load, loading, step
+from feederscrew.part import formats, load, loading, step
 from feederscrew.part.formats import detect_format
+from feederscrew_cli.aspects import aspects as aspects_command
+from feederscrew_cli.aspects import inertia as inertia_command
 
 BOLT = Path(__file__).parents[2] / "parts/hexbolt_m8x25.step"
 NEEDS_3MF, NEEDS_STEP = pytest.mark.needs("lxml", "networkx"), pytest.mark.needs("cascadio")
@@ -345,6 +348,15 @@ HEAD = (
 def test_file_that_is_refused(tmp_path, data, line):
     text = files.refused(files.written(tmp_path, data))
     assert text == line if line else text.startswith("is a damaged ")
+
+
+def test_every_format_is_named_where_a_part_is_asked_for():
+    """In the line of a file that is none, in the help of commands and library, in the README."""
+    helps = [command.help for command in (aspects_command, inertia_command)]
+    readme = (PARTS.parent / "README.md").read_text()
+    (line,) = (line for line in readme.splitlines() if line.startswith("- **Part:**"))
+    for text in (NO_MESH, *helps, load.__doc__, line):
+        assert [name for name in formats.MESH_NAMES if not re.search(rf"\b{name}\b", text)] == []
 
 
 def test_paths_without_a_part(tmp_path):

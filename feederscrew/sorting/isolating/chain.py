@@ -22,6 +22,7 @@ from feederscrew.base.columns import Column
 from feederscrew.bowl.devices.base import STOPPED, UNSURE, Device
 from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.bowl.devices.leans import Lean
+from feederscrew.bowl.devices.ledges import SHOP_STEP_M
 from feederscrew.bowl.devices.pneumatics import Sorter
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.motion import sameness
@@ -31,7 +32,6 @@ from feederscrew.sorting.orientations import Orientation, hang
 from feederscrew.sorting.sensor_views import difference
 from feederscrew.sorting.verdicts import DeviceEncounter, opening_margin, verdict
 
-SHOP_STEP_M = 5e-5  # [m] of values that a shop makes
 SHOP_ROUNDING_M = 1e-7  # [m] to which a value is rounded
 DESIGN_KEY = "design"
 SIDE_NAMES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))

@@ -11,10 +11,9 @@ import numpy as np
 from feederscrew.base.arrays import Bools
 from feederscrew.bowl.devices.base import RETURNED
 from feederscrew.bowl.devices.blades import Wiper
-from feederscrew.bowl.devices.ledges import Rails
+from feederscrew.bowl.devices.ledges import SHOP_STEP_M, Rails
 from feederscrew.sorting.isolating.chain import (
     DESIGN_KEY,
-    SHOP_STEP_M,
     Cut,
     round_finely,
     snap_to_shop_step,
