@@ -14,6 +14,8 @@ ASIDE = 3e-5  # [m] of an edge
 UNDER = 1e-4  # [m] below a surface: there its edge is looked at
 CLEAR = 2e-4  # [m] of other edges
 SHORT = 1e-3  # [m] a side of a curved edge: its middle is looked at
+ON_RAMP = 2e-6  # [m] over a ramp: 0.05 mm along the wall are 0.013 mm of its height
+UNDER_RAMP = 2e-5  # [m] below it: bodies have it 0.01 mm lower, so that no face lies on a face
 SURE = 1e-5  # [m] by which a flat plate that reaches ahead may lean otherwise than the track below its end
 IN_WALL = 5e-4  # [m] behind the wall's face
 SHARES = (0.17, 0.55, 0.83)  # of a side, of a width
@@ -44,7 +46,7 @@ def _of_device(tooled, placed):
         for what, s, y, level, z, solid in (
             *_openings(placed, width),
             *_drops(placed, width),
-            *_ramps(tooled, placed),
+            *_ramps(placed),
             *_blades(tooled, placed),
             *_bores(placed),
             *_wall(tooled, placed),
@@ -98,20 +100,24 @@ def _drops(placed, width):
         yield "ledge", s, drop.aside + ASIDE, placed.level, -UNDER, False
 
 
-def _ramps(tooled, placed):
-    """Above and below the ramp on which a ledge comes down: a plane bent down at the ledge's end."""
+def _ramps(placed):
+    """Above, below and beside the ramp on which a ledge comes down: a plane bent down at the ledge's end."""
     drop = placed.drop
-    for ledge in tooled.ledges:
-        if drop is None or ledge.drop is not drop:
-            continue
+    if drop is None or drop.aside <= 0.0:
+        return
+    inner = placed.radius - drop.aside
+    turn = np.arcsin(drop.height / np.tan(drop.ramp) / inner)
+    for share in (0.2, 0.5, 0.8):
+        s = placed.begin + drop.length + placed.radius * share * turn
+        slope = np.tan(drop.ramp) * np.sin(share * turn)  # of its height over the distance from the axis
         for y in np.array(SHARES) * drop.aside:
-            turn = np.arcsin(drop.height / np.tan(drop.ramp) / (placed.radius - y))
-            for share in (0.2, 0.5, 0.8):
-                ahead = (placed.radius - y) * np.sin(share * turn)
-                fall = -ahead * np.tan(drop.ramp)
-                s = placed.begin + drop.length + placed.radius * share * turn
-                yield "ramp", s, y, placed.level + fall - ASIDE, 0.0, True
-                yield "ramp", s, y, placed.level + fall + ASIDE, 0.0, False
+            surface = placed.level - slope * (placed.radius - y)
+            yield "ramp", s, y, surface + ON_RAMP, 0.0, False
+            yield "ramp", s, y, surface - UNDER_RAMP, 0.0, True
+            yield "ramp as tried", s, y, surface - ON_RAMP, 0.0, True
+        if share < 0.8:  # the lower track is far enough below
+            for off in (ASIDE, -ASIDE):
+                yield "ramp", s, drop.aside + off, placed.level - slope * inner - UNDER, 0.0, off < 0.0
 
 
 def _blades(tooled, placed):

@@ -3,6 +3,7 @@
 import functools
 import io
 import itertools
+from dataclasses import replace
 from types import SimpleNamespace
 
 import edge_probes as edges
@@ -31,10 +32,11 @@ NEAR = 2e-5  # [m] within which places agree
 FAR_MM = 611.0, 373.0, 4999.0  # beyond every body, along no axis of it
 CORNERS = ((0.0, 2e-3), (8e-3, 1e-3), (6e-3, 9e-3))
 HOLE = {"corners": CORNERS}
+GATE = {"corners": ((4e-3, 0.0), (12e-3, 0.0), (10e-3, 6e-3), (5e-3, 4e-3))}
 JET = {"nozzle": 2e-3, "pressure": 2e4, "height": 4e-3}
 DROPS = {  # what falls on a bank lies further out as well, and so does all behind it
     "steps on a bank": [("banked track", {"angle": 7.0}), ("step", {"limit": 4e-3}), ("cut-out", HOLE),
-                        ("step ", {"limit": 3e-3}), ("height bar", {"limit": 8e-3}), ("air jet", JET)],
+                        ("step ", {"limit": 3e-3}), ("profile gate", GATE), ("air jet", JET)],
     "ledges on a bank": [("banked track", {"angle": 6.0}), ("tipping ledge", {"limit": 7e-3}),
                          ("slot", {"span": (5e-3, 8e-3)}), ("tipping ledge ", {"limit": 9e-3}),
                          ("air jet", JET)],
@@ -96,14 +98,15 @@ def of_stage(stage):
 
 
 TRIED = ("opening", "edge", "lower track", "ledge", "blade")  # plates; walls and bores are numbers there
+MADE = (*TRIED, "ramp", "bore", "wall")
 
 
-def wrong(tooled, place, is_solid, whats=()):
+def wrong(tooled, place, is_solid, whats=MADE):
     """Probes of which a consumer says otherwise: ``place`` and ``is_solid`` are asked of each device."""
     found, seen = [], 0
     for number, (placed, own) in enumerate(zip(tooled.devices, edges.probes(tooled))):
         for probe in own:
-            if not whats or probe.what.endswith(whats):
+            if probe.what.endswith(whats):
                 seen += 1
                 if is_solid(number)(place(placed, probe)) != probe.solid:
                     found.append(probe)
@@ -119,6 +122,53 @@ def test_edges_of_the_trial_and_of_its_queue(case):
     assert not wrong(tooled, lambda *one: edges.in_trial(tooled, *one), alone.__getitem__, TRIED)
     crowd = of_stage(queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1).stage)
     assert not wrong(tooled, lambda *one: edges.in_queue(tooled, *one), lambda _: crowd, TRIED)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_air_sensors_and_slopes_of_the_trial_and_of_its_queue(case):
+    track, every, chain, tooled = laid_out(case)
+    wide = lay_out(track, chain, every, whole=True)
+    crowd = queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1)
+    mouths, watched, sloped, level = [], [], [], 0.0
+    for number, placed in enumerate(tooled.devices):
+        own, stage = placed.features, staging.stage_placed(wide, number, track, every)
+        places = [edges.Probe("jet", placed.begin + x, y, placed.level, z, False) for (x, y, z) in
+                  (jet.at for jet in own.jets)]  # fmt: skip
+        mouths += [edges.in_queue(tooled, placed, place) for place in places]
+        alone = [edges.in_trial(tooled, placed, place) for place in places]
+        assert np.allclose(mouth_of(stage), np.reshape(alone, (-1, 3)), rtol=0.0, atol=NEAR)
+        watched += (
+            [] if own.sensor is None else [(placed.begin + own.sensor.at, placed.begin + own.jets[0].at[0])]
+        )
+        sloped += [placed.begin + slope.begin for slope in own.slopes]
+        # by how much what leaves it lies lower, and further out
+        height, bank = 0.0 if placed.drop is None else placed.drop.height, float(tooled.bank_at(placed.begin))
+        assert (stage.drop, stage.aside) == pytest.approx((height * np.cos(bank), height * np.sin(bank)))
+        level -= height * np.cos(bank)
+        assert crowd.levels[number + 1] == pytest.approx(level)
+        ledge = own.length if placed.drop is not None and placed.drop.aside > 0.0 else 0.0
+        assert crowd.changes[number] == pytest.approx(placed.begin + ledge)
+    assert np.allclose(mouth_of(crowd.stage), np.reshape(mouths, (-1, 3)), rtol=0.0, atol=NEAR)
+    air = crowd.stage.air
+    assert np.allclose([(one.place, one.nozzles) for one in air.watches], watched, rtol=0.0, atol=NEAR)
+    assert np.allclose([one.place for one in air.slopes][-len(sloped) :] if sloped else [], sloped, atol=NEAR)
+
+
+def mouth_of(stage):
+    """Places (J, 3) [m] of the mouths of a stage's jets."""
+    jets = stage.air.jets
+    return np.column_stack([jets[f"mouth_{end}"] for end in "xyz"])
+
+
+@pytest.mark.parametrize("case", [1, "ledges on a bank"])
+def test_ramps_of_the_trial(case):
+    """On a level track: with climb or bank what falls upright moves along or across its plane as well."""
+    sloped, every, chain, _ = laid_out(case)
+    track, chain = replace(sloped, climb=0.0, bank=0.0), [one for one in chain if not one.action.leans]
+    tooled, wide = (lay_out(track, chain, every, whole=whole) for whole in (False, True))
+    alone = [of_stage(staging.stage_placed(wide, k, track, every)) for k in range(len(chain))]
+    ramps = "ramp", "ramp as tried"
+    assert not wrong(tooled, lambda *one: edges.in_trial(tooled, *one), alone.__getitem__, ramps)
 
 
 @pytest.mark.parametrize("case", CASES)
