@@ -5,14 +5,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import shapely
-
 from feederscrew.base import units
 from feederscrew.base.documents import Entry, Node
 from feederscrew.base.errors import ConfigError
+from feederscrew.base.heavy import heavy
 
 if TYPE_CHECKING:
+    import shapely
+
     from feederscrew.base.dxf import Outlines
+else:
+    shapely = heavy("shapely")
 
 Corner = tuple[float, float]  # [m]
 CORNER_ADVICE = "write [9 mm, 8 mm]"
@@ -356,7 +359,6 @@ def crossed(corners: Sequence[Corner]) -> bool:
     -------
     bool
     """
-
     if len(set(corners)) < len(corners):
         return True
     return len(corners) > 3 and not shapely.LinearRing(corners).is_simple
