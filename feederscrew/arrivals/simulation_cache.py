@@ -10,7 +10,6 @@ import binascii
 import contextlib
 import functools
 import hashlib
-import importlib.metadata
 import itertools
 import json
 import os
@@ -26,8 +25,11 @@ import numpy as np
 
 from feederscrew.base import caches
 from feederscrew.base.arrays import Array
+from feederscrew.base.heavy import heavy
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
+
+metadata = heavy("importlib.metadata")  # and with it all of email: only a digest needs it
 
 MAX_ENTRY_BYTES = 4_000_000
 MAX_ENTRIES = 500  # the oldest go
@@ -187,7 +189,7 @@ def library_digest() -> str:
     library = Path(__file__).parents[1]
     digest = hashlib.sha256(sys.version.encode())
     for name in MADE_WITH:
-        digest.update(importlib.metadata.version(name).encode())
+        digest.update(metadata.version(name).encode())
     for path in sorted(library.rglob("*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()

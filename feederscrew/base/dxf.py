@@ -128,7 +128,7 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
                 raise ConfigError(where, f"{name} {documents.POINTER}", documents.PULL)
         try:
             drawing = ezdxf.readfile(path)
-        except (*DAMAGE, ezdxf.DXFError) as error:  # type: ignore[misc]
+        except (*DAMAGE, ezdxf.DXFError) as error:
             raise ValueError(str(error)) from None
         # of a drawing that states none the reader would supply metres
         states_unit = b"$INSUNITS" in path.read_bytes().partition(b"ENTITIES")[0]

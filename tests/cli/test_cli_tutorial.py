@@ -19,8 +19,6 @@ def parsed(command, words):
     return feeder.get_command(None, command).make_context(command, words).params
 
 
-@pytest.mark.long
-@pytest.mark.thorough
 def fates_of(printed):
     """Rows of a table of `feeder trial`: the counts by their columns, and whether the trial disagrees."""
     head, _, *rows = printed.splitlines()
@@ -29,6 +27,7 @@ def fates_of(printed):
         yield dict(zip(columns, row)) | {"disagrees": row[-1]}
 
 
+@pytest.mark.long
 def test_the_jobs_of_the_tutorial(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(style, "png", lambda figure: b"")  # test_tooling_files.py looks at pictures

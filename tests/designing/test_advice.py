@@ -8,18 +8,33 @@ import numpy as np
 import pytest
 
 import feederscrew as fs
-from feederscrew.bowl.devices.kinds import KINDS, CostClass
+from feederscrew.bowl.devices.kinds import CostClass, make_device
 from feederscrew.designing import advice, tooling_trials
 from feederscrew.designing.advice import Grade, ReasonKind, Way, advise
 from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.designing.record import RiskKind
 from feederscrew.sorting.orientations import orientations
 
-SENSOR = KINDS["vision reject"]
-
 
 def way(devices=(), efficiency=0.5, rate=1.0):
     return Way("A@0", 0.0, "A@0", "on a face", tuple(devices), efficiency, 1.0, rate, 2.0 * rate)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def asked_once():
+    """The static rule is asked once for each shape and orientation: the bowl is the same in this file."""
+    known, real = {}, advice.tooling_without
+
+    def remembered(kinds, part, bowl, aspect, *, heading, aspect_shares, search, cost_class):
+        key = tuple(kinds), part.vertices.tobytes(), aspect, heading, repr(search), cost_class
+        if key not in known:
+            own = {"heading": heading, "aspect_shares": aspect_shares, "search": search}
+            known[key] = real(kinds, part, bowl, aspect, **own, cost_class=cost_class)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(advice, "tooling_without", remembered)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -182,11 +197,8 @@ def test_a_way_of_little_yield_comes_after_a_dearer_class():
 
 
 def _camera():
-    """The vision reject of a design."""
-    bowl = fs.read_bowl(overrides={})
-    part = fs.load("parts/lbracket_30x20x15.stl")
-    study = fs.tooling(part, bowl, "A", cost_class="sensor", search=fs.ToolingSearch(rule="csa", vary=False))
-    return next(device for device in study.design.devices if device.kind == SENSOR.kind)
+    """A vision reject; that a design of this class has one, test_cost_classes.py says."""
+    return make_device("vision reject", "test", like=("A", 0.0, 2e-3), sees="height")
 
 
 def test_a_washer_is_judged_with_each_of_its_changes(washer):

@@ -3,6 +3,7 @@
 Trials, draws and queues are drawn by chance here: every kind of fault comes up, and nothing is simulated.
 """
 
+import functools
 import hashlib
 import inspect
 import zlib
@@ -35,6 +36,7 @@ def scrambled(text):
 
 def scramble_all(monkeypatch):
     """Make every sentence of a design, and every word that a trial has for a fate or a device, unreadable."""
+    proposals.follow_orientations.cache_clear()
     for name, function in inspect.getmembers(texts, inspect.isfunction):
         if function.__module__ == texts.__name__ and inspect.signature(function).return_annotation is str:
             monkeypatch.setattr(texts, name, lambda *a, _own=function, **k: scrambled(_own(*a, **k)))
@@ -145,6 +147,8 @@ def by_chance(monkeypatch, block):
         return known[key]
 
     shares, by_rule = Shares(block.aspects), proposals.propose_chain
+    followed = functools.cache(proposals.follow_orientations.__wrapped__)  # a search remembers 16
+    monkeypatch.setattr(proposals, "follow_orientations", followed)
     monkeypatch.setattr(proposals, "propose_chain", propose_chain)
     monkeypatch.setattr(exploring, "_short", short)
     monkeypatch.setattr(exploring, "robust_run", robust_run)

@@ -1,5 +1,6 @@
 """Each recipe of docs/contributing.md, applied to a copy of the project, does what the page says."""
 
+import json
 import os
 import re
 import shlex
@@ -15,14 +16,15 @@ BLOCK = re.compile(r"<!-- (new|in|runs|shows) ?(.*?) ?-->\n```(?:python|sh|)\n(.
 CHANGE = re.compile(r"(\S+) (after|instead of) (.*)", re.DOTALL)
 CHAPTERS = {chapter.splitlines()[0]: BLOCK.findall(chapter) for chapter in PAGE.split("\n## ")[1:]}
 RECIPES = {title: blocks for title, blocks in CHAPTERS.items() if blocks}
-RUN = """  # one process for pages and command: each imports the library
-import importlib, sys
-pages, words, sys.argv = sys.argv[1].split(), sys.argv[2:], ["page", "--check"]
+RUN = """  # one process for pages and commands: each imports the library
+import importlib, json, sys
+from click.testing import CliRunner
+pages, calls, sys.argv = sys.argv[1].split(), json.loads(sys.argv[2]), ["page", "--check"]
 sys.path.insert(0, "docs")
 if any([importlib.import_module(page).main() for page in pages]):
     sys.exit("a page is out of date")
 from feederscrew_cli.main import feeder
-feeder(words)
+print(json.dumps([CliRunner().invoke(feeder, words).output for words in calls]))
 """
 COPIED = ("feederscrew", "cli", "docs", "configs", "parts")
 PAGES = ("commands", "bowl_file")  # that are made from the program; of rules alone there is a third
@@ -55,18 +57,23 @@ def run(root, *call):
     return done.stdout + done.stderr
 
 
-def follow(root, name, pages=()):
-    """Do what a recipe says; the process that shows its result checks pages first."""
-    for kind, where, text in RECIPES[name]:
+def follow(root, names):
+    """Do what recipes say; the process that shows their results checks the pages first."""
+    blocks = [block for name in names for block in RECIPES[name]]
+    for kind, where, text in blocks:
         if kind == "new":
             (root / where).write_text(text)
         elif kind == "in":
             apply(root, where, text)
-        elif kind == "runs":
-            for line in text.strip().split(" && "):
-                run(root, sys.executable, *shlex.split(line)[1:])
-        else:
-            assert where in run(root, sys.executable, "-c", RUN, " ".join(pages), *shlex.split(text)[1:])
+    lines = [line for kind, _, text in blocks if kind == "runs" for line in text.strip().split(" && ")]
+    for line in dict.fromkeys(lines):
+        run(root, sys.executable, *shlex.split(line)[1:])
+    pages = (*PAGES, *(["rules"] if any("rule" in name for name in names) else []))
+    shown = [(where, shlex.split(text)[1:]) for kind, where, text in blocks if kind == "shows"]
+    calls = json.dumps([words for _, words in shown])
+    said = run(root, sys.executable, "-c", RUN, " ".join(pages), calls).splitlines()[-1]
+    for (where, words), output in zip(shown, json.loads(said), strict=True):
+        assert where in output, (words, output)
 
 
 def test_every_recipe_is_here():
@@ -77,10 +84,12 @@ def test_every_recipe_is_here():
     assert all(blocks[-1][0] == "shows" for blocks in RECIPES.values())
 
 
-@pytest.mark.parametrize("name", list(RECIPES))
-def test_a_recipe_does_what_it_says_and_leaves_lint_and_pages_as_they_should_be(copy, name):
-    """Import order, units of docstrings and files that are made from a key were forgotten once."""
-    follow(copy, name, (*PAGES, *(["rules"] if "rule" in name else [])))
+def test_the_recipes_do_what_they_say_and_leave_lint_and_pages_as_they_should_be(copy):
+    """Import order, units of docstrings and files that are made from a key were forgotten once.
+
+    All are followed on one copy; each by itself where `.ci/run` asks for types and docstrings too.
+    """
+    follow(copy, list(RECIPES))
     for check in (["check"], ["format", "--check"]):
         run(copy, sys.executable, "-m", "ruff", *check, "--no-cache", "feederscrew", "cli", "docs")
 
@@ -91,7 +100,7 @@ def test_a_recipe_does_what_it_says_and_leaves_lint_and_pages_as_they_should_be(
 def test_after_a_recipe_types_and_docstrings_hold(copy, name):
     """The tests that read every module are run on the copy."""
     shutil.copytree(ROOT / "tests", copy / "tests", ignore=shutil.ignore_patterns("__pycache__"))
-    follow(copy, name)
+    follow(copy, [name])
     names = ("project/test_docstrings", "test_layers", "bowl/test_bowl", "bowl/test_json_schema")
     tests = [f"tests/{name}.py" for name in (*names, "test_api_settings")]
     own = ("--basetemp", str(copy / "temporary"))  # else two runs at once clear away each other's

@@ -159,8 +159,9 @@ def test_a_dearer_class_is_tried_where_no_cheaper_chain_holds_in_its_trials(monk
     assert asked == [CostClass.STEEL] and not only.isolates(only.wanted)
 
 
-def test_a_bolt_is_fed_by_two_cuts_that_its_trial_confirms(bolt, bowl, wanted, study):
+def test_a_bolt_is_fed_by_two_cuts_that_its_trial_confirms(bolt, bowl, wanted, study, monkeypatch):
     """It had a camera, where a toolmaker narrows the track and cuts rails."""
+    monkeypatch.setattr(tooling_trials, "MORE_PARTS", 6)
 
     def propose(kinds, cost_class):
         return tooling_without(kinds, bolt, bowl, **wanted | {"cost_class": cost_class})

@@ -7,11 +7,11 @@ it: its ``Orientation`` is a ``LyingPart``, its ``DeviceEncounter`` an ``Encount
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol, Self, TypeAlias, TypeVar
 
-import shapely
-
 from feederscrew.base.arrays import Points
 
 if TYPE_CHECKING:
+    import shapely
+
     from feederscrew.bowl.devices.base import Verdict
     from feederscrew.bowl.devices.openings import HoleEdges
     from feederscrew.bowl.record import Track
@@ -93,11 +93,11 @@ class LyingPart(Protocol):
         """Convex outline from above (J, 2) [m], counter-clockwise."""
 
     @property
-    def view_ahead(self) -> shapely.Geometry:
+    def view_ahead(self) -> "shapely.Geometry":
         """Outline seen along the track: distance from the wall, and height [m]."""
 
     @property
-    def aside(self) -> shapely.Geometry:
+    def aside(self) -> "shapely.Geometry":
         """Outline seen from the bowl's axis: ahead of its weight, and heights [m]."""
 
     @property
@@ -227,7 +227,7 @@ class Encounter(Protocol):
     def may_catch(self, entry: tuple[float, ...], span: tuple[float, ...]) -> bool:
         """Tell whether its head may stick between rails as a wedge, or its shank not turn down."""
 
-    def through(self, opening: shapely.Geometry) -> float:
+    def through(self, opening: "shapely.Geometry") -> float:
         """Return its margin in the opening of a gate [m]."""
 
     def unless_laid_over(self, margin: float, low: float, sweep: float = 0.0) -> float:

@@ -12,13 +12,13 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
-import shapely
 
 from feederscrew.base import units
 from feederscrew.base import value_forms as forms
 from feederscrew.base.columns import Document
 from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
+from feederscrew.base.heavy import heavy
 from feederscrew.base.units import MM
 from feederscrew.bowl.devices import orientation_names, values
 from feederscrew.bowl.devices.asked import Encounter, Lying, LyingPart
@@ -27,7 +27,11 @@ from feederscrew.bowl.devices.trade import Action, Trade, ValueSearch
 from feederscrew.bowl.devices.values import Corner, DeviceFields
 
 if TYPE_CHECKING:
+    import shapely
+
     from feederscrew.bowl.record import Track
+else:
+    shapely = heavy("shapely")  # a bowl without devices needs none of it
 
 GATE_FRAME_M = 5e-3  # [m] of a gate above its opening
 GRIP = 0.6  # [1] friction of a dry steel track
@@ -485,7 +489,7 @@ def opening_at(device: Device, orientation: LyingPart) -> TrackOpening | None:
 
 
 def gate_features(
-    opening: shapely.Geometry, orientations: Sequence[LyingPart], width: float, *, is_gate: bool
+    opening: "shapely.Geometry", orientations: Sequence[LyingPart], width: float, *, is_gate: bool
 ) -> Features:
     """Return a plate square across the track, with an opening.
 

@@ -9,13 +9,19 @@ import enum
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 
 from feederscrew.base.arrays import Points
+from feederscrew.base.heavy import heavy
 from feederscrew.bowl.devices.asked import LyingPart
 from feederscrew.bowl.devices.values import Corner
+
+if TYPE_CHECKING:
+    import shapely
+else:
+    shapely = heavy("shapely")  # a bowl without devices needs none of it
 
 BLADE = 1.5e-3  # [m] thickness of a blade
 BEYOND_BLADES_M = 10.0  # [m] beyond any blade
@@ -226,7 +232,7 @@ class Drop:
 class Blade:
     """An upright plate on or over the track, at any angle to it."""
 
-    solid: shapely.Geometry  # of its face [m], along the face from its foot, height over the track
+    solid: "shapely.Geometry"  # of its face [m], along the face from its foot, height over the track
     foot: tuple[float, float] = (0.0, 0.0)  # [m] x, y where the face begins
     heading: float = 0.5 * np.pi  # [rad] from the track's direction; less than a right angle is swept back
     thickness: float = BLADE  # [m] behind the face
@@ -244,7 +250,7 @@ class Blade:
         c, s = math.cos(self.heading), math.sin(self.heading)
         return np.array([[c, s], [s, -c]])
 
-    def carried_into(self, wall: float, track: float, reach: float) -> shapely.Geometry:
+    def carried_into(self, wall: float, track: float, reach: float) -> "shapely.Geometry":
         """Return its face carried on into wall and track where it reaches them.
 
         No corner is left within a straight side: it would lie on the wall's or the track's own face.

@@ -5,14 +5,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import shapely
-
 from feederscrew.base import units
 from feederscrew.base.documents import Entry, Node
 from feederscrew.base.errors import ConfigError
+from feederscrew.base.heavy import heavy
 
 if TYPE_CHECKING:
+    import shapely
+
     from feederscrew.base.dxf import Outlines
+else:
+    shapely = heavy("shapely")
 
 Corner = tuple[float, float]  # [m]
 DeviceFields = dict[str, Any]  # of a device by their names, in SI units: those that its value in a file says
@@ -359,7 +362,6 @@ def crossed(corners: Sequence[Corner]) -> bool:
     -------
     bool
     """
-
     if len(set(corners)) < len(corners):
         return True
     return len(corners) > 3 and not shapely.LinearRing(corners).is_simple
