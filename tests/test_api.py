@@ -87,6 +87,22 @@ def test_the_help_of_a_function_fits_a_screen(name, capsys):
     assert f"{name}(" in "".join(lines) and "feederscrew." not in lines[3]
 
 
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_the_help_tells_each_parameter_with_its_type(name):
+    """The API page gives names of one entry one default: seven parameters of report had that of the first."""
+    parameters = inspect.signature(FUNCTIONS[name]).parameters
+    section = inspect.getdoc(FUNCTIONS[name]).partition("Parameters\n----------\n")[2].partition("\n\n")[0]
+    told = []
+    for line in section.splitlines():
+        names, _, kind = line.partition(" : ")
+        if line[:1].strip():
+            entry = [parameters[word.strip().lstrip("*")] for word in names.split(",")]
+            assert kind or entry[0].kind is inspect.Parameter.VAR_POSITIONAL, line
+            assert len({parameter.default for parameter in entry}) == 1, line
+            told += [parameter.name for parameter in entry]
+    assert sorted(told) == sorted(parameters)
+
+
 def test_a_signature_that_is_shown_is_the_one_that_is_called():
     assert {"aspect", "gap", "fed"} <= set(inspect.signature(fs.rate).parameters)
     assert str(inspect.signature(fs.find_aspects)).startswith("(part: Part, *, unstable: bool = False")

@@ -394,7 +394,9 @@ def shake(
         Parts on each plate; 400 without it.
     seconds : str or float [s], optional
         How long each is followed; 5 without it.
-    seed, jobs, fall, spin, speed, restitution, friction
+    seed, jobs : int
+        As for ``drop``.
+    fall, spin, speed, restitution, friction : str, float or pair of them [m, rad/s, m/s, 1, 1], optional
         As for ``drop``; restitution and friction are each bowl's unless given.
     progress : callable, optional
         Called after every batch with the parts done, on all plates together, and how many there will be.

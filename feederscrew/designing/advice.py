@@ -395,14 +395,13 @@ def advise(
     Returns
     -------
     AdviceStudy
-        Its changes have those that were tried first, then the others by what they gain by the rule.
+        Its changes have those that were tried first, then the others by what they gain by the rule. It is
+        ``partial`` if the user stopped the search for changes.
 
     Raises
     ------
     FeederError
         If the part has no closed mesh or very many facets, or does not fit into the bowl.
-
-    An interrupt from the keyboard ends the search for changes: the study is ``partial`` then.
     """
     begun = time.monotonic()
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl)

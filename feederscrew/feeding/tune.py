@@ -118,8 +118,16 @@ def tune(
         The one wanted.
     target : str or float [1/s]
         '60/min' of it.
-    heading, devices, gap, fill, rule, launch, probabilities, fed, seed
-        As for ``rate``.
+    heading : str or float [rad], optional
+    devices : sequence of Device, optional
+    gap : str or float [m]
+    fill : float [1]
+    rule : str
+    launch : str, optional
+    probabilities : str or Path, optional
+    fed : int, optional
+    seed : int
+        These nine as for ``rate``.
     worst : bool
         Meet the target at the worst of every start, of friction a fifth lower and higher and, where parts
         hop, of restitution over its spread.

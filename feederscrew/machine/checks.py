@@ -1,7 +1,7 @@
 """Remarks that a designer of a machine must not overlook: each says where, what and what to change."""
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +13,13 @@ from feederscrew.machine.springs import fewest_leaves, greatest_amplitude
 from feederscrew.motion import hop
 from feederscrew.motion.conveying import speed_remark
 
+if TYPE_CHECKING:
+    from feederscrew.machine.sheet import MachineSheet, Order
+
 VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 
 
-def remarks(sheet: Any) -> tuple[str, ...]:
+def remarks(sheet: "MachineSheet") -> tuple[str, ...]:
     """Return the remarks on a machine.
 
     Parameters
@@ -30,12 +33,12 @@ def remarks(sheet: Any) -> tuple[str, ...]:
     """
     order = sheet.order
     faults = [*_springs(sheet), *_limits(sheet), *_emptying(sheet), *_rocking(sheet)]
-    faults += [] if order is None else _size(sheet)
+    faults += [] if order is None else _size(sheet, order)
     tipping = () if order is None else order.tipping
     return (*map(str, faults), *tipping, *speed_remark(sheet.answer.velocity, sheet.bowl.sizing))
 
 
-def solid_remarks(sheet: Any) -> tuple[str, ...]:
+def solid_remarks(sheet: "MachineSheet") -> tuple[str, ...]:
     """Return the remarks on a machine that its bowl as a solid alone gives.
 
     Parameters
@@ -47,10 +50,10 @@ def solid_remarks(sheet: Any) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    return (*map(str, _rocking(sheet)), *sheet.solid.remarks)
+    return (*map(str, _rocking(sheet)), *(() if sheet.solid is None else sheet.solid.remarks))
 
 
-def find_drive_faults(sheet: Any) -> Iterator[FeederError]:
+def find_drive_faults(sheet: "MachineSheet") -> Iterator[FeederError]:
     """Yield what keeps the springs of a machine from making its drive.
 
     Parameters
@@ -71,7 +74,7 @@ def find_drive_faults(sheet: Any) -> Iterator[FeederError]:
         yield FeederError("drive.vibration_angle", other.text, "leave it out, to go by the springs")
 
 
-def _springs(sheet: Any) -> Iterator[FeederError]:
+def _springs(sheet: "MachineSheet") -> Iterator[FeederError]:
     """The drive that the springs do not make, and how they are tuned to it."""
     yield from find_drive_faults(sheet)
     rules, drive, detuning = sheet.bowl.sizing, sheet.stroke.frequency, sheet.detuning
@@ -91,7 +94,7 @@ def _springs(sheet: Any) -> Iterator[FeederError]:
     yield FeederError("machine.leaves", f"{natural} {what}", f"{mend}{better}")
 
 
-def _limits(sheet: Any) -> Iterator[FeederError]:
+def _limits(sheet: "MachineSheet") -> Iterator[FeederError]:
     """Leaves that do not share into banks or bend too far, a stroke that no drive makes, parts that hop."""
     bowl, rules = sheet.bowl, sheet.bowl.sizing
     leaves, banks = int(bowl.machine.leaves), int(rules.banks)
@@ -122,7 +125,7 @@ def _limits(sheet: Any) -> Iterator[FeederError]:
         yield FeederError("drive.amplitude", what, mend)
 
 
-def _emptying(sheet: Any) -> Iterator[FeederError]:
+def _emptying(sheet: "MachineSheet") -> Iterator[FeederError]:
     """Return what a bowl left alone does from full to empty."""
     bowl, rules, emptied, drive = sheet.bowl, sheet.bowl.sizing, sheet.emptying, sheet.stroke.frequency
     most = greatest_amplitude(bowl)
@@ -144,8 +147,8 @@ def _emptying(sheet: Any) -> Iterator[FeederError]:
         yield FeederError("drive.amplitude", f"left alone, {stroke}: the magnet strikes", mend)
 
 
-def _rocking(sheet: Any) -> Iterator[FeederError]:
-    if sheet.rocking is None:
+def _rocking(sheet: "MachineSheet") -> Iterator[FeederError]:
+    if sheet.rocking is None or sheet.solid is None:
         return
     as_is, balanced = sheet.rocking
     if as_is.greatest - as_is.least > VISIBLE_STROKE_SPREAD:
@@ -158,9 +161,9 @@ def _rocking(sheet: Any) -> Iterator[FeederError]:
         yield FeederError("the bowl as a solid", what, f"put {there}: at most {rest:.2g} % are left")
 
 
-def _size(sheet: Any) -> Iterator[FeederError]:
+def _size(sheet: "MachineSheet", order: "Order") -> Iterator[FeederError]:
     """Return what of a bowl that was sized for a part and a rate is out of its rules."""
-    low, order, size = sheet.lowest, sheet.order, sheet.order.size
+    low, size = sheet.lowest, order.size
     if low.rate < order.target * (1.0 - 1e-6):
         there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.control}"
         what = f"{60.0 * order.target:.3g}/min are not kept as the bowl empties: {there}"

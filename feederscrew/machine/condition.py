@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
@@ -53,6 +53,9 @@ SHOULD_COLUMNS: tuple[Column[MeasuredMachine], ...] = (  # the same of the machi
     Column("frequency_hz", lambda condition: condition.should["frequency"], "Hz"),
     Column("velocity_mm_s", lambda condition: condition.velocity_should, "mm/s"),
 )
+
+if TYPE_CHECKING:
+    from feederscrew.machine.sheet import MachineSheet
 CONDITION_COLUMNS: tuple[Column[MeasuredMachine], ...] = (  # of the document
     Column("fill_percent", lambda condition: condition.fill, "%"),
     Column("measured", lambda condition: values(MEASURED_COLUMNS, condition)),
@@ -102,7 +105,7 @@ def read(text: str) -> dict[str, float]:
     return values
 
 
-def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
+def diagnose(sheet: "MachineSheet", values: dict[str, float]) -> MeasuredMachine:
     """Return a machine as it was found beside what it should do, and the likely causes of a difference.
 
     The target is that of the machine as drawn, its stroke at the fill that was found. A missing frequency

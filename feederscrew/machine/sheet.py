@@ -482,8 +482,11 @@ def size_bowl(
         '60/min' of parts that count.
     aspect : str, optional
         That counts; whatever passes the devices without it.
-    heading, rule, gap, fill
-        As for ``rate``.
+    heading : str or float [rad], optional
+    rule : str
+    gap : str or float [m]
+    fill : float [1]
+        These four as for ``rate``.
     bowl : Bowl, optional
         What its file or ``with_values`` gave is kept, its devices too; the rest is sized.
 

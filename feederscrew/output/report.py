@@ -201,16 +201,23 @@ def report(
     aspect : str, optional
         The one wanted. Without it the likeliest, and of the rate what leaves most often.
     heading : str or float [rad], optional
+        Of that aspect.
     target : str or float [1/s], optional
         Rate that a bowl is sized for.
     bowl : Bowl, optional
         As ``read_bowl`` returns it; that of the defaults without it.
-    gap, fill, rule, launch, probabilities, fed, seed
-        As for ``rate``.
+    gap : str or float [m]
+    fill : float [1]
+    rule : str
+    launch : str, optional
+    probabilities : str or Path, optional
+    fed : int, optional
+    seed : int
+        These seven as for ``rate``.
     sent : int, optional
         Parts of a trial, which is a chapter then.
     command : str
-        That repeats the report.
+        Call that repeats the report; it stands at its head.
     progress, before : callable, optional
         As for ``shares``.
 

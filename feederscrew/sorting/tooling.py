@@ -324,16 +324,14 @@ def tooling(
     Returns
     -------
     ToolingStudy
-        Its ``design`` is that of the orientation asked for, ``designs`` are those of all.
+        Its ``design`` is that of the orientation asked for, ``designs`` are those of all. It is ``partial``
+        if the user stopped the search: with the chains that were found until then.
 
     Raises
     ------
     FeederError
         If the part has no mesh or very many facets, is too large for the bowl, or has no such orientation or
         rule.
-
-    An interrupt from the keyboard ends the search: the study is ``partial`` then, with the chains that were
-    found; of the first orientation the first chain there is. A second one is raised.
     """
     begun = time.monotonic()
     part, bowl = arguments.part_in_bowl(part, bowl)

@@ -104,6 +104,19 @@ def test_every_docstring_begins_a_sentence_says_shapes_and_names_the_equations_i
         assert all(mark in doc or "References" in doc for mark in MARK.findall(source)), name
 
 
+def test_under_raises_stand_faults_alone():
+    """The pages of the site took a paragraph behind them for the name of a fault."""
+    names = re.compile(r"[\w.]+(?:, [\w.]+)*")
+    for path in ROOT.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.FunctionDef | ast.ClassDef):
+                continue
+            _, _, faults = (ast.get_docstring(node) or "").partition("\nRaises\n------\n")
+            lines = re.split(r"\n\n\w+\n-{3,}\n", faults)[0].splitlines()
+            odd = [line for line in lines if line and line[0] != " " and not names.fullmatch(line)]
+            assert odd == [], (path.name, node.name)
+
+
 def test_what_computes_says_the_unit_of_each_quantity_and_has_a_source(known):
     """The source in its own docstring, in that of its module, or in that of a folder around it."""
     able = [(name, node, doc) for name, node, _, doc in known if computes(node, doc) or RUNNING.search(doc)]

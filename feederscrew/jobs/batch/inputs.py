@@ -208,7 +208,7 @@ def gather(
 
     Raises
     ------
-    FeederError or Faults
+    FeederError, Faults
         If a folder or a pattern holds no part, or a list or a bowl cannot be used.
     """
     faults: list[FeederError] = []

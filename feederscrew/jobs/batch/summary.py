@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from feederscrew.base.columns import Cells, ColumnHead, Document, Frame, share_head
@@ -11,6 +11,9 @@ from feederscrew.base.units import counted
 from feederscrew.jobs.batch.task import DONE, NOT_COMPUTED, PARTS, THUMBNAIL, Request
 from feederscrew.output.batch import ACROSS, DOWN
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture
+
+if TYPE_CHECKING:
+    from feederscrew.jobs.batch.batch_run import Store
 
 SUMMARY_FILE = "summary.csv"
 PARTIAL = "summary_partial.csv"  # of a run that was stopped, beside the tables of an earlier one
@@ -88,7 +91,7 @@ INDEX_HEADINGS = (
 SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SUMMARY_FILE),),))
 
 
-def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = None) -> Rows:
+def rows(store: "Store", requests: Sequence[Request], finished: set[str] | None = None) -> Rows:
     """Return what the disk says of each part of a batch.
 
     Parameters
@@ -143,7 +146,7 @@ def frame(rows: Rows) -> Frame:
     return Frame.of({name: [marked(row[name]) for row in rows] for name in SUMMARY_COLUMNS}, SUMMARY_HEADS)
 
 
-def sheets(store: Any, rows: Rows) -> Iterator[list[tuple[bytes | None, str, str]]]:
+def sheets(store: "Store", rows: Rows) -> Iterator[list[tuple[bytes | None, str, str]]]:
     """Yield the tiles of each contact sheet, up to ``TILES`` parts.
 
     Parameters
@@ -181,7 +184,7 @@ def _words(row: Cells) -> str:
     return f"{text}, {note.removesuffix(NO_RATE)}" if number == 0.0 and note else text
 
 
-def index_pages(store: Any, rows: Rows) -> dict[str, Page]:
+def index_pages(store: "Store", rows: Rows) -> dict[str, Page]:
     """Build the index of a batch: a line a part, with its picture and a link to its folder.
 
     Pictures stay in the folders of the parts, so a page takes some 400 bytes a part.
@@ -215,7 +218,7 @@ def index_pages(store: Any, rows: Rows) -> dict[str, Page]:
     return pages
 
 
-def _index_row(store: Any, row: Cells) -> tuple[MarkedCell, ...]:
+def _index_row(store: "Store", row: Cells) -> tuple[MarkedCell, ...]:
     name, path = row["folder"], f"{PARTS}/{quote(row['folder'])}/"
     remarks = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
     picture = None
