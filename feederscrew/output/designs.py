@@ -589,9 +589,10 @@ def acceptance(study: DesignStudy) -> Frame:
                 line = SheetLine(name, "", unit, None, None, float(value))
                 lines.append(replace(line, low=line.demand[0], high=line.demand[1]))
     strip = _tooled(study)
-    for number, placed in enumerate(() if strip is None else strip.devices, start=1):
+    chain, width = ((), 0.0) if strip is None else (strip.devices, strip.width)
+    for number, placed in enumerate(chain, start=1):
         if placed.features.hangs:  # one millimetre of web stops every part
-            plan = "; ".join(placed.shop_work(strip.width))
+            plan = "; ".join(placed.shop_work(width))
             web = f"web left across the slot of {number} {placed.device.kind}"
             lines.append(SheetLine(web, "", "mm", None, 0.0, 0.0, plan=plan))
     cells = ([_cell(getattr(line, name)) for name in acceptance_sheet.SHEET_COLUMNS] for line in lines)

@@ -1,4 +1,4 @@
-"""Stretches of the track that lean otherwise: bank, separation on a steeper way, and the V of a groove."""
+"""Stretches of the track that lean otherwise: bank, spacing on a steeper way, and the V of a groove."""
 
 import math
 from collections.abc import Sequence
@@ -134,7 +134,7 @@ class Lean(Device):
 
 
 @dataclass(frozen=True)
-class Groove(Lean):
+class VGroove(Lean):
     """A V from here on, until a bank: the track leans towards its wall, and the wall back by as much."""
 
     kind = "V groove"
@@ -155,12 +155,12 @@ class Groove(Lean):
 
     @classmethod
     def holding(cls, orientation: LyingPart, wall_friction: float, where: str) -> "tuple[Lean, ...]":
-        return (cls.of(HOLDS, where), Bank.of(LEAST, where)) if orientation.rolls_along else ()
+        return (cls.of(HOLDS, where), BankedTrack.of(LEAST, where)) if orientation.rolls_along else ()
 
     @classmethod
     def leanings(cls, orientation: LyingPart, where: str) -> "list[tuple[Lean, ...]]":
         along = orientation.kind == "rolling" and orientation.rolls_along
-        return [(cls.of(angle, where), Bank.of(LEAST, where)) for angle in ANGLES] if along else []
+        return [(cls.of(angle, where), BankedTrack.of(LEAST, where)) for angle in ANGLES] if along else []
 
     def onward(self, orientation: Lying) -> Lying:
         track = replace(orientation.track, bank=self.angle)
@@ -177,7 +177,7 @@ class Groove(Lean):
 
 
 @dataclass(frozen=True)
-class Bank(Lean):
+class BankedTrack(Lean):
     """Another bank from here on."""
 
     kind = "banked track"
@@ -216,7 +216,7 @@ class Bank(Lean):
 
 
 @dataclass(frozen=True)
-class Separation(Lean):
+class SpacingSection(Lean):
     """A steeper way down from here on, on which parts travel faster and so come apart."""
 
     kind = "spacing section"
