@@ -204,7 +204,14 @@ def test_feeder_bowl_takes_the_drive_that_was_tried_till_it_is_changed(
 def test_solids_of_what_falls_short_say_so_in_their_names_heads_and_bodies(mark, name):
     """A shop sees the name of an STL, a slicer that of a body, a CAD program that of a product."""
     step = SimpleNamespace(data=STEP)
-    solid = SimpleNamespace(vertices=PART.vertices, faces=PART.faces, gates=(), segments=None, step=step)
+    solid = SimpleNamespace(
+        vertices=PART.vertices,
+        faces=PART.faces,
+        gates=(),
+        segments=None,
+        step=step,
+        plan=SimpleNamespace(stretch=None),
+    )
     sheet = SimpleNamespace(order=SimpleNamespace(part=PART, on_track=None), solid=solid)
     offers = {one.name: one for one in solidbowl.offers(sheet, None, mark)}
     assert {f"{name}.stl", f"{name}.3mf", f"{name}.step", "bowl.pdf"} <= set(offers)
