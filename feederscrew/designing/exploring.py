@@ -25,7 +25,7 @@ from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, M
 from feederscrew.designing.policy import SearchPolicy
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import Attempt
-from feederscrew.designing.search import BankedTrack, Candidate, ChainKey, Place, Search
+from feederscrew.designing.search import TrackAtBank, Candidate, ChainKey, Place, Search
 from feederscrew.designing.short_trials import find_denials, robust_run
 from feederscrew.feeding import stream
 from feederscrew.feeding.stream import Orientations
@@ -44,7 +44,7 @@ LYING = proposals.Recipe(1, proposals.MARGINS[0], OutcomeKind.ANY, ())  # of wha
 class _Idea:
     """An orientation on a track, and a way of proposing a chain for it."""
 
-    track: BankedTrack
+    track: TrackAtBank
     row: int
     recipe: proposals.Recipe
     proposal: Proposal | None = None  # once it was looked for
@@ -95,7 +95,7 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
         yield from _chains(search, tracks, number)
 
 
-def _chains(search: Search, tracks: list[BankedTrack], cost_class: int) -> Iterator[Candidate]:
+def _chains(search: Search, tracks: list[TrackAtBank], cost_class: int) -> Iterator[Candidate]:
     """Candidates with chains of a cost class, the most promising first.
 
     A chain is looked for where its bound is the highest.
@@ -235,7 +235,7 @@ def _others_first(search: Search, name: str) -> Iterator[Candidate]:
             yield candidate
 
 
-def _often(search: Search) -> list[tuple[BankedTrack, int]]:
+def _often(search: Search) -> list[tuple[TrackAtBank, int]]:
     """Rows that come often enough to be tried once, with the track of the first bank, most frequent first."""
     least = search.policy.often_share
     return [
@@ -246,7 +246,7 @@ def _often(search: Search) -> list[tuple[BankedTrack, int]]:
     ]
 
 
-def _first_idea(search: Search, track: BankedTrack, row: int) -> _Idea | None:
+def _first_idea(search: Search, track: TrackAtBank, row: int) -> _Idea | None:
     """The cheapest chain that isolates a row and was not tried; None without one."""
     for cost_class in proposals.COST_CLASSES:
         recipes = proposals.recipes_of(cost_class, search.request)
@@ -260,7 +260,7 @@ def _first_idea(search: Search, track: BankedTrack, row: int) -> _Idea | None:
     return None
 
 
-def _rails_ideas(search: Search, track: BankedTrack, cost_class: int) -> list[_Idea]:
+def _rails_ideas(search: Search, track: TrackAtBank, cost_class: int) -> list[_Idea]:
     """Ideas of rails that trials decide on, one for each head: of steel, after what the static rule says."""
     request = search.request
     if cost_class != proposals.COST_CLASSES[0] or request.outcome == OutcomeKind.LYING:
@@ -292,7 +292,7 @@ def _proposal(search: Search, idea: _Idea) -> Proposal | None:
     return state.proposed[(*idea.place, recipe)]
 
 
-def _tracks(search: Search) -> list[BankedTrack]:
+def _tracks(search: Search) -> list[TrackAtBank]:
     """The tracks that are tried, of each bank: once for all cost classes."""
     state, policy = search.state, search.policy
     if state.tracks:
@@ -316,7 +316,7 @@ def _tracks(search: Search) -> list[BankedTrack]:
             state.shares = entry_shares(search, start)
         orientations, weights = weigh_orientations(search, start)
         rows = _rows_to_try(orientations, weights, search)
-        state.tracks.append(BankedTrack(plain_bowl, orientations, weights, rows, policy.bank_rank**number))
+        state.tracks.append(TrackAtBank(plain_bowl, orientations, weights, rows, policy.bank_rank**number))
     # also of what may hang: infinite
     placed = [(track, row) for track in state.tracks for row in track.rows]
     enough = any(_promise(search, track, row, LYING) >= search.request.target for track, row in placed)
@@ -396,7 +396,7 @@ def chain_key(track: Track, proposal: Proposal, orientations: Sequence[Orientati
     return track, wanted, tuple((device.kind, device.compared_values) for device in proposal.devices)
 
 
-def _was_tried(search: Search, track: BankedTrack, proposal: Proposal) -> bool:
+def _was_tried(search: Search, track: TrackAtBank, proposal: Proposal) -> bool:
     """Tell whether a chain was tried on that track, or one whose values differ by too little."""
     state = search.state
     key = chain_key(track.plain_bowl.bowl.track, proposal, track.orientations.lying)
@@ -424,7 +424,7 @@ def _is_alike_value(first: ComparedValue, second: ComparedValue, policy: SearchP
     return abs(a - b) <= max(little, policy.alike_share * abs(a))
 
 
-def _promise(search: Search, track: BankedTrack, row: int, recipe: proposals.Recipe) -> float:
+def _promise(search: Search, track: TrackAtBank, row: int, recipe: proposals.Recipe) -> float:
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
     if recipe.outcome != OutcomeKind.LYING and find_head(track.orientations.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
@@ -433,12 +433,12 @@ def _promise(search: Search, track: BankedTrack, row: int, recipe: proposals.Rec
     return share * track.fastest / pitch
 
 
-def rate_at_most(track: BankedTrack, share: float) -> float:
+def rate_at_most(track: TrackAtBank, share: float) -> float:
     """Return the rate [1/s] that no chain exceeds: parts that touch, at the fastest drive.
 
     Parameters
     ----------
-    track : BankedTrack
+    track : TrackAtBank
         Of its orientations lengths l and weights w are taken: a part takes sum(w l) of the track.
     share : float [1]
         Of the parts that may leave as wanted.
@@ -451,13 +451,13 @@ def rate_at_most(track: BankedTrack, share: float) -> float:
     return share * track.fastest / float((track.weights * track.orientations.lengths).sum())
 
 
-def share_of(search: Search, track: BankedTrack, row: int) -> float:
+def share_of(search: Search, track: TrackAtBank, row: int) -> float:
     """Return the share [1] in which an orientation comes, with those that count as it.
 
     Parameters
     ----------
     search : Search
-    track : BankedTrack
+    track : TrackAtBank
     row : int
 
     Returns
@@ -468,7 +468,7 @@ def share_of(search: Search, track: BankedTrack, row: int) -> float:
     return float(track.weights[[row, *equivalent]].sum())
 
 
-def _propose(search: Search, track: BankedTrack, row: int, recipe: proposals.Recipe) -> Proposal | None:
+def _propose(search: Search, track: TrackAtBank, row: int, recipe: proposals.Recipe) -> Proposal | None:
     """A chain for one orientation at the drive that its share asks for; None where there is none."""
     policy = search.policy
 
@@ -561,7 +561,7 @@ def weigh_orientations(search: Search, bowl: Bowl) -> tuple[Orientations, Floats
     return orientations, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
 
 
-def _try_and_mend(search: Search, track: BankedTrack, proposal: Proposal) -> Iterator[Candidate]:
+def _try_and_mend(search: Search, track: TrackAtBank, proposal: Proposal) -> Iterator[Candidate]:
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough.
 
     One that one draw alone denies is taken where nothing mends it: the draws of its proof are more.
@@ -617,7 +617,7 @@ def _try_and_mend(search: Search, track: BankedTrack, proposal: Proposal) -> Ite
             state.lost_behind.append((place, proposal.chain[:count]))
 
 
-def _try_rails(search: Search, track: BankedTrack, rails: hanging.RailsSearch) -> Iterator[Candidate]:
+def _try_rails(search: Search, track: TrackAtBank, rails: hanging.RailsSearch) -> Iterator[Candidate]:
     """Try rails for a head and what changes them, from the best so far; each Candidate that is clean.
 
     The short trial decides on each; the static rule says only in which order. A chain that is clean and too

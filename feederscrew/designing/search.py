@@ -36,7 +36,7 @@ ChainKey = tuple[Track, str, tuple[tuple[str, tuple[ComparedValue, ...]], ...]]
 
 
 @dataclass(frozen=True, eq=False)
-class BankedTrack:
+class TrackAtBank:
     """A bank of the track: the bowl without devices, and what comes along it."""
 
     plain_bowl: calm_drive.PlainBowl
@@ -61,7 +61,7 @@ class SearchState:
     clean: list["Candidate"] = field(default_factory=list)  # of clean attempts
     failures: list["Candidate"] = field(default_factory=list)  # of others that deliver
     min_speed: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
-    tracks: list[BankedTrack] = field(default_factory=list)  # of each bank what comes along it
+    tracks: list[TrackAtBank] = field(default_factory=list)  # of each bank what comes along it
     # what was proposed, by bank, row and way
     proposed: dict[tuple[float, int, proposals.Recipe], Proposal | None] = field(default_factory=dict)
     chains: set[ChainKey] = field(default_factory=set)  # tried on their tracks, whatever the drive

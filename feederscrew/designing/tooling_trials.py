@@ -28,7 +28,7 @@ from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.progress import SearchProgress
 from feederscrew.designing.proposals import equivalent_rows
 from feederscrew.designing.record import DesignRequest
-from feederscrew.designing.search import BankedTrack, Candidate, Search
+from feederscrew.designing.search import TrackAtBank, Candidate, Search
 from feederscrew.designing.short_trials import SELDOM_SHARE, find_denials
 from feederscrew.feeding import stream
 from feederscrew.sorting.isolating import chain as static
@@ -452,7 +452,7 @@ def _search_on(asked: AskedOrientation, *, only_hanging: bool = False) -> Search
             lying = orientations.lying
             rows = [k for k in hanging.head_rows(lying, weights, rows) if lying[k].name != own.name]
         rank = search.policy.bank_rank**number
-        search.state.tracks.append(BankedTrack(plain_bowl, orientations, weights, rows, rank))
+        search.state.tracks.append(TrackAtBank(plain_bowl, orientations, weights, rows, rank))
     return search
 
 

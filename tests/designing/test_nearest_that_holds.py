@@ -30,7 +30,7 @@ from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.progress import SearchProgress, SearchStage
 from feederscrew.designing.proof import RobustRun
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
-from feederscrew.designing.search import BankedTrack, Candidate, Search
+from feederscrew.designing.search import TrackAtBank, Candidate, Search
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
 from feederscrew.sorting.isolating.chain import Cut
@@ -198,7 +198,7 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     monkeypatch.setattr(exploring, "_short", short)
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
     proposal = proposals.Proposal(0, (), (), Move(MoveKind.NO_DEVICE))
-    found = list(exploring._try_and_mend(search, BankedTrack(PLAIN, ways, weights, [0], 1.0), proposal))
+    found = list(exploring._try_and_mend(search, TrackAtBank(PLAIN, ways, weights, [0], 1.0), proposal))
     first, second = search.state.attempts
     assert not found and len(search.state.clean) == 1  # clean, slower than 600 a minute
     assert first.cause == "drive" and not first.clean and second.clean and second.cause == ""
@@ -426,7 +426,7 @@ def classes(monkeypatch):
     for place, bank in enumerate((3.0, 0.0)):
         banked = SimpleNamespace(bowl=replace(BOWL, track=replace(BOWL.track, bank=np.radians(bank))))
         track = banked, SimpleNamespace(lying=lying), shares, [0, 1], USUAL_POLICY.bank_rank**place
-        search.state.tracks.append(BankedTrack(*track))
+        search.state.tracks.append(TrackAtBank(*track))
     monkeypatch.setattr(exploring.proposals, "propose_no_device", lambda *_: None)
     monkeypatch.setattr(exploring.hanging, "head_rows", lambda *_: [])  # neither part has a head
     monkeypatch.setattr(exploring, "_promise", lambda search, track, row, way: shares[row])

@@ -14,7 +14,7 @@ from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.designing import calm_drive, exploring, proposals
 from feederscrew.designing.findings import Cause, Move, MoveKind
 from feederscrew.designing.record import Attempt, DesignRequest
-from feederscrew.designing.search import BankedTrack, Candidate, Search
+from feederscrew.designing.search import TrackAtBank, Candidate, Search
 from feederscrew.trials.course import Fate
 
 PART = shapes.part(shapes.box(20, 12, 5))
@@ -34,7 +34,7 @@ def trials(monkeypatch):
     ways = SimpleNamespace(lying=lying)
     search = Search.begin(PART, DesignRequest(1.0, budget=24), BOWL)
     rows = exploring._rows_to_try(ways, weights, search)
-    search.state.tracks.append(BankedTrack(PLAIN, ways, weights, rows, 1.0))
+    search.state.tracks.append(TrackAtBank(PLAIN, ways, weights, rows, 1.0))
     monkeypatch.setattr(exploring.proposals, "propose_no_device", lambda *_: None)
     monkeypatch.setattr(exploring.hanging, "head_rows", lambda *_: [])
     monkeypatch.setattr(exploring, "_promise", lambda search, track, row, way: 10.0 * weights[row])

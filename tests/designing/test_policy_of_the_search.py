@@ -14,7 +14,7 @@ from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.policy import USUAL_POLICY, SearchPolicy
 from feederscrew.designing.proof import RobustRun
 from feederscrew.designing.record import DesignRequest
-from feederscrew.designing.search import BankedTrack, Search
+from feederscrew.designing.search import TrackAtBank, Search
 
 DESIGNS = Path(__file__).parents[2] / "docs" / "designs.csv"
 
@@ -79,7 +79,7 @@ def test_a_proposal_is_mended_as_often_as_the_policy_says(monkeypatch, block, me
     monkeypatch.setattr(exploring, "_find_livelier", none_livelier)
     monkeypatch.setattr(proposals, "mend_proposal", lambda proposal, *_: proposal)
     plain = exploring.calm_drive.PlainBowl(search.plain, frozenset())
-    track = BankedTrack(plain, block.ways, None, [0], 1.0)
+    track = TrackAtBank(plain, block.ways, None, [0], 1.0)
     proposal = proposals.Proposal(0, (), (), Move(MoveKind.NO_DEVICE))
     assert not list(exploring._try_and_mend(search, track, proposal))
     assert len(made) == trials
