@@ -25,7 +25,7 @@ from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, M
 from feederscrew.designing.policy import SearchPolicy
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import Attempt
-from feederscrew.designing.search import TrackAtBank, Candidate, ChainKey, Place, Search
+from feederscrew.designing.search import Candidate, ChainKey, Place, Search, TrackAtBank
 from feederscrew.designing.short_trials import find_denials, robust_run
 from feederscrew.feeding import stream
 from feederscrew.feeding.stream import Orientations

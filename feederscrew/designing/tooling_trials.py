@@ -28,7 +28,7 @@ from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.progress import SearchProgress
 from feederscrew.designing.proposals import equivalent_rows
 from feederscrew.designing.record import DesignRequest
-from feederscrew.designing.search import TrackAtBank, Candidate, Search
+from feederscrew.designing.search import Candidate, Search, TrackAtBank
 from feederscrew.designing.short_trials import SELDOM_SHARE, find_denials
 from feederscrew.feeding import stream
 from feederscrew.sorting.isolating import chain as static

@@ -30,7 +30,7 @@ from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.progress import SearchProgress, SearchStage
 from feederscrew.designing.proof import RobustRun
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
-from feederscrew.designing.search import TrackAtBank, Candidate, Search
+from feederscrew.designing.search import Candidate, Search, TrackAtBank
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
 from feederscrew.sorting.isolating.chain import Cut

@@ -14,7 +14,7 @@ from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.designing import calm_drive, exploring, proposals
 from feederscrew.designing.findings import Cause, Move, MoveKind
 from feederscrew.designing.record import Attempt, DesignRequest
-from feederscrew.designing.search import TrackAtBank, Candidate, Search
+from feederscrew.designing.search import Candidate, Search, TrackAtBank
 from feederscrew.trials.course import Fate
 
 PART = shapes.part(shapes.box(20, 12, 5))

@@ -14,7 +14,7 @@ from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.policy import USUAL_POLICY, SearchPolicy
 from feederscrew.designing.proof import RobustRun
 from feederscrew.designing.record import DesignRequest
-from feederscrew.designing.search import TrackAtBank, Search
+from feederscrew.designing.search import Search, TrackAtBank
 
 DESIGNS = Path(__file__).parents[2] / "docs" / "designs.csv"
 
