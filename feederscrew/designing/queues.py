@@ -18,6 +18,7 @@ FILLS = (
     FillLevel.LOW,
 )  # in turn: the fullest track first, for it fails most often
 LOOK_EVERY_S = 1.0  # [s] of each fill after which it is looked at
+KNOWN_AFTER_S = 60.0  # [s] of a fill for its figures alone, once another one is refused
 SLIGHT_S = 1e-6  # [s] rounding of a time
 USUAL_PARTS = 100  # right parts of a pure fill until it is settled: of which progress makes its guess
 
@@ -97,8 +98,9 @@ def follow_fills(
     ----------
     row : FollowedRow
     whole : bool
-        Each fill ends by its own parts, however slow it is. Without it all of them end as soon as one is
-        refused: the design does not hold, and it is not proved at the other fills.
+        Each fill ends by its own parts, however slow it is. Once one is refused, those after it are followed
+        for KNOWN_AFTER_S at the most: the design does not hold, and they only say how it does there. Without
+        it all of them end as soon as one is refused.
     running : dict, optional
         Queues of the same row, by their fills, that go on where they are. It gets those that are followed
         here.
@@ -123,23 +125,24 @@ def follow_fills(
         return tuple(queue_of_fill[fill] for fill in FillLevel if fill in queue_of_fill)
 
     seconds, going = min(fill_verdicts.FIRST_LOOK_S, row.longest), list(FILLS)
+    limit = row.longest
     while going:
         with _Fills(row, running, going, seconds) as followers:
             for fill in tuple(going):
                 try:
-                    row.say(fill, seconds)
+                    row.say(fill, min(seconds, limit))
                     for until in followers.times[fill]:
+                        if until > limit:
+                            followers.leave(fill)
+                            break
                         queue = queue_of_fill[fill] = followers.follow(fill, until)
                         state = row.judge(queue)
                         if state is FillState.REFUSED and not whole:
                             followers.stop()
-                            # what other cores followed further than was asked for is not gone on with
-                            for other in [name for name in running if name not in queue_of_fill]:
-                                del running[other]
-                            for other, seen in queue_of_fill.items():
-                                if other in running and running[other].time > seen.seconds + SLIGHT_S:
-                                    del running[other]
+                            _drop_unasked(running, queue_of_fill)
                             return found()
+                        if state is FillState.REFUSED:
+                            limit = min(limit, KNOWN_AFTER_S)
                         if state is not FillState.OPEN:
                             going.remove(fill)
                             break
@@ -156,7 +159,15 @@ def follow_fills(
         if seconds >= row.longest:
             break
         seconds = row.longest
+    _drop_unasked(running, queue_of_fill)
     return found()
+
+
+def _drop_unasked(running: dict[FillLevel, PartsQueue], seen: dict[FillLevel, FilledQueue]) -> None:
+    """Drop queues that other cores followed further than was asked for: they are not gone on with."""
+    for name in list(running):
+        if name not in seen or running[name].time > seen[name].seconds + SLIGHT_S:
+            del running[name]
 
 
 class _Fills:
@@ -181,6 +192,7 @@ class _Fills:
             last = max(math.ceil(seconds / LOOK_EVERY_S - SLIGHT_S), first)
             self.times[name] = [min(k * LOOK_EVERY_S, seconds) for k in range(first, last + 1)]
         self.stopped, self.pool = threading.Event(), None
+        self.left: set[FillLevel] = set()
         if row.jobs > 1 and len(going) > 1:
             self.counted: dict[FillLevel, fifo.SimpleQueue] = {name: fifo.SimpleQueue() for name in going}
             self.pool = pool = ThreadPoolExecutor(row.jobs)
@@ -197,6 +209,10 @@ class _Fills:
         self.stopped.set()
         if self.pool is not None:
             self.pool.shutdown(cancel_futures=True)
+
+    def leave(self, name: FillLevel) -> None:
+        """Follow a fill no further; its thread ends after the period that it is in."""
+        self.left.add(name)
 
     def follow(self, name: FillLevel, until: float) -> FilledQueue:
         """Return what a fill did until a time [s]."""
@@ -220,7 +236,7 @@ class _Fills:
         """Follow one fill through the round, in a thread."""
 
         def end_where_stopped(*_: int) -> None:
-            if self.stopped.is_set():
+            if self.stopped.is_set() or name in self.left:
                 raise KeyboardInterrupt
 
         try:
@@ -242,7 +258,7 @@ def is_complete(fills: Sequence[FilledQueue], longest: float) -> bool:
     ----------
     fills : sequence of FilledQueue
     longest : float [s]
-        The time of each at the most.
+        The time of each at the most; KNOWN_AFTER_S where one is refused.
 
     Returns
     -------
@@ -250,7 +266,9 @@ def is_complete(fills: Sequence[FilledQueue], longest: float) -> bool:
     """
     if len(fills) < len(FILLS):
         return False
+    states = [fill_verdicts.judge_fill(queue, 0.0, longest) for queue in fills]
+    needed = min(longest, KNOWN_AFTER_S) if FillState.REFUSED in states else longest
     return all(
-        queue.seconds > 0.99 * longest or fill_verdicts.judge_fill(queue, 0.0, longest) is not FillState.OPEN
-        for queue in fills
+        queue.seconds > 0.99 * needed or state is not FillState.OPEN
+        for queue, state in zip(fills, states, strict=True)
     )
