@@ -8,6 +8,7 @@ and SciPy's solver), aspects.py (meshes up to a million facets) and tooling.py (
 """
 
 import statistics
+import time
 from pathlib import Path
 
 import aspects
@@ -16,11 +17,33 @@ import numpy as np
 import speed
 import waits
 
+import feederscrew
+from feederscrew import bowl as bowls
+from feederscrew.arrivals.rounded_hull import shape_of_part
 from feederscrew.motion import conveying as answer
 from feederscrew.motion.operating_point import plain
+from feederscrew.resting.aspects import find, require_ground
+from feederscrew.sorting.orientations import orientations
+from feederscrew.trials.queue import PartsQueue
+from feederscrew.trials.supply import QueuePlan
 
 POINTS = 20_000
 PAIRS = 3
+PARTS = Path(__file__).parent.parent / "parts"
+QUEUE_SECONDS = 4.0
+LOOK_SECONDS = 0.1  # after which it is asked how many parts are on the track
+BOLTS = """
+drive: {amplitude: 0.184 mm, frequency: 100 Hz, vibration_angle: 15 deg}
+track: {climb: 3.5 deg, bank: 0 deg, radius: 150 mm, width: 34.2 mm}
+devices:
+  - narrowed track: 13.05 mm
+  - rails: {from: 3.65 mm, to: 12.2 mm, lead_in: {from: 2.9 mm, to: 12.9 mm, length: 47.1 mm, taper: 31.4 mm}}
+"""  # the chain of docs/designs.csv
+# name: part, bowl file, parts in the row, part-seconds a CPU second to reach
+QUEUES = {
+    "12 M8 bolts that touch, rails": ("hexbolt_m8x25", BOLTS, 12, 30),
+    "60 brackets that touch, bare track": ("lbracket_30x20x15", "", 60, 80),
+}
 
 
 def drops():
@@ -44,6 +67,27 @@ def points():
         yield waits.Row(what, wanted, POINTS / took, "a CPU second", beside, more=True)
 
 
+def queues(folder):
+    """Part-seconds a CPU second of queues, beside drops of the same part in the same run."""
+    for name, (stem, text, count, wanted) in QUEUES.items():
+        path = Path(folder) / "queue.yaml"
+        path.write_text(text)
+        part, bowl = feederscrew.load(PARTS / f"{stem}.stl"), bowls.read(path if text else None)
+        aspects = find(part)
+        every = orientations(part, aspects, bowl.track)
+        supply = every, np.full(len(every), 1.0 / len(every))
+        row = PartsQueue(part, bowl, aspects, supply, every, QueuePlan(count, 60.0, 0.0), 1)
+        row.follow(LOOK_SECONDS)  # compiles
+        part_seconds, start = 0.0, time.process_time()
+        while row.time < QUEUE_SECONDS:
+            row.follow(row.time + LOOK_SECONDS)
+            part_seconds += LOOK_SECONDS * row.crowd.is_on.sum()
+        rate = part_seconds / (time.process_time() - start)
+        drops, _ = speed.rates(shape_of_part(part, require_ground(part, aspects))[0], 1000)
+        beside = f"a part-second takes as long as {drops / rate:,.0f} drops of it"
+        yield waits.Row(f"queue of {name}", wanted, rate, "part-s a CPU second", beside, more=True)
+
+
 def facets(folder):
     """Aspects beside what any tool must pay: reading, checking, integrating, the hull; in turn."""
     for size, target in aspects.SMALL.items():
@@ -59,6 +103,7 @@ def facets(folder):
 def kernels(_call, folder):
     yield from drops()
     yield from points()
+    yield from queues(folder)
     yield from facets(folder)
 
 

@@ -18,8 +18,8 @@ FILLS = (
     FillLevel.LOW,
 )  # in turn: the fullest track first, for it fails most often
 LOOK_EVERY_S = 1.0  # [s] of each fill after which it is looked at
+KNOWN_AFTER_S = 60.0  # [s] of a fill for its figures alone, once another one is refused
 SLIGHT_S = 1e-6  # [s] rounding of a time
-REFUSED_S = 60.0  # [s] for which a fill is followed beside one that is refused whatever the rate
 USUAL_PARTS = 100  # right parts of a pure fill until it is settled: of which progress makes its guess
 
 
@@ -112,9 +112,9 @@ def follow_fills(
     ----------
     row : FollowedRow
     whole : bool
-        Each fill ends by its own parts, however slow it is; beside one that is refused, at ``REFUSED_S`` at
-        the latest. Without it all of them end as soon as one is refused: the design does not hold, and it is
-        not proved at the other fills.
+        Each fill ends by its own parts, however slow it is. Once one is refused, those after it are followed
+        for KNOWN_AFTER_S at the most: the design does not hold, and they only say how it does there. Without
+        it all of them end as soon as one is refused.
     running : dict, optional
         Queues of the same row, by their fills, that go on where they are. It gets those that are followed
         here.
@@ -139,23 +139,24 @@ def follow_fills(
         return tuple(queue_of_fill[fill] for fill in FillLevel if fill in queue_of_fill)
 
     seconds, going = min(fill_verdicts.FIRST_LOOK_S, row.longest), list(FILLS)
-    is_refused = False
+    limit = row.longest
     while going:
         with _Fills(row, running, going, seconds, queue_of_fill) as followers:
             for fill in tuple(going):
                 try:
-                    row.say(fill, seconds)
+                    row.say(fill, min(seconds, limit))
                     for until in followers.times[fill]:
-                        if is_refused and until > REFUSED_S + SLIGHT_S:
-                            going.remove(fill)
+                        if until > limit:
+                            followers.leave(fill)
                             break
                         queue = queue_of_fill[fill] = followers.follow(fill, until)
                         state = row.judge(queue)
                         if state is FillState.REFUSED and not whole:
                             followers.stop()
-                            _forget_further(running, queue_of_fill)
+                            _drop_unasked(running, queue_of_fill)
                             return found()
-                        is_refused = is_refused or state is FillState.REFUSED
+                        if state is FillState.REFUSED:
+                            limit = min(limit, KNOWN_AFTER_S)
                         if state is not FillState.OPEN:
                             going.remove(fill)
                             break
@@ -172,15 +173,14 @@ def follow_fills(
         if seconds >= row.longest:
             break
         seconds = row.longest
-    if is_refused:
-        _forget_further(running, queue_of_fill)
+    _drop_unasked(running, queue_of_fill)
     return found()
 
 
-def _forget_further(running: dict[FillLevel, PartsQueue], seen: dict[FillLevel, FilledQueue]) -> None:
-    """Drop the queues that other cores followed further than was asked for: they are not gone on with."""
-    for name, queue in list(running.items()):
-        if name not in seen or queue.time > seen[name].seconds + SLIGHT_S:
+def _drop_unasked(running: dict[FillLevel, PartsQueue], seen: dict[FillLevel, FilledQueue]) -> None:
+    """Drop queues that other cores followed further than was asked for: they are not gone on with."""
+    for name in list(running):
+        if name not in seen or running[name].time > seen[name].seconds + SLIGHT_S:
             del running[name]
 
 
@@ -208,6 +208,7 @@ class _Fills:
             last = max(math.ceil(seconds / LOOK_EVERY_S - SLIGHT_S), first)
             self.times[name] = [min(k * LOOK_EVERY_S, seconds) for k in range(first, last + 1)]
         self.stopped, self.pool = threading.Event(), None
+        self.left: set[FillLevel] = set()
         if row.jobs > 1 and len(going) > 1:
             self.counted: dict[FillLevel, fifo.SimpleQueue] = {name: fifo.SimpleQueue() for name in going}
             self.pool = pool = ThreadPoolExecutor(row.jobs)
@@ -224,6 +225,10 @@ class _Fills:
         self.stopped.set()
         if self.pool is not None:
             self.pool.shutdown(cancel_futures=True)
+
+    def leave(self, name: FillLevel) -> None:
+        """Follow a fill no further; its thread ends after the period that it is in."""
+        self.left.add(name)
 
     def follow(self, name: FillLevel, until: float) -> FilledQueue:
         """Return what a fill did until a time [s]."""
@@ -251,7 +256,7 @@ class _Fills:
         """Follow one fill through the round, in a thread."""
 
         def end_where_stopped(*_: int) -> None:
-            if self.stopped.is_set():
+            if self.stopped.is_set() or name in self.left:
                 raise KeyboardInterrupt
 
         try:
@@ -273,7 +278,7 @@ def is_complete(fills: Sequence[FilledQueue], longest: float) -> bool:
     ----------
     fills : sequence of FilledQueue
     longest : float [s]
-        The time of each at the most.
+        The time of each at the most; KNOWN_AFTER_S where one is refused.
 
     Returns
     -------
@@ -281,7 +286,9 @@ def is_complete(fills: Sequence[FilledQueue], longest: float) -> bool:
     """
     if len(fills) < len(FILLS):
         return False
+    states = [fill_verdicts.judge_fill(queue, 0.0, longest) for queue in fills]
+    needed = min(longest, KNOWN_AFTER_S) if FillState.REFUSED in states else longest
     return all(
-        queue.seconds > 0.99 * longest or fill_verdicts.judge_fill(queue, 0.0, longest) is not FillState.OPEN
-        for queue in fills
+        queue.seconds > 0.99 * needed or state is not FillState.OPEN
+        for queue, state in zip(fills, states, strict=True)
     )

@@ -385,6 +385,7 @@ class PartsQueue:
         self.track = lay_out_track(bowl, self.orientations, bowl.devices, self._room(spacing))
         self.devices = [device for device in bowl.devices if device.action.has_place]
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
+        self.stretches = self.windows.tolist()
         self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
         self.looks = Looks(poses, solid, length, principal, bowl.track.radius)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
@@ -519,13 +520,16 @@ class PartsQueue:
         counts.free_ways += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
         forces = self.crowd.forces
         counts.touch_shares.append((forces[lying, BEHIND] > 0.0).mean())
-        for n in lying.tolist():  # parts that have come to lie on others
-            over = reach[n][2] - self.track.level_at(after[n] * length) / length
-            climbed = bool(forces[n, BELOW] > CARRIED_SHARE and over > CLIMB_HEIGHT)
+        # parts that have come to lie on others; what is asked of each part in each period is asked of lists
+        levels = self.track.levels[np.searchsorted(self.track.changes, after * length, side="right")]
+        below, heights, places = forces[:, BELOW].tolist(), (levels / length).tolist(), after.tolist()
+        for n in lying.tolist():
+            over = reach[n][2] - heights[n]
+            climbed = below[n] > CARRIED_SHARE and over > CLIMB_HEIGHT
             counts.climbs += climbed and not self.on_others[n]
             self.on_others[n] = climbed
         for n in order:
-            self._count(n, self.outcome_of(n, after[n], reach, fallen[n]), after[n], reach)
+            self._count(n, self.outcome_of(n, places[n], reach, fallen[n]), places[n], reach)
         self.enter(reach)
 
     def outcome_of(self, n: int, place: float, reach: Reaches, has_fallen: bool) -> QueueOutcome:
@@ -556,7 +560,7 @@ class PartsQueue:
             return QueueOutcome.GOES_ON
         if stood >= BACKED_UP_SECONDS and self._is_pushed_off(n, rear, front):
             return QueueOutcome.BACKED_UP
-        if not len(self._devices_at(front)):
+        if not self._devices_at(front):
             return QueueOutcome.STANDS
         # Whether it is what holds the others up: nothing stands close before it.
         ahead = [reach[m][0] - front for m in reach if m != n and self.crowd.is_on[m] and reach[m][1] > front]
@@ -583,15 +587,16 @@ class PartsQueue:
                 for device in devices:
                     self.counts.note_pressure(device, self.crowd.forces[n, BEHIND])
                 if outcome is QueueOutcome.JAMS:
-                    self.counts.note_jam(self.entry_rows[n], int(devices[0]) + 1)
+                    self.counts.note_jam(self.entry_rows[n], devices[0] + 1)
                     self._take_off(n)
                     for other, (_, end, _) in reach.items():  # what it held up has not stood by itself
                         if end <= front:
                             self.since[other] = self.time
 
-    def _devices_at(self, front: float) -> Ints:
-        """The devices (K,) at whose stretch a part stands, by the place of its front [L]."""
-        return np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
+    def _devices_at(self, front: float) -> list[int]:
+        """The devices at whose stretch a part stands, by the place of its front [L]."""
+        stretches = enumerate(self.stretches)
+        return [k for k, (begin, end) in stretches if begin < front < end + STANDING_WAY]
 
     def _way_up(self, n: int) -> tuple[int, int]:
         """The pose and the aspect in which a part leaves, as if the track were at its first level."""

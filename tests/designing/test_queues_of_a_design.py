@@ -527,6 +527,21 @@ def test_each_fill_ends_as_soon_as_it_is_settled_and_no_sooner():
 
 
 @pytest.mark.parametrize("jobs", [1, 3])
+@pytest.mark.parametrize(("fakes", "seconds"), [
+    ((0.8, 2.0, (1.2, 24.5)), [60.0, 50.0, 25.0]),  # 99 parts by 50 s; 48 by 60 s, and no more of them
+    ((0.8, (1.2, 9.0), (1.2, 70.5)), [60.0, 9.0, 60.0]),  # it is refused before the others go on
+])  # fmt: skip
+def test_after_a_refused_fill_the_others_are_followed_for_their_figures_alone(fakes, seconds, jobs):
+    running = {}
+    fills, made = followed(*fakes, whole=True, jobs=jobs, running=running)
+    assert [each for _, each, _ in fills] == seconds
+    assert queues.is_complete(made, 600.0)
+    assert all(running[name].time == each for name, each, _ in fills if name in running)
+    open_for = [replace(made[0], jams=0, seconds=seconds, right=40, left=40) for seconds in (55.0, 60.0)]
+    assert [queues.is_complete([low, *made[1:]], 600.0) for low in open_for] == [False, True]
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
 @pytest.mark.parametrize(("fakes", "fills"), [
     ((2.0, (2.0, 9.0), 2.0), [("normal", 9.0, False), ("high", 15.0, False)]),  # a jam where it is seen
     # surely too slow, which is said after 20 s

@@ -211,7 +211,8 @@ def _is_lowest(work: Workspace, solid: TrueSolid, k: int, m: int, p: Triple, sla
     """Tell whether corner k, at a place, is the lowest of those around it over triangle m, by a slack [1]."""
     for n in range(solid.firsts[k], solid.firsts[k + 1]):
         away = subtract(place_of(work.frame, solid.corners[solid.neighbours[n]]), p)
-        if dot(away, solid.normals[m]) < -slack * math.sqrt(dot(away, away)):
+        height = dot(away, solid.normals[m])
+        if height < 0.0 and height < -slack * math.sqrt(dot(away, away)):
             return False
     return True
 

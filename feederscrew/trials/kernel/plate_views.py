@@ -178,7 +178,8 @@ def is_over_face(solid: TrueSolid, k: int, x: float, y: float, z: float, margin:
     for i in range(3):
         p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]
         along = subtract(q, p)
-        if dot(n, cross(along, subtract((x, y, z), p))) < -margin * math.sqrt(dot(along, along)):
+        inside = dot(n, cross(along, subtract((x, y, z), p)))
+        if inside < 0.0 and inside < -margin * math.sqrt(dot(along, along)):
             return False
     return True
 
