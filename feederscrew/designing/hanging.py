@@ -239,8 +239,9 @@ class RailsSearch:
         """Yield what changes a chain whose queue jams, by what stood there and at which device.
 
         Another orientation is returned before the rails. Where one that hangs stands at a cut before them,
-        that cuts less, or another kind of cut takes its place; at the rails it gets a wider slot and a longer
-        lead-in, at the blade a higher blade.
+        that cuts less, or another kind of cut takes its place. At the rails it gets a wider slot and a longer
+        lead-in; at the blade a higher blade, and where that stands higher already, a longer lead-in and a
+        wider slot.
 
         Parameters
         ----------
@@ -281,9 +282,12 @@ class RailsSearch:
         longer = [(MoveKind.LEAD_IN, x, replace(setting, lead=setting.lead * x)) for x in LEADS[:1]]
         higher = [(MoveKind.BLADE_HEIGHT, x, replace(setting, blade=setting.blade + x)) for x in BLADES_M]
         cuts_before = [(MoveKind.CUTS_BEFORE, 0.0, setting), (MoveKind.OTHER_CUTS, 0.0, setting)]
+        is_raised = setting.blade > 0.0
         tries = [
             *(reversed(cuts_before) if stands_at_cut else cuts_before),
-            *(higher if at_blade else ()),
+            *(higher if at_blade and not is_raised else ()),
+            # below a blade that stands high, what hangs stands where it has not sunk all the way
+            *((*longer, *wider) if at_blade and is_raised else ()),
             *((*wider, *longer) if at_rails else ()),
         ]
         self.seen.add(proposal.chain)

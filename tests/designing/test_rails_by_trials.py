@@ -149,6 +149,12 @@ def test_what_stands_in_a_queue_says_what_is_changed(lying, rails_search):
     assert MoveKind.BLADE_HEIGHT in kinds and MoveKind.WIDER_SLOT not in kinds
     higher = at_blade[kinds.index(MoveKind.BLADE_HEIGHT)]
     assert higher.devices[-1].limit > proposal.devices[-1].limit
+    # below a blade that was raised stands what has not sunk all the way
+    proposal = higher
+    kinds = [changed.move.kind for changed in changes((own, blade, "wiper", 1))]
+    assert MoveKind.BLADE_HEIGHT not in kinds
+    assert kinds.index(MoveKind.LEAD_IN) < kinds.index(MoveKind.WIDER_SLOT)
+    proposal = first.proposal
     before = {MoveKind.CUTS_BEFORE, MoveKind.OTHER_CUTS}
     for place in (rails, blade):
         assert {changed.move.kind for changed in changes((other, place, "", 1))} <= before
