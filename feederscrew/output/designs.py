@@ -57,13 +57,15 @@ from feederscrew.machine.sheet import MachineSheet
 from feederscrew.motion.conveying import answer, throw_number
 from feederscrew.motion.hop import HOP_COLUMNS, hop
 from feederscrew.output import next_tries, part_facts, style, tables
-from feederscrew.output.tooling import settings_lines
+from feederscrew.output.tooling import comment, settings_lines
 from feederscrew.output.trial.tables import filled_entry
 from feederscrew.part.record import Part
 from feederscrew.sorting.isolating.chain import OutcomeKind
+from feederscrew.sorting.tooled_track import TooledTrack, lay_out
 from feederscrew.trials.long_ride import LONG_RIDE_COLUMNS, RiddenOrientation
 
 shading = heavy("feederscrew.output.shading")
+tooling_drawing = heavy("feederscrew.output.tooling_drawing")
 
 SAID_FIRST = {  # or elsewhere
     "drive_kind",
@@ -585,8 +587,22 @@ def acceptance(study: DesignStudy) -> Frame:
             if value is not None:
                 line = SheetLine(name, "", unit, None, None, float(value))
                 lines.append(replace(line, low=line.demand[0], high=line.demand[1]))
+    strip = _tooled(study)
+    chain, width = ((), 0.0) if strip is None else (strip.devices, strip.width)
+    for number, placed in enumerate(chain, start=1):
+        if placed.features.hangs:  # one millimetre of web stops every part
+            plan = "; ".join(placed.shop_work(width))
+            web = f"web left across the slot of {number} {placed.device.kind}"
+            lines.append(SheetLine(web, "", "mm", None, 0.0, 0.0, plan=plan))
     cells = ([_cell(getattr(line, name)) for name in acceptance_sheet.SHEET_COLUMNS] for line in lines)
     return Frame.of_cells(acceptance_sheet.SHEET_COLUMNS, cells)
+
+
+def _tooled(study: DesignStudy) -> TooledTrack | None:
+    """The track of a design's bowl with its devices; None without devices."""
+    if study.bowl is None or study.tooling is None or not study.bowl.devices:
+        return None
+    return lay_out(study.bowl.track, study.bowl.devices, study.tooling.orientations)
 
 
 def _cell(value: str | float | None) -> str:
@@ -692,7 +708,13 @@ def bowl_file(study: DesignStudy, settings: Sequence[Setting], sheet: MachineShe
     lines += settings_lines([s for s in settings if s.is_own and s.key.name not in set_here], own_lines)
     if bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
-        lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in bowl.devices]
+        strip = _tooled(study)
+        none = [""] * len(bowl.devices)
+        shop = none if strip is None else tooling_drawing.shop_comments(strip, bowl.devices)
+        lines += [
+            f"  - {item.kind}: {devices.value_text(item)}{comment(words)}"
+            for item, words in zip(bowl.devices, shop)
+        ]
     # what commands read from these lines is the bowl that was tried, in every value
     devices.check_written(bowl.devices, name)
     bowl_read = bowls.record(reading.settings_of_text("\n".join(lines) + "\n", name))

@@ -81,21 +81,23 @@ def file_name(name: str, mark: str) -> str:
     return name if mark in ("", CONDITION_MARK) else f"{path.stem}_falls_short{path.suffix}"
 
 
-def mark_step(data: bytes, mark: str) -> bytes:
-    """Return a STEP file whose head and products bear a mark, in letters of ASCII without an apostrophe.
+def mark_step(data: bytes, *words: str) -> bytes:
+    """Return a STEP file whose head and products bear words, in letters of ASCII without an apostrophe.
 
     Parameters
     ----------
     data : bytes
-    mark : str
+    *words : str
+        A mark; what the shop must do. Empty ones are left out.
 
     Returns
     -------
     bytes
     """
-    if not mark:
+    said = [each for each in words if each]
+    if not said:
         return data
-    end = f" - {mark}'".encode("ascii")
+    end = f" - {' - '.join(said)}'".encode("ascii")
     data = STEP_HEAD.sub(rb"\1" + end, data)
     return STEP_PRODUCT.sub(rb"\1" + end + rb",'\2" + end, data)
 

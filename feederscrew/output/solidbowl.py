@@ -42,7 +42,7 @@ def offers(
     tuple of Offer
         Empty without a solid.
     """
-    from feederscrew.output import beside_bowl, bowl_sheet, solid_files, solidbowl_views
+    from feederscrew.output import beside_bowl, bowl_sheet, solid_files, solidbowl_views, tooling_drawing
 
     solid, order, mark = study.solid, study.order, marking.of_trial(trial, mark)
     if solid is None or order is None:
@@ -62,7 +62,9 @@ def offers(
         pieces += [file(f"bowl_{piece.name}.stl", solid_files.bowl_stl, piece) for piece in of_pieces]
         pieces.append(file("bowl_segments.3mf", solid_files.segments_3mf, of_pieces, f"{title}, in segments"))
     if solid.step is not None:
-        pieces.append(file("bowl.step", marking.mark_step, solid.step.data))
+        strip = solid.plan.stretch
+        shop = "" if strip is None else tooling_drawing.shop_names(strip)
+        pieces.append(file("bowl.step", marking.mark_step, solid.step.data, shop))
     alt = "The bowl, parts on its track"
     beside = beside_bowl.find_beside(study, trial)
     stations = () if beside is None else (offer.table("bowl_stations.csv", beside_bowl.table, beside),)

@@ -500,11 +500,27 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
         sections["track"] = [f"  {name}: {text}  # as the design asks for" for name, text in track.items()]
     lines += settings_lines(own, sections)
     lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
-    lines += [f"  - {device.kind}: {value_text(device)}" for device in design.before]
-    for cut in design.cuts:
-        doubt = f"  # {QUASI_STATIC}" if cut.device.action.turns else ""
-        lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{doubt}"]
+    strip = lay_out(study.bowl.track, design.devices, study.orientations)
+    for device, shop in zip(design.devices, tooling_drawing.shop_comments(strip, design.devices)):
+        words = [QUASI_STATIC * device.action.turns, shop]
+        lines += [f"  - {device.kind}: {value_text(device)}{comment(*words)}"]
     return "\n".join(lines) + "\n"
+
+
+def comment(*words: str) -> str:
+    """Return words as a comment behind a line of a bowl file; '' of none.
+
+    Parameters
+    ----------
+    *words : str
+        Empty ones are left out.
+
+    Returns
+    -------
+    str
+    """
+    said = "; ".join(each for each in words if each)
+    return f"  # {said}" if said else ""
 
 
 def settings_lines(settings: Sequence[Setting], sections: Mapping[str, Sequence[str]]) -> list[str]:
@@ -662,7 +678,8 @@ def _draw_section(
 def _step(section: Callable[[], TooledTrack], mark: str) -> bytes:
     from feederscrew.cad.exact import exact_file
 
-    return marking.mark_step(exact_file.section_file(section()), mark)
+    strip = section()
+    return marking.mark_step(exact_file.section_file(strip), mark, tooling_drawing.shop_names(strip))
 
 
 TOOLING_VIEW = RecordView(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew.base.arrays import Floats
 from feederscrew.base.units import DEG, MM
+from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.devices.features import Bore, box_ring
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
@@ -447,6 +448,41 @@ def shop_table(strip: TooledTrack) -> Frame:
         for work in placed.shop_work(strip.width)
     ]
     return Frame.of_rows(rows, ("device", "what the shop does"))
+
+
+def shop_comments(strip: TooledTrack, devices: Sequence[Device]) -> list[str]:
+    """Return what the shop must do to the cuts of each device, for its line of a bowl file.
+
+    Parameters
+    ----------
+    strip : TooledTrack
+    devices : sequence of Device
+        Those that were laid out, among others without a place.
+
+    Returns
+    -------
+    list of str
+        One for each device; '' where there is nothing to say.
+    """
+    works = {id(placed.device): placed.shop_work(strip.width) for placed in strip.devices}
+    return ["; ".join(works.get(id(device), ())) for device in devices]
+
+
+def shop_names(strip: TooledTrack) -> str:
+    """Return the same in few words, for the names of bodies: '1 rails: open at the outlet'.
+
+    Parameters
+    ----------
+    strip : TooledTrack
+
+    Returns
+    -------
+    str
+        '' where there is nothing to say.
+    """
+    devices = enumerate(strip.devices, start=1)
+    works = [(f"{number} {placed.device.kind}", placed.shop_work(strip.width)) for number, placed in devices]
+    return "; ".join(f"{name}: {', '.join(work.short for work in own)}" for name, own in works if own)
 
 
 def edges(placed: PlacedDevice, width: float) -> list[tuple[str, Floats]]:

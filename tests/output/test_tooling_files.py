@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+import design_counts
 import ezdxf
 import numpy as np
 import pytest
@@ -22,7 +23,15 @@ from feederscrew.bowl.devices.features import Bore, Features, ShopWork
 from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.cad import section as printed
 from feederscrew.feeding.rate import rate
-from feederscrew.output import shading, solid_files, tooling_drawing, tooling_figures, tooling_views
+from feederscrew.output import (
+    designs,
+    marking,
+    shading,
+    solid_files,
+    tooling_drawing,
+    tooling_figures,
+    tooling_views,
+)
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.sorting import device_passages
@@ -283,7 +292,8 @@ def test_the_slot_that_parts_hang_in_is_open_at_the_outlet(behind):
     more = {"wiper": {"limit": 14e-3}, "rails": {"span": (2.4e-3, 6.3e-3)}}
     spans = [(2.1e-3, 6.6e-3), *((2.4e-3, 6.3e-3) for kind in behind if kind == "rails")]
     devices = [make_device("rails", "here", span=spans[0])]
-    strip = lay_out(track, devices + [make_device(kind, "here", **more[kind]) for kind in behind], every)
+    devices += [make_device(kind, "here", **more[kind]) for kind in behind]
+    strip = lay_out(track, devices, every)
     file = ezdxf.read(io.StringIO(tooling_drawing.dxf(strip).decode()))
     cuts = [one for one in file.modelspace().query("LWPOLYLINE") if one.dxf.layer.startswith("CUT")]
     assert max(p[0] for cut in cuts for p in cut.get_points()) == pytest.approx(1e3 * strip.length, abs=1e-6)
@@ -291,6 +301,17 @@ def test_the_slot_that_parts_hang_in_is_open_at_the_outlet(behind):
     listed = [row[-1] for row in tooling_drawing.device_rows(strip.devices, strip.width, lambda s: s)]
     ends = [ShopWork.RUNS_INTO_NEXT] * (len(spans) - 1) + [ShopWork.OPEN_AT_OUTLET]
     assert [words for words in listed if words in (ShopWork.RUNS_INTO_NEXT, ShopWork.OPEN_AT_OUTLET)] == ends
+    # So do the bowl file behind the device, the body that a CAD program opens, and what a buyer signs.
+    bowl = replace(bowls.default(), devices=tuple(one.rewritten() for one in devices), track=track)
+    design = design_counts.proved(screw, bowl, tooling=SimpleNamespace(orientations=every))
+    lines = [line for line in designs.bowl_file(design, ()).splitlines() if line.startswith("  - rails")]
+    for line, end in zip(lines, ends, strict=True):
+        assert f"# {end}; {ShopWork.YOKE_BELOW}" in line
+    names = tooling_drawing.shop_names(strip)
+    assert names.startswith(f"1 rails: {ends[0].short}, {ShopWork.YOKE_BELOW.short}")
+    assert names.encode() in marking.mark_step(b"FILE_DESCRIPTION(('x'),'2;1');", "", names)
+    webs = [row for row in designs.acceptance(design).rows() if row["quantity"].startswith("web left")]
+    assert [(row["high"], row["computed"]) for row in webs] == [("0", "0")] * len(spans)
     # Rays from above find no web: between the rails from where they begin, and past the end of the track.
     vertices, faces = printed.solid(strip)
     mesh = trimesh.Trimesh(vertices, faces)

@@ -36,6 +36,11 @@ class ShopWork(enum.StrEnum):
     OPEN_AT_EDGE = "open at the free edge"
     OPEN_AT_WALL = "cut to the wall"
 
+    @property
+    def short(self) -> str:
+        """Its first words: 'open at the outlet'."""
+        return self.value.partition(":")[0].partition(",")[0]
+
 
 @dataclass(frozen=True, eq=False)
 class TrackOpening:
