@@ -98,7 +98,7 @@ def lay_out_track(
     levels, changes = [0.0], []
     for item in placed:
         drop = item.features.drop
-        levels.append(levels[-1] - (0.0 if drop is None else drop.height * float(np.cos(item.bank))))
+        levels.append(levels[-1] - item.lower[0])
         changes.append(item.begin + (0.0 if drop is None or drop.aside <= 0.0 else item.features.length))
     # The bare track has the bowl's climb: a spacing section leads down from its own place on.
     first = [replace(slope, climb=None) for slope in staging.entry_slopes(devices, track, orientations)]

@@ -81,6 +81,13 @@ class Placement:
     climb: float = 0.0  # [rad]
     over: tuple[float | None, ...] = ()  # [m] of each of its slopes, over which the track comes to lean so
 
+    @property
+    def lower(self) -> tuple[float, float]:
+        """By how much [m] the track goes down at it, and outwards: a drop is upright, the plane is not."""
+        drop = self.features.drop
+        height = 0.0 if drop is None else drop.height
+        return height * float(np.cos(self.bank)), height * float(np.sin(self.bank))
+
 
 @dataclass(frozen=True, eq=False)
 class Watch:
@@ -231,15 +238,14 @@ def stage_placed(
     here = Placement(features, openings, 0.0, ends[1], bank, float(tooled.climb_at(placed.begin)), over)
     blows = place_air([here], track, orientations)
     blows = replace(blows, slopes=(*slopes, *blows.slopes))
-    height = 0.0 if placed.drop is None else placed.drop.height
     return Stage(
         placed.device,
         *build_track([here], track, size, ends, slot),
         begin=begin,
         exit=beyond,
         cut=(0.0, features.length),
-        drop=height * float(np.cos(bank)),
-        aside=height * float(np.sin(bank)),
+        drop=here.lower[0],
+        aside=here.lower[1],
         leaves_hanging=features.hangs or bool(slot),
         air=blows,
         size=size,
@@ -412,10 +418,10 @@ def build_track(
             last = item.last if drop.aside <= 0.0 else item.begin + drop.length
             depth = drop.height + TRACK_DEPTH_M
             plates.append(_floor([*holes, *slots], track, size, ends, (first, last), (level, aside), depth))
-            lower = drop.height * float(np.cos(item.bank)), drop.height * float(np.sin(item.bank))
             if drop.aside > 0.0:
                 raised.append(_ramp(drop, (item.bank, item.climb), track, size, last, level, aside))
-            level, aside, first, holes = level - lower[0], aside - lower[1], item.begin - TRACK_DEPTH_M, []
+            level, aside = level - item.lower[0], aside - item.lower[1]
+            first, holes = item.begin - TRACK_DEPTH_M, []
     plates.append(_floor([*holes, *slots], track, size, ends, (first, ends[1]), (level, aside)))
     # All as records, the plates with boxes around their borders.
     rows, borders, count = [], [], 0
@@ -594,9 +600,7 @@ def place_air(placements: Sequence[Placement], track: Track, orientations: Seque
             watches.append(Watch(place, nozzles, features.sensor, slice(first, len(rows)), seconds))
         for slope, over in zip(features.slopes, item.over or (None,) * len(features.slopes)):
             slopes.append(PlacedSlope(start + slope.begin, slope.climb, slope.bank, slope.wall, over))
-        if features.drop is not None:
-            level -= features.drop.height * float(np.cos(item.bank))
-            aside -= features.drop.height * float(np.sin(item.bank))
+        level, aside = level - item.lower[0], aside - item.lower[1]
     return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
 
 
