@@ -5,9 +5,10 @@ from collections.abc import Iterable, Iterator
 from types import ModuleType
 
 import numpy as np
+import shapely
 
-from feederscrew.base.arrays import Floats, Values
-from feederscrew.bowl.devices.features import TrackOpening
+from feederscrew.base.arrays import Floats, Points, Values
+from feederscrew.bowl.devices.features import BEYOND_TRACK_M, TrackOpening
 from feederscrew.cad.facets import Body
 from feederscrew.cad.plan import CONICAL, DIP, FULL_TURN_RAD, BowlPlan
 from feederscrew.sorting.tooled_track import GrooveStretch
@@ -316,16 +317,45 @@ def yokes(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     -------
     list of Body [mm]
     """
-    solid, plate = [], plan.material.plate
+    solid = []
     for s in yoke_places(plan):
-        ends, wall = np.array([s, s + YOKE]), np.full(2, TRACK_PIECE_OVERLAP_M)
-        foot, bank = plan.path.height(ends), plan.path.bank_at(ends)
-        across, low = plan.width * np.cos(bank), foot[0] - plate - plan.hanging - YOKE
-        out = np.stack([-across, wall, wall, -across], axis=-1)
-        up = foot[:, None] - 0.5 * plate - out[:, 2:] * np.tan(bank)[:, None]
-        sections = np.stack([out, np.hstack([np.full((2, 2), low), up])], axis=-1)
-        solid.append(kit.swept([(sections, frames(plan, ends))]))
+        ends = np.array([s, s + YOKE])
+        solid.append(kit.swept([(_yoke_sections(plan, ends), frames(plan, ends))]))
     return solid
+
+
+def _yoke_sections(plan: BowlPlan, s: Floats) -> Floats:
+    """Sections (M, 4, 2) [m] of a yoke: outwards from the wall's face, and height; one foot for all."""
+    wall, plate = np.full(len(s), TRACK_PIECE_OVERLAP_M), plan.material.plate
+    foot, bank = plan.path.height(s), plan.path.bank_at(s)
+    across, low = plan.width * np.cos(bank), foot[0] - plate - plan.hanging - YOKE
+    out = np.stack([-across, wall, wall, -across], axis=-1)
+    up = foot[:, None] - 0.5 * plate - out[:, 2:] * np.tan(bank)[:, None]
+    return np.stack([out, np.hstack([np.full((len(s), 2), low), up])], axis=-1)
+
+
+def yoke_outline(plan: BowlPlan, s: float) -> Points:
+    """Return a yoke seen along the track, where a slot that parts hang in is at a place.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    s : float [m]
+        Length along the wall.
+
+    Returns
+    -------
+    (K, 2) float [m]
+        Outwards from the wall's face, and height over the floor's edge; empty where there is no slot.
+    """
+    here = [slot for slot in _openings(plan, hang=True) if slot.begin <= s - plan.first <= slot.end]
+    if not here or here[-1].span is None:
+        return np.empty((0, 2))
+    near, far = np.array(here[-1].span) * np.cos(plan.path.bank_at(s))
+    deep = float(plan.path.height(s)) - plan.material.plate - plan.hanging
+    free = shapely.box(-far, deep, -near, deep + BEYOND_TRACK_M)
+    yoke = shapely.Polygon(_yoke_sections(plan, np.array([s]))[0])
+    return shapely.get_coordinates(yoke.difference(free).exterior)[:-1]
 
 
 def yoke_places(plan: BowlPlan) -> tuple[float, ...]:

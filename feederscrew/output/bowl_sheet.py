@@ -31,7 +31,7 @@ from feederscrew.output.drafting import FRAME, Drawing, scale_words
 from feederscrew.output.marking import SheetFields, of_trial
 from feederscrew.output.outlet_poses import OutletPoses, find_outlet_poses
 from feederscrew.output.tooling_drawing import EDGES, View
-from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack
+from feederscrew.sorting.tooled_track import TooledTrack
 
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
 VIEW_ROOM = 134.0, 56.0  # [mm] of paper for the bowl across, and upright in each of two views
@@ -223,25 +223,13 @@ def _draw_side_views(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale:
     text = f"wall {sizes.wall / MM:.3g}, floor {sizes.floor / MM:.3g} at {DOME / DEG:.3g}°, track {plate:.3g}"
     text += f"; outlet {far:.4g} over the floor's edge"
     # a yoke of the inner rail, where A-A cuts the rails
-    plan, rails = solid.plan, _first_rails(solid.plan)
+    plan = solid.plan
     angle = (plan.turned if plan.left else -plan.turned) % (2.0 * np.pi)
     s = float(plan.path.at(angle - 2.0 * np.pi if angle > 1e-9 else 0.0))
-    if rails is not None and s >= plan.first + rails.span[0]:
-        outer, top = float(plan.path.wall_radius(s)), float(plan.path.height(s)) - plan.material.plate
-        deep, foot = top - plan.hanging, top - plan.hanging - track.YOKE
-        near, far_edge = (outer - edge for edge in rails.features.slot)
-        inner = outer - plan.width
-        yoke = [
-            (outer, top),
-            (outer, foot),
-            (inner, foot),
-            (inner, top),
-            (far_edge, top),
-            (far_edge, deep),
-            (near, deep),
-            (near, top),
-        ]
-        drawing.outline(_to_paper(yoke, at, scale), "HIDDEN")
+    yoke = track.yoke_outline(plan, s)
+    if len(yoke):
+        outer = yoke + [float(plan.path.wall_radius(s)), 0.0]
+        drawing.outline(_to_paper(outer, at, scale), "HIDDEN")
         text += "; dashed: yoke of the inner rail"
     drawing.text(at[0], low - 8.0, text, 2.2, "center")
     # below it towards the outlet, from outside
@@ -263,12 +251,6 @@ def _draw_side_views(drawing: Drawing, solid: BowlSolid, sizes: Measures, scale:
     size = min(72.0 / (most - least)[0], 66.0 / (most - least)[1])
     _draw_view(drawing, (pieces - 0.5 * (least + most)) * size + [371.0, 244.0])
     drawing.text(335.0, 281.0, "not to scale", 2.2)
-
-
-def _first_rails(plan: BowlPlan) -> PlacedDevice | None:
-    """The first rails that parts hang between, or None."""
-    devices = plan.stretch.devices if plan.stretch is not None else ()
-    return next((placed for placed in devices if placed.features.hangs), None)
 
 
 def _draw_springs(drawing: Drawing, bowl: Bowl, outlet: float) -> None:
@@ -494,7 +476,7 @@ def draw_devices(
         '2 of 5'
     """
     length = stretch.length
-    if _first_rails(plan) is not None:  # with the outlet
+    if stretch.hangs:  # with the outlet
         length = min(plan.path.end - plan.first + plan.outlet, 2.0 * length)
     scale = min(_scale(length / MM, 330.0), _scale(plan.width / MM, 45.0))
     drawing.new_sheet()

@@ -242,8 +242,11 @@ def test_edges_of_the_drawings(case, name):
     for placed in tooled.devices:
         if placed.drop is not None:
             layer = "LEDGE" if placed.drop.aside > 0.0 else "STEP"
-            foot = placed.begin, placed.drop.aside
-            assert min(np.abs(ring.min(axis=0) - foot).max() for ring in rings[layer]) < NEAR
+            foot = [placed.begin, placed.drop.aside]
+            line = min(rings[layer], key=lambda ring: abs(ring[:, 0].min() - foot[0]))
+            assert np.abs(line.min(axis=0) - foot).max() < NEAR
+            if placed.drop.aside > 0.0:
+                assert abs(line[:, 0].max() - placed.begin - placed.drop.length) < NEAR
     blades = [ring for placed in tooled.devices for ring in placed.footprints]
     for ring, drawn in itertools.zip_longest(blades, rings.get("GATE", [])):
         assert np.hypot(*(ring[:, None] - drawn).transpose(2, 0, 1)).min(axis=1).max() < NEAR
