@@ -869,7 +869,7 @@ def shorten_pulse(cut: Cut, orientations: Sequence[Orientation]) -> Cut:
     ----------
     docs/design.md, "The loop".
     """
-    device: Any = cut.device  # a sorter, where it senses
+    device: Any = cut.device  # a vision reject, where it senses
     if device.action is not Action.SENSE:
         return cut
     encounters = [

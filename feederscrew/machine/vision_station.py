@@ -10,7 +10,7 @@ import numpy as np
 
 from feederscrew.bowl.devices.base import room_of
 from feederscrew.bowl.devices.features import SAME_PLACE_M, Bore
-from feederscrew.bowl.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, TRIGGER, Sorter
+from feederscrew.bowl.devices.pneumatics import REACTION, SENSOR_TO_NOZZLE_M, TRIGGER, VisionReject
 from feederscrew.bowl.record import Bowl
 from feederscrew.feeding.stream import on_stretch
 from feederscrew.sorting.orientations import Orientation, travel_speed
@@ -166,7 +166,7 @@ def plan_vision_stations(bowl: Bowl, orientations: Sequence[Orientation]) -> tup
     placed = [device for device in bowl.devices if device.action.has_place]
     for number, device in enumerate(placed, start=1):
         here = device.onward(here)
-        if not isinstance(device, Sorter):
+        if not isinstance(device, VisionReject):
             continue
         speed = travel_speed(on_stretch(bowl, here))
         wanted = device.wanted(orientations)[0]

@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew.base import units
 from feederscrew.base.columns import ColumnHead, Frame, quantities, values
 from feederscrew.base.units import MM, PER_MINUTE
-from feederscrew.bowl.devices.leans import Separation
+from feederscrew.bowl.devices.leans import SpacingSection
 from feederscrew.feeding.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.feeding.rate import RATE_COLUMNS, RateStudy
 from feederscrew.feeding.tune import TuneStudy
@@ -199,8 +199,8 @@ def _spacing_remarks(study: RateStudy) -> list[str]:
         f"{each}{units.listed(list(kinds))} looks at one part at a time: the rate is that of parts that come "
         f"{orientations.gap / MM:.3g} mm apart"
     )
-    if not any(device.kind == Separation.kind for device in study.devices[: places[0]]):
-        line += f" - a {Separation.kind} before it makes that less"
+    if not any(device.kind == SpacingSection.kind for device in study.devices[: places[0]]):
+        line += f" - a {SpacingSection.kind} before it makes that less"
     return [line]
 
 

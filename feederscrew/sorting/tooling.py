@@ -377,7 +377,7 @@ def tooling(
             continue
         track = replace(bowl.track, climb=steeper.angle)
         if travel_speed(replace(bowl, track=track)) > travel_speed(bowl):
-            may_use = replace(may_use, separation=steeper)
+            may_use = replace(may_use, spacing=steeper)
             break
     request = designing.ChainOptions(
         margin=clear,

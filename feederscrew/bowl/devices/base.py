@@ -741,7 +741,7 @@ def carried(margin: float, travel: float, carry: float) -> float:
     return margin if margin >= 0.0 else min(max(margin, carry - travel), -UNSURE)
 
 
-class Yield(Device):
+class MeasuredYield(Device):
     """A share that passes, by aspect."""
 
     kind = "measured yield"

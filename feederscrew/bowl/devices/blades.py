@@ -1,4 +1,4 @@
-"""Blades over the track: wiper, height bar and hold-down; and the gate with an opening, profile."""
+"""Blades over the track: wiper, height bar and hold-down; and the profile gate."""
 
 import itertools
 import math
@@ -197,7 +197,7 @@ class HoldDown(Overhead):
     )
 
 
-class Profile(Device):
+class ProfileGate(Device):
     """A gate across the track with an opening."""
 
     kind = "profile gate"

@@ -1,4 +1,4 @@
-"""Stretches of the track that lean otherwise: bank, separation on a steeper way, and the V of a groove."""
+"""Stretches of the track that lean otherwise: bank, spacing on a steeper way, and the V of a groove."""
 
 import math
 from collections.abc import Sequence
@@ -132,7 +132,7 @@ class Lean(Device):
 
 
 @dataclass(frozen=True)
-class Groove(Lean):
+class VGroove(Lean):
     """A V from here on, until a bank: the track leans towards its wall, and the wall back by as much."""
 
     kind = "V groove"
@@ -214,7 +214,7 @@ class Bank(Lean):
 
 
 @dataclass(frozen=True)
-class Separation(Lean):
+class SpacingSection(Lean):
     """A steeper way down from here on, on which parts travel faster and so come apart."""
 
     kind = "spacing section"

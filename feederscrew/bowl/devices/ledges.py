@@ -88,7 +88,7 @@ class _Ledge(Device):
         return self.limit - needed if math.isfinite(needed) else -encounter.orientation.axial_foot.reach
 
 
-class Tip(_Ledge):
+class TippingLedge(_Ledge):
     """A ledge above a second track."""
 
     kind = "tipping ledge"

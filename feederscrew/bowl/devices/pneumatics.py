@@ -280,10 +280,10 @@ def _pressure(diameter: float, force: float) -> float:
 
 
 @dataclass(frozen=True)
-class Sorter(Device):
+class VisionReject(Device):
     """A sensor that compares each part with the wanted one, and a pulse of air."""
 
-    like: tuple[str, float, float] = ()  # type: ignore[assignment]  # a sorter is always like something
+    like: tuple[str, float, float] = ()  # type: ignore[assignment]  # it is always like something
     sees: str = "outline"
     resolution: float | None = None  # [m] of the sensor; None: as common
     nozzle: float = PULSE_BORE_M  # [m]
@@ -335,8 +335,8 @@ class Sorter(Device):
         margin: float,
         where: str,
         unlike: Callable[[str], Sequence[LyingPart]] = lambda view: (),
-    ) -> list["Sorter"]:
-        """Return the sorters of an orientation, one for each view.
+    ) -> list["VisionReject"]:
+        """Return the rejects of an orientation, one for each view.
 
         Parameters
         ----------
@@ -351,19 +351,19 @@ class Sorter(Device):
 
         Returns
         -------
-        list of Sorter
+        list of VisionReject
         """
-        orientation, sorters = encounter.orientation, []
+        orientation, rejects = encounter.orientation, []
         for view in SENSOR_VIEWS:
             also = tuple((other.aspect, other.heading) for other in unlike(view))
             named = orientation.aspect, orientation.heading
             play = float(margin) + RESOLUTION[view] + encounter.askew(view)
             device = cls(where, like=(*named, play), sees=view, also=also)
-            sorters.append(replace(device, like=(*named, play + device.hop_blur(orientation))))
-        return sorters
+            rejects.append(replace(device, like=(*named, play + device.hop_blur(orientation))))
+        return rejects
 
     def with_play(self, play: float) -> Device:
-        """Return the same sorter with other play, and headings as its text has them.
+        """Return the same vision reject with other play, and headings as its text has them.
 
         Parameters
         ----------
@@ -371,7 +371,7 @@ class Sorter(Device):
 
         Returns
         -------
-        Sorter
+        VisionReject
         """
         turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in self.names]
         first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
@@ -385,7 +385,7 @@ class Sorter(Device):
         # the order of the orientations that pass makes no difference
         first, *rest = sorted(self.names)
         ordered = replace(self, like=(*first, self.like[2]), also=tuple(rest))
-        return super(Sorter, ordered).compared_values
+        return super(VisionReject, ordered).compared_values
 
     def value_text(self) -> str:
         names = [orientation_names.written(*orientation) for orientation in self.names]
@@ -506,7 +506,7 @@ class Sorter(Device):
 
 
 @dataclass(frozen=True)
-class SteadyJet(Device):
+class AirJet(Device):
     """A nozzle in the wall that blows all the time: it moves off what offers it enough area at its height."""
 
     nozzle: float = JET_BORE_M  # [m]
@@ -538,7 +538,7 @@ class SteadyJet(Device):
         competitors: Sequence[Encounter],
         orientations: Sequence[LyingPart],
         where: str,
-    ) -> "list[SteadyJet]":
+    ) -> "list[AirJet]":
         """Return the jets that blow surely off some orientations and surely leave others, one a height.
 
         Each jet has the least pressure that blows off as many as the greatest one that leaves all that are
@@ -555,7 +555,7 @@ class SteadyJet(Device):
 
         Returns
         -------
-        list of SteadyJet
+        list of AirJet
         """
         jets, top = [], max(orientation.height for orientation in orientations)
         for height in np.round(top * (np.arange(NOZZLE_HEIGHTS) + 0.5) / NOZZLE_HEIGHTS, 4):

@@ -22,7 +22,7 @@ from feederscrew.base.columns import Column
 from feederscrew.bowl.devices.base import STOPPED, UNSURE, Device
 from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.bowl.devices.leans import Lean
-from feederscrew.bowl.devices.pneumatics import Sorter
+from feederscrew.bowl.devices.pneumatics import VisionReject
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.motion import sameness
 from feederscrew.sorting.falling import surely_gone
@@ -124,7 +124,7 @@ class DesignConstraints:
     step: float = SHOP_STEP_M  # [m] a shop makes: values are whole multiples
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     cutter: float = 0.0  # [m] radius that corners of holes are rounded to
-    separation: Lean | None = None  # that comes before a device that needs gaps
+    spacing: Lean | None = None  # that comes before a device that needs gaps
     vary: bool = True  # other tracks and sweeps are tried where they give more
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
     turn: bool = False  # devices that turn parts over, where returning them wastes too much
@@ -461,7 +461,12 @@ def _place_number(
 
 
 def _place_sensor(
-    orientations: Sequence[Orientation], wanted: int, device: Sorter, must: Bools, least: float, step: float
+    orientations: Sequence[Orientation],
+    wanted: int,
+    device: VisionReject,
+    must: Bools,
+    least: float,
+    step: float,
 ) -> Cut:
     play = device.like[2]
     seen = [device.differs(DeviceEncounter(orientation, orientations)) for orientation in orientations]
@@ -899,7 +904,7 @@ def propose(task: DesignTask, cuts: Sequence[Cut], is_returned: Bools, same: Boo
 
 def _add_spacing(task: DesignTask, cuts: Sequence[Cut]) -> tuple[Cut, ...]:
     """Cuts with a stretch that separates parts before the first of them that needs gaps."""
-    steeper, own = task.constraints.separation, task.orientations[task.wanted]
+    steeper, own = task.constraints.spacing, task.orientations[task.wanted]
     first = next((k for k, cut in enumerate(cuts) if cut.device.gap(own, own.speed) > 0.0), None)
     if steeper is None or first is None or any(device.action.leans for device in task.before):
         return tuple(cuts)

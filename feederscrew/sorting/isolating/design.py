@@ -780,8 +780,8 @@ def isolates_more(other: Design, best: Design) -> bool:
 def widths(orientations: Sequence[Orientation], shares: Floats, wanted: int, margin: float) -> list[float]:
     """Return other widths of the track that may give the wanted one more.
 
-    They are wide enough for an orientation that falls off; so narrow that the pulse of a sorter carries off
-    it what stays on a wider one.
+    They are wide enough for an orientation that falls off; so narrow that the pulse of a vision reject
+    carries off it what stays on a wider one.
 
     Parameters
     ----------
