@@ -47,7 +47,7 @@ def measures(solid: BowlSolid) -> Measures:
 
     # rim and wall: before every groove, where the wall is open
     high = plan.top - 1e-3
-    starts = [float(path.angle(groove.start)) - 0.1 for groove in track.groove_spans(plan)]
+    starts = [float(path.angle(groove.begin)) - 0.1 for groove in track.groove_spans(plan)]
     at = min([RIM_SECTION_RAD, *starts])
     rim = facets.first_met(body, (0.0, 0.0, high), towards(at, high))
     # floor: where it lies bare by the wall, or about, opposite to the track's first rise

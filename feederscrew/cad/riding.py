@@ -80,7 +80,7 @@ def leaning(plan: BowlPlan, s: Values) -> Values:
         return np.where(plan.path.angle(s) < -FULL_TURN_RAD, 1.0 / np.tan(plan.stairs.slope), 0.0)
     lean = np.zeros(np.shape(s))
     for groove in track.groove_spans(plan):
-        there = (s >= groove.start) & (s <= groove.closed)
+        there = (s >= groove.begin) & (s <= groove.closed)
         lean = np.where(there, np.tan(track.lean_at(groove, s)), lean)
     return lean
 

@@ -200,7 +200,7 @@ def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     """
     path, half, strips, bodies = plan.path, 0.5 * plan.material.plate, _strips(plan, kit), []
     for ledge in () if plan.stretch is None else plan.stretch.ledges:
-        at, end = plan.first + ledge.start, plan.first + ledge.end
+        at, end = plan.first + ledge.begin, plan.first + ledge.end
         lower, aside = ledge.drop.height, ledge.drop.aside
         ends, legs = [at - half, plan.first + ledge.sunk(0.4 * half)], []
         for leg in _legs(plan, kit, ends, (at, end)):
@@ -408,7 +408,7 @@ def groove_walls(plan: BowlPlan, kit: ModuleType) -> tuple[list[Body], list[Body
     cuts, walls = [], []
     for groove in groove_spans(plan):
         changes = groove.leans
-        ends = [groove.start, min(groove.closed, path.end + plan.outlet)]
+        ends = [groove.begin, min(groove.closed, path.end + plan.outlet)]
         cut_legs, wall_legs = [], []
         for low, high in _legs(plan, kit, ends, (*(at for change in changes for at in change[:2]), path.end)):
             s = steps(plan, kit, low, high)

@@ -503,17 +503,17 @@ def draw_devices(
     rows = tooling_drawing.device_rows(stretch.devices, plan.width, lambda s: _angle_from_outlet(plan, s))
     rows[0][4:6] = ["from [°] *", "to [°] *"]
     # changes of the track that are no device
-    below = {ledge.start for ledge in stretch.ledges}
+    below = {ledge.begin for ledge in stretch.ledges}
     changes = [(f"step {drop / MM:.4g} mm down", at, at) for at, drop in stretch.drops if at not in below]
     for ledge in stretch.ledges:
         drop = ledge.drop
         level = f"ledge {drop.aside / MM:.4g} wide, track {drop.height / MM:.4g} lower"
-        changes.append((f"{level}; to {ledge.end / MM:.5g} level", ledge.start, ledge.foot))
+        changes.append((f"{level}; to {ledge.end / MM:.5g} level", ledge.begin, ledge.foot))
     for start, end, bank in stretch.banks:
         changes.append((f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
     for groove in stretch.grooves:
         words = f"groove: the wall leans back by {np.degrees(groove.lean):.3g}°"
-        changes.append((words, max(groove.start, 0.0), groove.end))
+        changes.append((words, max(groove.begin, 0.0), groove.end))
     for words, start, stop in changes:
         angles = [f"{_angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])

@@ -99,7 +99,7 @@ class Ledge:
     """A ledge along the wall, above the track that goes on lower beside it, and the ramp at its end."""
 
     label: str  # 'tipping ledge 6 mm'
-    start: float  # [m] s where the track beside it goes on lower
+    begin: float  # [m] s where the track beside it goes on lower
     end: float  # [m] s where it begins to come down
     drop: Drop
     radius: float  # [m] of the wall
@@ -151,7 +151,7 @@ class GrooveStretch:
     leans: tuple[tuple[float, float, float], ...]  # from and to s [m] the wall comes to a lean [rad]; last 0
 
     @property
-    def start(self) -> float:
+    def begin(self) -> float:
         """S [m] from which it opens; -inf where it is open from the track's entry on."""
         return self.leans[0][0]
 

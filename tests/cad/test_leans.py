@@ -105,7 +105,7 @@ def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
     is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
     (ledge,), ((placed, gap),) = plan.stretch.ledges, plan.stretch.openings
-    start, end = plan.first + ledge.start, plan.first + ledge.end
+    start, end = plan.first + ledge.begin, plan.first + ledge.end
     assert (ledge.drop.aside, ledge.drop.height) == (6e-3, 9e-3) and end - start == pytest.approx(1.3 * 18e-3)
     # bent down along a line square to the wall, it is flat: it falls by the way ahead of that line
     ramp = plan.path.radius * np.arcsin(9e-3 / np.tan(np.radians(15.0)) / (plan.path.radius - 6e-3))
@@ -187,7 +187,7 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
 def test_a_groove_begins_where_it_is_listed_and_ends_at_a_bank():
     plan = grooved("before a bank")[0].plan
     (span,) = track.groove_spans(plan)
-    start, end = span.start, span.end
+    start, end = span.begin, span.end
     first, last = (placed.begin for placed in plan.stretch.devices[1:])
     assert (start, end) == pytest.approx((plan.first + first, plan.first + last))
     # it opens as the track twists: its free edge rises by 10 deg at most
@@ -198,7 +198,7 @@ def test_a_groove_begins_where_it_is_listed_and_ends_at_a_bank():
     assert np.degrees(banks) == pytest.approx([0.0, 20.0, 40.0, 40.0, 0.0], abs=1e-9)
     assert track.lean_at(span, end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD
     early = grooved("from the entry")[0].plan
-    assert early.path.angle(track.groove_spans(early)[0].start) == pytest.approx(-0.85 * 2.0 * np.pi)
+    assert early.path.angle(track.groove_spans(early)[0].begin) == pytest.approx(-0.85 * 2.0 * np.pi)
     # A bank that is listed first is that of the track from its entry on; the next begins at its own place.
     chain = (bank(3.0), bank(6.0), GAP, bank(9.0))
     assert track_at_entry(TRACK, chain, [One(TRACK)]).bank == np.radians(3.0)

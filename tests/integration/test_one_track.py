@@ -331,7 +331,7 @@ def test_the_track_twists_in_the_trial_as_it_is_drawn(kinds):
         assert np.abs(tried[k] - own).max() * track.width < NEAR
     wall = bank - sum(
         np.where(
-            (span.start <= strip.first + s) & (strip.first + s <= span.closed),
+            (span.begin <= strip.first + s) & (strip.first + s <= span.closed),
             span.lean_at(strip.first + s),
             0.0,
         )

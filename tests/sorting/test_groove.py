@@ -127,7 +127,7 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
     section = lay_out(WIDE.track, chain, dowel)
     (stretch,) = section.grooves
     first, opens = stretch.end, stretch.closed - stretch.end
-    assert stretch.start < 0.0 and stretch.lean == pytest.approx(60.0 * DEG)
+    assert stretch.begin < 0.0 and stretch.lean == pytest.approx(60.0 * DEG)
     vertices, faces = printed.solid(section)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     assert mesh.is_watertight and mesh.is_winding_consistent
