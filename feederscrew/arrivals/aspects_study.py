@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feederscrew.arrivals import simulation_cache
+from feederscrew.arrivals.heap_count import HeapCount
 from feederscrew.base.arrays import Array, Floats
 from feederscrew.base.columns import Column, Frame, of_arrays, of_records
 from feederscrew.base.records import ReadableRecord
@@ -38,6 +39,7 @@ class AspectsStudy(ReadableRecord, view="aspects.ASPECTS_VIEW"):
     part: Part
     aspects: Aspects
     tally: "Tally | None" = None  # of the drop test
+    heap: HeapCount | None = None  # of a heap, where one was asked for
 
     def __len__(self) -> int:
         return len(self.aspects)

@@ -7,6 +7,7 @@ import enum
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from feederscrew.arrivals.heap_count import HeapCount
 from feederscrew.base.columns import Column
 from feederscrew.trials.course import Fate
 
@@ -182,6 +183,7 @@ class Hooking:
     held: int  # of them that do not part the two
     opening: float  # [m] the mouth through which they come to hook; NaN of none
     section: float  # [m] the thinnest limb of the part
+    heap: HeapCount | None = None  # how many of a heap come single
 
 
 HOOKING_COLUMNS: tuple[Column[Hooking], ...] = (
@@ -189,4 +191,8 @@ HOOKING_COLUMNS: tuple[Column[Hooking], ...] = (
     Column("held", lambda hooking: hooking.held),
     Column("opening_mm", lambda hooking: hooking.opening, "mm"),
     Column("thinnest_mm", lambda hooking: hooking.section, "mm"),
+    Column("heap_parts", lambda hooking: hooking.heap and hooking.heap.parts),
+    Column("heap_single", lambda hooking: hooking.heap and hooking.heap.single),
+    Column("heap_single_share_low", lambda hooking: hooking.heap and hooking.heap.low, "share"),
+    Column("heap_single_share_high", lambda hooking: hooking.heap and hooking.heap.high, "share"),
 )

@@ -215,10 +215,11 @@ def condition_text(hooking: Hooking) -> str:
     -------
     str
     """
+    heap = "" if hooking.heap is None else f"; {hooking.heap.words}"
     return (
         f"two parts hook into each other ({hooking.held} of {counted(hooking.pulls, 'pull')} do not part "
-        f"them), and no queue was tried with parts that hang together; separate them before the bowl by "
-        f"{', '.join(SEPARATORS[:-1])} or {SEPARATORS[-1]}; {change_text(hooking)}"
+        f"them{heap}), and no queue was tried with parts that hang together; separate them before the bowl "
+        f"by {', '.join(SEPARATORS[:-1])} or {SEPARATORS[-1]}; {change_text(hooking)}"
     )
 
 

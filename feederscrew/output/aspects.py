@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 from feederscrew.arrivals.aspects_study import AspectsStudy
+from feederscrew.arrivals.heap_count import HEAP_COLUMNS
+from feederscrew.base import columns
 from feederscrew.base.arrays import Array, Floats, Points, Vector
 from feederscrew.base.columns import Document, Frame
 from feederscrew.base.documents import hint, nearest
@@ -118,6 +120,7 @@ def document(study: AspectsStudy) -> Document:
     return part_facts.part(study.part, study.aspects.warnings) | {
         "recommended": None if study.recommended is None else study.recommended.rule,
         "aspects": study.table(),
+        "heap": None if study.heap is None else columns.values(HEAP_COLUMNS, study.heap),
     }
 
 

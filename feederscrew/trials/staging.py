@@ -46,6 +46,7 @@ CORNER_ANGLE = 1e-4  # [rad] a border that turns by less has no corner
 DRAWN_BEFORE = 1.2  # track before where they begin
 DRAWN_AFTER = 0.8  # track behind their end
 BEYOND_OPENINGS_M = 10.0  # beyond any opening
+FLOOR_REACH = 3.0  # times a bucket's radius: how far its floor goes on behind the wall
 TRACK_DEPTH_M = 4e-3  # of the track: deeper down its sides hold nothing
 TRACK_FRICTION = np.nan  # friction of a plate that has that of the track
 # of the part's size
@@ -423,9 +424,32 @@ def build_track(
             level, aside = level - item.lower[0], aside - item.lower[1]
             first, holes = item.begin - TRACK_DEPTH_M, []
     plates.append(_floor([*holes, *slots], track, size, ends, (first, ends[1]), (level, aside)))
-    # All as records, the plates with boxes around their borders.
+    return _as_rows([*plates, *raised])
+
+
+def stage_level_floor(radius: float) -> Stage:
+    """Return a level floor without an end inside a round wall.
+
+    Parameters
+    ----------
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    Stage
+    """
+    frame = np.array([[0.0, radius, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    reach = FLOOR_REACH * radius
+    borders = _borders(shapely.box(-reach, -reach, reach, reach), lambda start, end: True)
+    plates, rows = _as_rows([(frame, reach, TRACK_FRICTION, borders)])
+    return Stage(BARE_TRACK, plates, rows, begin=0.0, exit=np.inf, size=radius)
+
+
+def _as_rows(plates: Sequence[Plate]) -> tuple[Rows, Rows]:
+    """All plates as records with boxes around their borders, and those borders."""
     rows, borders, count = [], [], 0
-    for frame, depth, friction, own in [*plates, *raised]:
+    for frame, depth, friction, own in plates:
         box = [end for k in (0, 1) for end in (own[:, k:4:2].min(), own[:, k:4:2].max())]
         rows.append((*frame.ravel(), depth, CUT_BORDER_RADIUS_M, count, count + len(own), friction, *box))
         borders += [(*row, 0.0, 0.0) for row in own]

@@ -169,3 +169,14 @@ def test_what_a_newcomer_cannot_act_on_is_said_with_verbose_and_stays_in_the_doc
 def test_the_launch_of_the_recommended_answer_is_explained_where_it_is_first_named(run):
     said = run("aspects", NUT, "--rule", "closed", "--launch", "flip").stderr
     assert "launch flip (spun as a coin)" in said
+
+
+def test_a_heap_says_how_many_come_single(run):
+    """Square nuts do not hold each other: all of a heap come single."""
+    from feederscrew.trials.heap import PARTS
+
+    call = "aspects", NUT, "--rule", "closed", "--heap"
+    heap = json.loads(run(*call, "--format", "json").stdout)["heap"]
+    assert (heap["parts"], heap["single"], heap["single_share"], heap["seed"]) == (PARTS, PARTS, 1.0, 1)
+    assert 0.75 < heap["single_share_low"] < 1.0 == heap["single_share_high"]
+    assert f"Heap: {PARTS} of {PARTS} parts of a heap come single" in run(*call).stderr

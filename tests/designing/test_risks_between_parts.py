@@ -17,6 +17,7 @@ from feederscrew.designing import hazards
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations
+from feederscrew.trials import tangling
 
 LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 RUBBED = 0.6, 0.5
@@ -160,11 +161,11 @@ def cup(low, high, *, wall=0.8, sections=40):
 def test_split_rings_hook_through_their_slit_and_only_where_the_wire_goes_through():
     """The pair does not overlap, and each goes through the other."""
     part = split_ring(30.0)
-    pair = hazards.tangle(part, RUBBED)
+    pair = tangling.tangle(part, RUBBED)
     slit = 2.0 * (6.0 - 0.6) * np.sin(np.radians(15.0))
     assert (1e3 * pair.opening, 1e3 * pair.section) == pytest.approx((slit, 1.2), abs=0.25)
     assert pair.share > 0.8
-    assert hazards.tangle(split_ring(8.0), RUBBED) is None  # 0.75 mm wide, for 1.2 mm of wire
+    assert tangling.tangle(split_ring(8.0), RUBBED) is None  # 0.75 mm wide, for 1.2 mm of wire
     centre = part.vertices - part.centre_of_mass
     corners = vectors.product(centre, pair.turn.T) + pair.place
     first, second = (trimesh.Trimesh(some, part.faces) for some in (centre, corners))
@@ -175,7 +176,7 @@ def test_split_rings_hook_through_their_slit_and_only_where_the_wire_goes_throug
 def test_what_never_comes_together_or_comes_apart_by_itself_is_no_risk():
     block, pin = shapes.part(shapes.box(30, 20, 15)), shapes.part(shapes.cylinder(3.0, 20.0, 32))
     for part in (block, pin, extruded([(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)], 15.0)):
-        assert hazards.tangle(part, RUBBED) is hazards.stack(part, 0.6) is None
+        assert tangling.tangle(part, RUBBED) is hazards.stack(part, 0.6) is None
 
 
 @pytest.mark.parametrize("sections", [24, 60])

@@ -1,0 +1,46 @@
+"""How many parts of a heap come single: the count of `feederscrew.trials.heap`, and its columns."""
+
+from dataclasses import dataclass
+
+from feederscrew.arrivals.ensemble import wilson
+from feederscrew.base.columns import Column
+
+
+@dataclass(frozen=True)
+class HeapCount:
+    """How many parts of one heap came single as each was pulled."""
+
+    parts: int  # that were pulled
+    single: int  # of them, that nothing came along with
+    mixed: bool  # laid as after long mixing, hooks and all; else all started apart
+    seed: int
+
+    @property
+    def value(self) -> float:
+        """Share of the parts that come single [1]."""
+        return self.single / self.parts if self.parts else float("nan")
+
+    @property
+    def low(self) -> float:
+        """Lower end of its 95 % interval [1]. Source: E. B. Wilson, JASA 22, 1927."""
+        return float(wilson([self.single], self.parts)[0][0])
+
+    @property
+    def high(self) -> float:
+        """Upper end of its 95 % interval [1]. Source: E. B. Wilson, JASA 22, 1927."""
+        return float(wilson([self.single], self.parts)[1][0])
+
+    @property
+    def words(self) -> str:
+        """Return the count and its interval in words."""
+        ends = f"{100.0 * self.low:.0f} to {100.0 * self.high:.0f} %"
+        return f"{self.single} of {self.parts} parts of a heap come single ({ends} at 95 % confidence)"
+
+
+HEAP_COLUMNS: tuple[Column[HeapCount], ...] = (
+    Column("parts", lambda heap: heap.parts),
+    Column("single", lambda heap: heap.single),
+    Column("single_share", lambda heap: heap, "share", interval=True),
+    Column("mixed", lambda heap: heap.mixed),
+    Column("seed", lambda heap: heap.seed),
+)
