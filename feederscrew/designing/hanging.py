@@ -376,11 +376,12 @@ class RailsSearch:
 def blow_off(
     proposal: Proposal, trial: ShortTrial, stands: Sequence[int], orientations: Sequence[Orientation]
 ) -> Proposal | None:
-    """Return a chain with a steady jet before its rails, which blows off what would stand at them.
+    """Return a chain with a steady jet at its begin, which blows off what would stand at its rails.
 
     A queue pushes past a cut what single parts fall from, and a blade does not sweep what leans on it: air
-    meets no face. A cut that was to return the same goes to the middle of what is left to it: the less it
-    takes of the track, the less hooks there.
+    meets no face. It blows where the track is whole, before what it blows off leans on the edge of a cut. A
+    cut that was to return the same goes to the middle of what is left to it: the less it takes of the track,
+    the less hooks there.
 
     Parameters
     ----------
@@ -422,7 +423,7 @@ def blow_off(
     cut = judge_cut(orientations, proposal.row, jet, blown[jet], jet, jet)
     cuts = [_leave_to(cut, blown[jet], wanted, orientations) for cut in proposal.cuts]
     move = Move(MoveKind.JET_BEFORE, 0.0, jet.kind, jet.text)
-    return replace(proposal, cuts=(*cuts[:before], cut, *cuts[before:]), move=move)
+    return replace(proposal, cuts=(cut, *cuts), move=move)
 
 
 def _leave_to(cut: Cut, gone: Bools, wanted: Sequence[int], orientations: Sequence[Orientation]) -> Cut:
@@ -475,11 +476,10 @@ def shown_by(trial: ShortTrial, proposal: Proposal, count: int) -> Shown:
 
 
 def _with_jets(cuts: Sequence[Cut], own: Sequence[Cut]) -> tuple[Cut, ...]:
-    """Cuts with rails, and before these the jets of a chain, where there are none among them."""
-    actions = [cut.device.action for cut in cuts]
-    jets = () if Action.BLOW in actions else (cut for cut in own if cut.device.action is Action.BLOW)
-    before = actions.index(Action.HANG)
-    return (*cuts[:before], *jets, *cuts[before:])
+    """Cuts, and before these the jets of a chain, where there are none among them."""
+    if any(cut.device.action is Action.BLOW for cut in cuts):
+        return tuple(cuts)
+    return (*(cut for cut in own if cut.device.action is Action.BLOW), *cuts)
 
 
 def _sweep_of(proposal: Proposal) -> float | None:
