@@ -240,8 +240,7 @@ class RailsSearch:
 
         Another orientation is returned before the rails. Where one that hangs stands at a cut before them,
         that cuts less, or another kind of cut takes its place. At the rails it gets a wider slot and a longer
-        lead-in; at the blade a higher blade, and where that stands higher already, a longer lead-in and a
-        wider slot.
+        lead-in; at the blade a higher blade, and where that stands higher already, both of these at once.
 
         Parameters
         ----------
@@ -259,11 +258,15 @@ class RailsSearch:
         rows = {orientation.name: row for row, orientation in enumerate(self.lying)}
         placed = [device for device in proposal.devices if device.action.has_place]
         station = next((n for n, device in enumerate(placed, start=1) if device.action is Action.HANG), -1)
+        jets = {cut.device.kind for cut in proposal.cuts if cut.device.action is Action.BLOW}
         for n, row in enumerate(trial.rows.tolist()):  # what cuts before the rails return needs them
             ends = trial.ends[n]
-            shown.stands[row] |= bool(ends) and all(0 < end.station < station for end in ends)
+            is_before = bool(ends) and all(0 < end.station < station for end in ends)
+            is_blown = is_before and all(end.kind in jets for end in ends)  # the jets stay as they are
+            shown.stands[row] |= is_before and not is_blown
+            shown.gone[row] |= is_blown
         at_rails = at_blade = False
-        stands_at_cut = False  # what hangs
+        stands_at_cut = others_stand = False  # what hangs, at a cut; what does not, anywhere
         for stood in jammed:
             row, place = rows.get(stood.name, -1), stood.place
             if row < 0 or shown.hangs[row]:
@@ -274,7 +277,9 @@ class RailsSearch:
                 if eased is not None:
                     yield eased
                 stands_at_cut = True
-            elif place <= station:
+                continue
+            others_stand = True
+            if place <= station:
                 shown.stands[row] = True
             else:
                 shown.unswept[row] = True
@@ -283,11 +288,13 @@ class RailsSearch:
         higher = [(MoveKind.BLADE_HEIGHT, x, replace(setting, blade=setting.blade + x)) for x in BLADES_M]
         cuts_before = [(MoveKind.CUTS_BEFORE, 0.0, setting), (MoveKind.OTHER_CUTS, 0.0, setting)]
         is_raised = setting.blade > 0.0
+        room = replace(setting, play=setting.play + PLAYS_M[-1], lead=setting.lead * LEADS[0])
+        sinks = [(MoveKind.WIDER_SLOT, PLAYS_M[-1], room)]
         tries = [
-            *(reversed(cuts_before) if stands_at_cut else cuts_before),
+            *(reversed(cuts_before) if stands_at_cut else cuts_before if others_stand else ()),
             *(higher if at_blade and not is_raised else ()),
             # below a blade that stands high, what hangs stands where it has not sunk all the way
-            *((*longer, *wider) if at_blade and is_raised else ()),
+            *(sinks if at_blade and is_raised else ()),
             *((*wider, *longer) if at_rails else ()),
         ]
         self.seen.add(proposal.chain)

@@ -152,8 +152,12 @@ def test_what_stands_in_a_queue_says_what_is_changed(lying, rails_search):
     # below a blade that was raised stands what has not sunk all the way
     proposal = higher
     kinds = [changed.move.kind for changed in changes((own, blade, "wiper", 1))]
-    assert MoveKind.BLADE_HEIGHT not in kinds
-    assert kinds.index(MoveKind.LEAD_IN) < kinds.index(MoveKind.WIDER_SLOT)
+    assert MoveKind.BLADE_HEIGHT not in kinds and kinds.count(MoveKind.WIDER_SLOT) == 1
+    (sinks,) = (one for one in changes((own, blade, "wiper", 1)) if one.move.kind is MoveKind.WIDER_SLOT)
+    before_it, after_it = slot(higher), slot(sinks)
+    assert np.ptp(after_it.span) == pytest.approx(np.ptp(before_it.span) + 6e-4, abs=1e-4)
+    assert after_it.lead[2] == pytest.approx(1.7 * before_it.lead[2], abs=1e-4)
+    assert sinks.rails.blade == higher.rails.blade > 0.0
     proposal = first.proposal
     before = {MoveKind.CUTS_BEFORE, MoveKind.OTHER_CUTS}
     for place in (rails, blade):
@@ -258,9 +262,19 @@ def test_a_steady_jet_before_the_rails_blows_off_what_came_to_stand():
     assert hanging.blow_off(replace(proposal, cuts=()), trial, [rows["C@270"]], nut) is None
     # what changes it after a jam keeps the jet where it is
     swept = end_at(Fate.RETURNED, "wiper", 4)
-    trial = replace(trial, ends=tuple({} if row == rows["B@0"] else {swept: 2} for row in range(len(nut))))
+    off = {end_at(Fate.RETURNED, "air jet", 1): 2}
+    ends = ({} if row == rows["B@0"] else off if one.name in jet.returns else {swept: 2}
+            for row, one in enumerate(nut))  # fmt: skip
+    trial = replace(trial, ends=tuple(ends))
     changed = list(search_of(nut).mends_of_jams(blown, trial, [JammedParts("B@0", 3, "rails", 1)]))
     assert changed and all(kinds_before_rails(one)[0] == "air jet" for one in changed)
+    # no cut has to return what it blows off, only what else stands
+    jam = [JammedParts("A@90", 4, "wiper", 1)]
+    changed = next(search_of(nut).mends_of_jams(blown, trial, jam))
+    assert changed.move.kind is MoveKind.CUTS_BEFORE and changed.cuts[0] == jet
+    assert kinds_before_rails(changed) == ["air jet", "narrowed track"]
+    # C@270 asks for less than 6.1 mm
+    assert "A@90" in changed.cuts[1].returns and changed.cuts[1].device.limit > 6.1e-3
 
 
 def test_standing_counts_more_against_a_chain_than_coming_back(lying, rails_search):
