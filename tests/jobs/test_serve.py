@@ -56,8 +56,8 @@ WAITS = """
 import json, os, pathlib, sys, time
 stage = {"stage": "trial", "text": "trial 2 of 16", "gone_s": 30.0, "to_go_s": 90.0}
 pathlib.Path(os.environ["FEEDER_STAGE_FILE"]).write_text(json.dumps(stage))
-print("begun", flush=True)
 try:
+    print("begun", flush=True)
     time.sleep(60)
 except KeyboardInterrupt:
     print("Stopped.", flush=True)
