@@ -508,7 +508,7 @@ def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
 
 
 def comment(*words: str) -> str:
-    """Return words as a comment behind a line of a bowl file; '' of none.
+    """Return words as a comment behind a line of a bowl file; '' without words.
 
     Parameters
     ----------
