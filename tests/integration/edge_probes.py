@@ -14,7 +14,8 @@ ASIDE = 3e-5  # [m] of an edge
 UNDER = 1e-4  # [m] below a surface: there its edge is looked at
 CLEAR = 2e-4  # [m] of other edges
 SHORT = 1e-3  # [m] a side of a curved edge: its middle is looked at
-ON_RAMP = 2e-6  # [m] over a ramp: 0.05 mm along the wall are 0.013 mm of its height
+ON_RAMP = 2e-6  # [m] over a ramp, as the trial has it
+OVER_RAMP = 13e-6  # [m] over one that is made: 0.05 mm along the wall
 UNDER_RAMP = 2e-5  # [m] below it: bodies have it 0.01 mm lower, so that no face lies on a face
 SURE = 1e-5  # [m] by which a flat plate that reaches ahead may lean otherwise than the track below its end
 IN_WALL = 5e-4  # [m] behind the wall's face
@@ -112,7 +113,8 @@ def _ramps(placed):
         slope = np.tan(drop.ramp) * np.sin(share * turn)  # of its height over the distance from the axis
         for y in np.array(SHARES) * drop.aside:
             surface = placed.level - slope * (placed.radius - y)
-            yield "ramp", s, y, surface + ON_RAMP, 0.0, False
+            yield "ramp", s, y, surface + OVER_RAMP, 0.0, False
+            yield "ramp as tried", s, y, surface + ON_RAMP, 0.0, False
             yield "ramp", s, y, surface - UNDER_RAMP, 0.0, True
             yield "ramp as tried", s, y, surface - ON_RAMP, 0.0, True
         if share < 0.8:  # the lower track is far enough below
