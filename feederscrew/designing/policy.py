@@ -119,7 +119,7 @@ class SearchPolicy:
     # [s] of queues that denied designs, after which no other design is proved: of each cost class, and near
     # them. A jam is seen at once; impure by few parts in a hundred, as past a sensor, only after minutes
     denied_in_class: tuple[float, ...] = _chosen((90.0, 120.0, 600.0), DENIED)
-    denied_near: float = _chosen(120.0, DENIED)
+    denied_near: float = _chosen(900.0, DENIED)
     lively_hop: float = _chosen(1.2e-4, MENDED_BY_PROOF)  # [m] from which jams ask for a device
     faster: float = _chosen(1.3, FASTER_DRIVE)  # [1] times the speed, where draws lose what creeps
     slow_reserve: float = _chosen(1.2)  # [1] times what the worst fill of a slow design lacks of the target
