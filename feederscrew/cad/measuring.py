@@ -161,12 +161,12 @@ def ways_down(solid: BowlSolid) -> dict[str, str]:
         If it comes to lie on something else.
     """
     plan, ways = solid.plan, {}
-    if plan.stretch is None:
+    if plan.stretch is None or plan.stretch.falls is None:
         return {}
     whole = facets.unplaced(solid)
     for placed, opening in plan.stretch.openings:
-        # places spread over the cut, of those within the track
-        within = shapely.box(-1.0, CUT_EDGE_MARGIN_M, 1e3, plan.width)
+        # places spread over the cut, of those within the track and before what hangs only goes on
+        within = shapely.box(-1.0, CUT_EDGE_MARGIN_M, plan.stretch.falls, plan.width)
         area = shapely.Polygon(opening.ring).buffer(0.0).intersection(within).buffer(-CUT_EDGE_MARGIN_M)
         if area.is_empty:
             continue
@@ -209,5 +209,6 @@ def _lies(plan: BowlPlan, whole: Body, label: str, s: float, y: float) -> str:
             return ON_TURN
     there = "nothing" if meet is None else f"the track at {1e3 * meet:.3g} mm"
     what = f"what falls through it {1e3 * s:.3g} mm behind the start of the devices meets {there}"
-    mend = "give a lower sizing.outlet_height, sizing.shape: stepped, or fewer devices"
+    other = "" if plan.stairs is not None else "sizing.shape: stepped, "
+    mend = f"give a lower sizing.outlet_height, {other}or fewer devices"
     raise FeederError(f"devices: {label}", what, mend)

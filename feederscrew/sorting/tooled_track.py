@@ -303,13 +303,24 @@ class TooledTrack:
     def falls(self) -> float | None:
         """S [m] where the last part that a cut returns goes down; None without cuts.
 
-        What falls through rails does so in them, and not in the slot that goes on behind them.
+        What falls through rails does so in them, or in the slot that goes on below a blade: what the blade
+        sweeps off crosses the slot. Behind the last blade what is there hangs.
         """
         ends = (
-            placed.begin + placed.features.length if opening.hangs else opening.end
+            max(device.begin + device.features.length for device in (placed, *self._blades_over(opening)))
+            if opening.hangs
+            else opening.end
             for placed, opening in self.openings
         )
         return max(ends, default=None)
+
+    def _blades_over(self, slot: TrackOpening) -> tuple[PlacedDevice, ...]:
+        """The devices whose blades stand over a slot."""
+        return tuple(
+            placed
+            for placed in self.devices
+            if placed.features.blades and slot.ring[:, 0].min() < placed.begin < slot.end
+        )
 
     @property
     def hangs(self) -> bool:

@@ -44,6 +44,7 @@ CHAINS = {
     "blades": (device("wiper", limit=6e-3), device("hold-down", limit=8e-3)),
     "gate": (device("profile gate", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
     "jets": (*(device("air jet", nozzle=2e-3, pressure=2e4, height=z) for z in (1e-3, 8e-3)), GAP),
+    "rails and wiper": (RAILS, device("wiper", limit=6e-3, sweep=np.radians(30.0))),
     "step": (device("step", limit=4e-3), device("gap", limit=5e-3)),
 }
 

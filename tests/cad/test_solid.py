@@ -343,6 +343,12 @@ def test_a_turn_below_a_cut_is_found_and_a_track_that_was_shortened_says_so():
     (line,) = replace(built("gap"), turns_of_sheet=1.5).remarks
     assert line.startswith("sizing.outlet_height: 1.03 turns in place of 1.5, or what falls through a cut")
     assert built().remarks == ()
+    # What a blade behind rails sweeps off crosses their slot: no turn of the track lies below it either.
+    rails, swept = (planned(CHAINS[chain]).stretch for chain in ("narrowed and rails", "rails and wiper"))
+    (blade,) = (placed for placed in swept.devices if placed.features.blades)
+    assert swept.falls == pytest.approx(blade.begin + blade.features.length)
+    assert rails.falls < rails.length and swept.falls < swept.length
+    assert ways_down(built("rails and wiper")) == {"rails": "the floor"}
     # The outlet lies where it is wanted.
     plan = planned(asked=SolidOptions(outlet_height=0.04, outlet_angle=0.7))
     turned, straight = body(plan), body(replace(plan, turned=0.0))
