@@ -185,10 +185,11 @@ def note_standing(search: Search, candidate: Candidate, rows: Iterable[int]) -> 
     search : Search
     candidate : Candidate
     rows : iterable of int
-        Those that hang are left out.
+        Those that hang are left out, where others stood as well: they stand behind those.
     """
-    stands = tuple(row for row in dict.fromkeys(rows) if row not in candidate.trial.wanted)
-    if stands and candidate.proposal.hangs and candidate.attempt.efficiency > 0.0:
+    stood = tuple(dict.fromkeys(rows))
+    stands = tuple(row for row in stood if row not in candidate.trial.wanted)
+    if stood and candidate.proposal.hangs and candidate.attempt.efficiency > 0.0:
         search.state.stood.append((candidate, stands))
 
 

@@ -397,7 +397,8 @@ def blow_off(
     trial : ShortTrial
         That shows what hangs: the jet leaves it on the track.
     stands : sequence of int
-        Orientations that came to stand, in a queue or in the trial.
+        Orientations that came to stand, in a queue or in the trial. Where they all hang, what a cut before
+        the rails returns is blown off in their place: pushed past that cut, it is what others stand behind.
     orientations : sequence of Orientation
 
     Returns
@@ -406,8 +407,7 @@ def blow_off(
         None where the chain has a jet, or none surely tells one of those that stand from what hangs.
     """
     wanted, placed = trial.wanted, [cut.device.action for cut in proposal.cuts]
-    rejected = [row for row in stands if row not in wanted]
-    if not wanted or not rejected or Action.BLOW in placed or Action.HANG not in placed:
+    if not wanted or Action.BLOW in placed or Action.HANG not in placed:
         return None
     before = placed.index(Action.HANG)
     # what falls from a cut before them, a queue may push past it as well
@@ -416,6 +416,9 @@ def blow_off(
         for row, orientation in enumerate(orientations)
         if row not in wanted and any(orientation.name in cut.returns for cut in proposal.cuts[:before])
     ]
+    rejected = [row for row in stands if row not in wanted] or leaks
+    if not rejected:
+        return None
     encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
     own, others = ([encounters[row] for row in rows] for rows in (wanted, {*rejected, *leaks}))
     kinds: list[Any] = [

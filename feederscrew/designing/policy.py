@@ -118,7 +118,7 @@ class SearchPolicy:
     jam_mends: int = _chosen(3, JAMS)  # chains that are tried for a queue that jams, by what stood there
     # [s] of queues that denied designs, after which no other design is proved: of each cost class, and near
     # them. A jam is seen at once; impure by few parts in a hundred, as past a sensor, only after minutes
-    denied_in_class: tuple[float, ...] = _chosen((90.0, 120.0, 600.0), DENIED)
+    denied_in_class: tuple[float, ...] = _chosen((90.0, 120.0, 1200.0), DENIED)
     denied_near: float = _chosen(900.0, DENIED)
     lively_hop: float = _chosen(1.2e-4, MENDED_BY_PROOF)  # [m] from which jams ask for a device
     faster: float = _chosen(1.3, FASTER_DRIVE)  # [1] times the speed, where draws lose what creeps

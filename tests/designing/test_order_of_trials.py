@@ -128,12 +128,13 @@ def test_what_stood_at_rails_of_steel_is_blown_off_in_the_class_of_air(monkeypat
     )  # fmt: skip
     for number in range(4):
         exploring.note_standing(search, stood_at(number), [0, 3, 3, 2])
-    exploring.note_standing(search, stood_at(7), [0])  # what hangs
+    exploring.note_standing(search, stood_at(7), [0])  # what hangs, behind what a cut was to return
+    exploring.note_standing(search, stood_at(6), [])
     exploring.note_standing(search, stood_at(8, hangs=False), [3])
     exploring.note_standing(search, stood_at(9, efficiency=0.0), [3])
     assert not list(exploring.candidates(search, 1)) and not blown
     found = list(exploring.candidates(search, 2))
-    assert blown == [(3, (3, 2)), (2, (3, 2)), (1, (3, 2))]
+    assert blown == [(7, ()), (3, (3, 2)), (2, (3, 2))]
     assert (
         [one.proposal.move.kind for one in found]
         == [MoveKind.JET_BEFORE] * 3

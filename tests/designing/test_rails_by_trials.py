@@ -256,9 +256,12 @@ def test_a_steady_jet_before_the_rails_blows_off_what_came_to_stand():
     assert narrowed.device.limit == pytest.approx(np.mean(needed), abs=1e-4)
     assert narrowed.device.limit > proposal.cuts[0].device.limit + 8e-4
     assert blown.cuts[2:] == proposal.cuts[1:]
-    # one jet is enough, and none where only what hangs stood, or there are no rails
+    # where only what hangs stood, it is what the narrowed track returns that a queue pushed past it
+    hooked = hanging.blow_off(proposal, trial, [rows["B@0"]], nut)
+    assert [cut.device for cut in hooked.cuts] == [cut.device for cut in blown.cuts]
+    assert hanging.blow_off(replace(proposal, cuts=proposal.cuts[1:]), trial, [rows["B@0"]], nut) is None
+    # one jet is enough, and none where there are no rails
     assert hanging.blow_off(blown, trial, [rows["C@270"]], nut) is None
-    assert hanging.blow_off(proposal, trial, [rows["B@0"]], nut) is None
     assert hanging.blow_off(replace(proposal, cuts=()), trial, [rows["C@270"]], nut) is None
     # what changes it after a jam keeps the jet where it is
     swept = end_at(Fate.RETURNED, "wiper", 4)
