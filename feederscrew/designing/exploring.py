@@ -697,7 +697,7 @@ def mends_of_jams(search: Search, candidate: Candidate, jammed: Sequence[JammedP
         wanted = {candidate.orientations.lying[row].name for row in candidate.trial.wanted}
         lying = candidate.orientations.lying
         eased = (proposals.ease_cut(proposal, stood.place, lying) for stood in jammed if stood.name in wanted)
-        yield from (changed for changed in (*eased, proposals.purify(candidate, tuple(poses))) if changed)
+        yield from (changed for changed in (*eased, *proposals.purify(candidate, tuple(poses))) if changed)
         return
     start = replace(calm_drive.drive_at(candidate.plain_bowl(search), 0.0), devices=search.plain.devices)
     before, cost_class = search.plain.devices, proposal.cost_class

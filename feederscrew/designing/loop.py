@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -32,6 +32,7 @@ from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind
 from feederscrew.designing.progress import Progress, SearchProgress, SearchStage, TrialBudget
 from feederscrew.designing.proof import Proof, RobustRun
+from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import (
     Alternative,
     Attempt,
@@ -309,10 +310,7 @@ def _change_by_proof(
         # what stood there, and where, says what to change
         jammed = _jammed(study)
         mends = exploring.mends_of_jams(search, candidate, jammed)
-        known = {other.proposal.chain for other in proved if other.bowl.drive == candidate.bowl.drive}
-        fresh = (mended for mended in mends if mended.chain not in known)
-        for mended in itertools.islice(fresh, policy.jam_mends):
-            tried = exploring.try_again(search, candidate, mended, candidate.bowl)
+        for tried in _try_mends(search, candidate, mends, proved, policy.jam_mends):
             if tried.attempt.clean:
                 return tried
         calm = hop(candidate.bowl).height < policy.lively_hop  # a livelier drive may clear what jams
@@ -342,11 +340,20 @@ def _change_by_proof(
         if lively is not None and lively.attempt.clean:
             return lively
         # what a full track lets past a sensor meets a second one; past steel, parts come apart
-        changed = (
-            proposals.add_second_sensor(candidate)
-            or proposals.purify(candidate, study.proof.left_instead)
-            or proposals.spread_apart(candidate, search.request.without)
+        ways = (
+            proposals.add_second_sensor(candidate),
+            *proposals.purify(candidate, study.proof.left_instead),
+            proposals.spread_apart(candidate, search.request.without),
         )
+        mends, losing = (mended for mended in ways if mended is not None), None
+        for tried in _try_mends(search, candidate, mends, proved, policy.purity_mends):
+            if tried.attempt.clean:
+                return tried
+            losing = losing or (tried if tried.trial.loses_wanted else None)
+        if losing is None or search.is_spent:
+            return None
+        # parts that hop may be lost at one more device: a calmer drive may carry them past both
+        return exploring.try_calmer(search, losing)
     if changed is None:
         return None
     tried = exploring.try_again(search, candidate, changed, candidate.bowl)
@@ -354,6 +361,18 @@ def _change_by_proof(
         return tried
     # parts that hop may be lost at one more device: a calmer drive may carry them past both
     return exploring.try_calmer(search, tried) or tried
+
+
+def _try_mends(
+    search: Search, candidate: Candidate, mends: Iterable[Proposal], proved: Sequence[Candidate], most: int
+) -> Iterator[Candidate]:
+    """Try changed chains at the drive of a candidate, so many at most; those proved there are left out."""
+    known = {other.proposal.chain for other in proved if other.bowl.drive == candidate.bowl.drive}
+    fresh = (mended for mended in mends if mended.chain not in known)
+    for mended in itertools.islice(fresh, most):
+        if search.is_spent:
+            return
+        yield exploring.try_again(search, candidate, mended, candidate.bowl)
 
 
 def _leaves_over_slot(study: DesignStudy, candidate: Candidate) -> bool:

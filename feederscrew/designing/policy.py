@@ -39,6 +39,10 @@ JAMS = Basis(
     "tnut_m5 and eyelet, which are none of docs/designs.csv: clean in short trials and in draws, they jam in "
     "a full track",
 )
+IMPURE = Basis(
+    ("lbracket_30x20x15",),
+    "97.8 % pure past two cameras; a gap before them stops what left instead, a narrowed track drops it",
+)
 JETS = Basis(
     ("tnut_m5",),
     "parts on their side stand at the blade of every chain of steel that was tried; with a jet before the "
@@ -116,6 +120,7 @@ class SearchPolicy:
     drawn_designs: int = _chosen(4)  # of a cost class that go through draws
     proof_changes: int = _chosen(3, MENDED_BY_PROOF)  # of one design, each by what its proof denied
     jam_mends: int = _chosen(3, JAMS)  # chains that are tried for a queue that jams, by what stood there
+    purity_mends: int = _chosen(3, IMPURE)  # chains that are tried for a queue that is impure
     # [s] of queues that denied designs, after which no other design is proved: of each cost class, and near
     # them. A jam is seen at once; impure by few parts in a hundred, as past a sensor, only after minutes
     denied_in_class: tuple[float, ...] = _chosen((90.0, 120.0, 1200.0), DENIED)

@@ -1,7 +1,7 @@
 """Chains to be tried for an orientation, and how a value is moved that a trial denies."""
 
 import functools
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -617,8 +617,8 @@ def _cut_more(
     return add_drop(proposal, [row] if row not in wanted else [], wanted, orientations)
 
 
-def purify(candidate: Any, left_instead: LeavingCounts) -> Proposal | None:
-    """Return the proposal of a candidate that cuts more of what left queues instead of what is wanted.
+def purify(candidate: Any, left_instead: LeavingCounts) -> Iterator[Proposal]:
+    """Yield proposals of a candidate that cut more of what left queues instead of what is wanted.
 
     Parameters
     ----------
@@ -626,19 +626,28 @@ def purify(candidate: Any, left_instead: LeavingCounts) -> Proposal | None:
     left_instead : LeavingCounts
         Poses in which parts left, the most frequent first.
 
-    Returns
-    -------
-    Proposal or None
-        None without one.
+    Yields
+    ------
+    Proposal
+        Those that change most for the most frequent one come first, then drops of each kind before the chain:
+        one that does for one part may stop another. None comes twice.
     """
-    lying = candidate.orientations.lying
+    proposal, trial, lying = candidate.proposal, candidate.trial, candidate.orientations.lying
     rows = {orientation.name: row for row, orientation in enumerate(lying)}
-    for pose, _ in left_instead:
-        if pose.kind is PoseKind.ORIENTATION and pose.name in rows:
-            changed = _cut_more(candidate.proposal, candidate.trial, rows[pose.name], lying)
-            if changed is not None:
-                return changed
-    return None
+    names_left = [pose.name for pose, _ in left_instead if pose.kind is PoseKind.ORIENTATION]
+    wrong = [rows[name] for name in names_left if name in rows and rows[name] not in trial.wanted]
+    seen = {proposal.chain}
+    for row in wrong:
+        changed = _cut_more(proposal, trial, row, lying)
+        if changed is not None and changed.chain not in seen:
+            seen.add(changed.chain)
+            yield changed
+    kinds: list[str] = []
+    while (dropped := add_drop(proposal, wrong, trial.wanted, lying, kinds)) is not None:
+        kinds.append(dropped.cuts[0].device.kind)
+        if dropped.chain not in seen:
+            seen.add(dropped.chain)
+            yield dropped
 
 
 def add_pressure_break(candidate: Any) -> Proposal | None:

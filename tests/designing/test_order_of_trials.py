@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
-from design_counts import end_at, lost
+from design_counts import design_study, end_at, lost, queue
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.devices.kinds import make_device
-from feederscrew.designing import calm_drive, exploring, proposals
+from feederscrew.designing import calm_drive, exploring, loop, proposals
 from feederscrew.designing.findings import Cause, Move, MoveKind
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.search import Candidate, Search, TrackAtBank
@@ -159,3 +159,54 @@ def test_a_wanted_orientation_that_counts_at_any_heading_goes_by_its_aspect(bloc
     assert one.wanted_name(block.ways) == "A@0"
     assert replace(one, any_heading=("A",)).wanted_name(block.ways) == "A"
     assert replace(one, any_heading=("B",)).wanted_name(block.ways) == "A@0"
+
+
+@pytest.mark.parametrize(
+    ("clean", "losing", "tried", "calmed"),
+    [
+        ({"narrowed"}, (), ["gap", "narrowed"], []),
+        (
+            {"calmer"},
+            {"gap", "narrowed"},
+            ["gap", "narrowed", "canyon"],
+            ["gap"],
+        ),  # three at most, no section
+        (set(), (), ["gap", "narrowed", "canyon"], []),
+    ],
+)
+def test_what_an_impure_queue_lets_through_meets_one_device_after_the_other(
+    monkeypatch, clean, losing, tried, calmed
+):
+    """Past a second sensor, which was proved; until a short trial is clean."""
+    seen, calm = [], []
+
+    def chain(name):
+        return SimpleNamespace(chain=name)
+
+    def outcome(name):
+        own = SimpleNamespace(loses_wanted=name in losing)
+        return SimpleNamespace(proposal=chain(name), attempt=SimpleNamespace(clean=name in clean), trial=own)
+
+    def try_again(search, candidate, changed, bowl):
+        seen.append(changed.chain)
+        return outcome(changed.chain)
+
+    def try_calmer(search, one):
+        calm.append(one.proposal.chain)
+        return outcome("calmer")
+
+    left = ("gap", "narrowed", "canyon", "cut-out")
+    monkeypatch.setattr(proposals, "add_second_sensor", lambda _: chain("sensor"))
+    monkeypatch.setattr(proposals, "purify", lambda *_: map(chain, left))
+    monkeypatch.setattr(proposals, "spread_apart", lambda *_: chain("spacing section"))
+    monkeypatch.setattr(exploring, "try_again", try_again)
+    monkeypatch.setattr(exploring, "try_calmer", try_calmer)
+    search = Search.begin(PART, DesignRequest(0.5), BOWL)
+    candidate = SimpleNamespace(
+        proposal=chain("one"), bowl=BOWL, orientations=SimpleNamespace(lying=()), shown=()
+    )
+    proved = [SimpleNamespace(proposal=chain("sensor"), bowl=BOWL)]
+    impure = design_study(PART, queue(220, 225))
+    changed = loop._change_by_proof(search, impure, candidate, proved)
+    assert seen == tried and calm == calmed
+    assert (changed is None) == (not clean) and (not clean or changed.attempt.clean)

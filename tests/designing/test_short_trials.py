@@ -249,9 +249,16 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     other = carried("A@0", along)  # nothing tells it from itself
     assert proposals.mend_proposal(proposal, seen, ways.lying, other) is None
     candidate = SimpleNamespace(proposal=proposal, trial=seen, orientations=ways)
-    (after,) = proposals.purify(candidate, ((UNKNOWN, 3), (orientation("A@90"), 2))).cuts  # what left a queue
+    first, *others = proposals.purify(
+        candidate, ((UNKNOWN, 3), (orientation("A@90"), 2))
+    )  # what left a queue
+    (after,) = first.cuts
+    # then a drop of each other kind before it
+    kinds = [other.cuts[0].device.kind for other in others]
+    assert others and all(other.cuts[1:] == proposal.cuts for other in others)
+    assert before.device.kind not in kinds and len({*kinds}) == len(kinds)
     assert abs(after.device.limit - after.largest.limit) < abs(before.device.limit - before.largest.limit)
-    assert proposals.purify(candidate, ((UNKNOWN, 3),)) is None
+    assert not list(proposals.purify(candidate, ((UNKNOWN, 3), (orientation("A@0"), 1))))
 
 
 def test_a_cut_at_which_what_is_wanted_stands_in_a_queue_cuts_less(rows, dropped):
@@ -270,7 +277,7 @@ def test_a_cut_at_which_what_is_wanted_stands_in_a_queue_cuts_less(rows, dropped
     candidate = SimpleNamespace(proposal=proposal, trial=seen, orientations=ways)
     mends = list(exploring.mends_of_jams(search, candidate, [JammedParts("A@0", 1, before.device.kind, 2)]))
     assert [one.cuts[0].device.limit for one in mends] == [after.device.limit]
-    (more,) = exploring.mends_of_jams(search, candidate, [JammedParts("A@90", 1, before.device.kind, 1)])
+    more, *_ = exploring.mends_of_jams(search, candidate, [JammedParts("A@90", 1, before.device.kind, 1)])
     assert abs(more.cuts[0].device.limit - before.largest.limit) < abs(
         before.device.limit - before.largest.limit
     )
