@@ -629,25 +629,26 @@ def purify(candidate: Any, left_instead: LeavingCounts) -> Iterator[Proposal]:
     Yields
     ------
     Proposal
-        Those that change most for the most frequent one come first, then drops of each kind before the chain:
-        one that does for one part may stop another. None comes twice.
+        What does for the most frequent one comes first, then drops of each other kind before the chain: one
+        that drops one part may stop another.
     """
     proposal, trial, lying = candidate.proposal, candidate.trial, candidate.orientations.lying
     rows = {orientation.name: row for row, orientation in enumerate(lying)}
     names_left = [pose.name for pose, _ in left_instead if pose.kind is PoseKind.ORIENTATION]
     wrong = [rows[name] for name in names_left if name in rows and rows[name] not in trial.wanted]
-    seen = {proposal.chain}
+    kinds: list[str] = []  # of drops that came
     for row in wrong:
         changed = _cut_more(proposal, trial, row, lying)
-        if changed is not None and changed.chain not in seen:
-            seen.add(changed.chain)
-            yield changed
-    kinds: list[str] = []
+        if changed is None:
+            continue
+        if len(changed.cuts) > len(proposal.cuts):
+            if changed.cuts[0].device.kind in kinds:
+                continue
+            kinds.append(changed.cuts[0].device.kind)
+        yield changed
     while (dropped := add_drop(proposal, wrong, trial.wanted, lying, kinds)) is not None:
         kinds.append(dropped.cuts[0].device.kind)
-        if dropped.chain not in seen:
-            seen.add(dropped.chain)
-            yield dropped
+        yield dropped
 
 
 def add_pressure_break(candidate: Any) -> Proposal | None:
