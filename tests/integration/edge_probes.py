@@ -51,6 +51,7 @@ def _of_device(tooled, placed):
             *_blades(tooled, placed),
             *_bores(placed),
             *_wall(tooled, placed),
+            *_free_edge(placed, width),
         )
     ]
 
@@ -182,6 +183,13 @@ def _wall(tooled, placed):
         yield "wall", s, y, placed.level, z, off < 0.0
 
 
+def _free_edge(placed, width):
+    """Within and beyond the free edge of the bare track before a device, just below its surface."""
+    for share, off in itertools.product(SHARES, (ASIDE, -ASIDE)):
+        s = placed.start + share * (placed.begin - placed.start)
+        yield "free edge", s, width + off, placed.level, -0.5 * ASIDE, off < 0.0
+
+
 def in_section(tooled, probe):
     """Return where a probe is in the printed section: (3,) [m], the wall tangent to X at the origin."""
     bank, theta = float(tooled.bank_at(probe.s)), probe.s / tooled.track.radius
@@ -202,6 +210,25 @@ def in_queue(tooled, placed, probe):
     falls.append((probe.level - placed.level, float(tooled.bank_at(placed.begin))))
     low, out = (sum(fall * turn(bank) for fall, bank in falls) for turn in (np.cos, np.sin))
     return _in_plane(tooled, probe, probe.s, low, out)
+
+
+def on_ramp(tooled, placed, probe, begin, in_frame):
+    """Return where a probe of a ramp is in the trial: (3,) [m]. It falls upright, and the track leans.
+
+    The ramp goes straight on from where its ledge ends, which a consumer has ``in_frame``; ``begin`` [m] is
+    its length along the wall there.
+    """
+    bank, climb = float(tooled.bank_at(placed.begin)), float(tooled.climb_at(placed.begin))
+    end = placed.begin + placed.drop.length
+    foot = in_frame(tooled, placed, Probe(probe.what, end, 0.0, placed.level, 0.0, True))
+    theta, turn = (begin + placed.drop.length) / placed.radius, (probe.s - end) / placed.radius
+    ahead, inwards = [np.cos(theta), np.sin(theta), 0.0], [-np.sin(theta), np.cos(theta), 0.0]
+    r = placed.radius - probe.y
+    # lengths along the wall are level ones: what lies along the slope is shorter by the cosine
+    upright = np.sin(climb) * np.cos(climb), np.cos(climb) * np.sin(bank), np.cos(climb) * np.cos(bank)
+    way = np.array([r * np.sin(turn), placed.radius - r * np.cos(turn), 0.0])
+    way = way + (probe.level - placed.level) * np.array(upright)
+    return foot + way[0] * np.array(ahead) + way[1] * np.array(inwards) + [0.0, 0.0, way[2]]
 
 
 def _in_plane(tooled, probe, s, low, out):
