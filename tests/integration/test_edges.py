@@ -17,7 +17,7 @@ import track_views as views
 from feederscrew.bowl.devices.features import Features, Jet, Sensor, Slope
 from feederscrew.bowl.devices.kinds import KINDS, make_device
 from feederscrew.bowl.record import Track
-from feederscrew.cad import facets
+from feederscrew.cad import closed_body, facets
 from feederscrew.cad import section as printed
 from feederscrew.cad.closed_body import pieces
 from feederscrew.cad.exact import exact_body, exact_file
@@ -25,6 +25,7 @@ from feederscrew.output import bowl_sheet, tooling_drawing
 from feederscrew.output.drafting import Drawing
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.solid import WALL, WALL_OVERLAP_M
 from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.trials import queue, staging
 
@@ -44,6 +45,8 @@ DROPS = {  # what falls on a bank lies further out as well, and so does all behi
     "a ledge between twists": [("step", {"limit": 4e-3}), ("banked track", {"angle": 5.0}),
                                ("tipping ledge", {"limit": 8e-3}), ("banked track ", {"angle": 2.0}),
                                ("wiper", {"limit": 6e-3}), ("gap", {"limit": 7e-3})],
+    "blades on a steep bank": [("banked track", {"angle": 16.0}), ("wiper", {"limit": 5e-3, "sweep": 28.0}),
+                               ("air jet", JET), ("height bar", {"limit": 7e-3})],
     "spaced within a groove": [("V groove", {"angle": 25.0}), ("spacing section", {"angle": 1.0}),
                                ("banked track", {"angle": 3.0}), ("canyon", {"limit": 4e-3})],
 }  # fmt: skip
@@ -58,7 +61,7 @@ def laid_out(case):
     every = orientations(chains.part(), find(chains.part()), track)
     chain = []
     for kind, values in DROPS[case]:
-        own = {k: np.radians(x) if k == "angle" else x for k, x in values.items()}
+        own = {k: np.radians(x) if k in ("angle", "sweep") else x for k, x in values.items()}
         chain.append(make_device(kind.strip(), "test", **own))
     return track, every, chain, lay_out(track, chain, every)
 
@@ -231,6 +234,28 @@ def test_edges_of_the_print_and_of_the_bowl(case):
     whole, gates = pieces(plan, facets)
     bowl = of_facets([whole, *(gate for _, gate in gates)])
     assert not wrong(tooled, lambda _, probe: edges.in_bowl(tooled, plan, probe), lambda _: bowl)
+
+
+@pytest.mark.parametrize("case", [0, 3, "steps on a bank", "blades on a steep bank"])
+def test_bores_go_through_the_wall_and_gates_stand_in_their_notches(case):
+    _, every, _, tooled = laid_out(case)
+    section, thick = of_facets([views.mesh(*printed.solid(tooled))]), WALL - WALL_OVERLAP_M
+    plan, _ = chains.bowl_of(tooled, every)
+    whole, gates = pieces(plan, facets)
+    bowl, own = of_facets([whole]), iter(of_facets([gate]) for _, gate in gates)
+    seen = 0
+    for placed in tooled.devices:
+        for probe in edges.through_bores(placed, thick):
+            assert not section(edges.in_section(tooled, probe)), probe
+        notch, gate = edges.gate_in_notch(placed, closed_body.GATE_PLAY_M, plan.material.wall)
+        bores = edges.through_bores(placed, plan.material.wall)
+        for probe in (*bores, *notch):
+            assert bowl(edges.in_bowl(tooled, plan, probe)) == probe.solid, probe
+        is_gate = next(own) if gate else None
+        for probe in gate:
+            assert is_gate(edges.in_bowl(tooled, plan, probe)) == probe.solid, probe
+        seen += len(bores) + len(gate)
+    assert seen > 0
 
 
 @pytest.mark.needs("OCP")

@@ -255,7 +255,7 @@ def differences(seed, radius, consumers):
             bores = views.in_order([*tried.bores, *mounts])
             assert len(view.bores) == len(bores), (seed, device.kind, name)
             for one, other in zip(view.bores, bores):
-                yield device.kind, name, "bore", max(abs(one[0] - other[0]), abs(one[1] - other[1]))
+                yield device.kind, name, "bore", max(abs(own - wanted) for own, wanted in zip(one, other))
 
 
 def drawn_view(tooled, placed, number):
