@@ -1,4 +1,4 @@
-"""How many parts of a heap come single: the record that `feederscrew.trials.heap` returns, and its columns."""
+"""How many parts of a heap come single: what `feederscrew.trials.heap` returns, and its columns."""
 
 from dataclasses import dataclass
 
