@@ -13,7 +13,7 @@ from feederscrew.base.geometry.grids import Grid, evaluate, span
 from feederscrew.base.records import ReadableRecord
 from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import Quantity, former_keywords
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, BowlGrid
 from feederscrew.motion import floor_balance, limits, motion_maps
 from feederscrew.motion.cycle import Cycle
 from feederscrew.part.record import Part
@@ -48,7 +48,7 @@ class FloorStudy(ReadableRecord, view="floor.FLOOR_VIEW"):
         """Return the heading [rad] that the part turns to while it slides; NaN for none."""
         return floor_balance.stable_heading(self.posture, self.bowl)
 
-    def cells(self, bowl: Bowl, heading: float | Floats) -> dict[str, Array]:
+    def cells(self, bowl: BowlGrid, heading: float | Floats) -> dict[str, Array]:
         """Compute the upper reversal for arrays of bowl settings and headings theta [rad].
 
         Arrays by name, as ``motion.motion_maps.floor_cells`` has them.
@@ -58,8 +58,10 @@ class FloorStudy(ReadableRecord, view="floor.FLOOR_VIEW"):
     def over_angle_and_friction(self, count: int) -> Grid:
         """Compute the upper reversal over ``count`` values of either quantity, as Figure 5-6."""
 
-        def function(beta: Any, mu: Any) -> dict[str, Array]:
-            varied = replace(self.bowl, drive=replace(self.bowl.drive, vibration_angle=beta))
+        many: BowlGrid = self.bowl
+
+        def function(beta: Floats, mu: Floats) -> dict[str, Array]:
+            varied = replace(many, drive=replace(many.drive, vibration_angle=beta))
             return self.cells(floor_balance.with_friction(varied, mu), self.heading)
 
         angle = span("beta_deg", 0.0, TOP_ANGLE, count, np.pi / 180.0, "deg")
@@ -69,9 +71,11 @@ class FloorStudy(ReadableRecord, view="floor.FLOOR_VIEW"):
     def over_frequency_and_amplitude(self, count: int) -> Grid:
         """Compute it over ``count`` values of frequency [Hz] and of amplitude [mm], as Figure 5-7."""
 
-        def function(f: Any, a: Any) -> dict[str, Array]:
-            drive = replace(self.bowl.drive, frequency=f, amplitude=a)
-            return self.cells(replace(self.bowl, drive=drive), self.heading)
+        many: BowlGrid = self.bowl
+
+        def function(f: Floats, a: Floats) -> dict[str, Array]:
+            drive = replace(many.drive, frequency=f, amplitude=a)
+            return self.cells(replace(many, drive=drive), self.heading)
 
         highest = max(TOP_FREQUENCY, MAP_MARGIN * self.bowl.drive.frequency)
         widest = max(TOP_AMPLITUDE, MAP_MARGIN * self.bowl.drive.amplitude)

@@ -1,4 +1,4 @@
-"""How many parts of a heap come single: the count of `feederscrew.trials.heap`, and its columns."""
+"""How many parts of a heap come single: what `feederscrew.trials.heap` returns, and its columns."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from feederscrew.base.columns import Column
 
 @dataclass(frozen=True)
 class HeapCount:
-    """How many parts of one heap came single as each was pulled."""
+    """How many parts of one heap came single as each was pulled out."""
 
-    parts: int  # that were pulled
-    single: int  # of them, that nothing came along with
-    mixed: bool  # laid as after long mixing, hooks and all; else all started apart
-    seed: int
+    parts: int  # that were pulled, and of which the pull told
+    single: int  # of them, with which no other part came along
+    mixed: bool  # whether they were laid as after long mixing and may hook; else all started apart
+    seed: int  # of the random places and poses
 
     @property
     def value(self) -> float:

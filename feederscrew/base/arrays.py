@@ -8,9 +8,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
-# A number, or an array of them that goes into a field declared as one: a Bowl holds arrays where a map is
-# computed at once. ``Reals`` is the type of what goes into no such field.
-Values = Any
+Values = Any  # a number, or an array of them, where what is returned is of the same kind
 Array = NDArray[Any]  # of any numbers
 Reals = float | Floats  # one, or an array of them that broadcasts
 Vector = Floats  # (2,) or (3,)

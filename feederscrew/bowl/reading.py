@@ -23,7 +23,7 @@ from feederscrew.base.signatures import Keywords
 from feederscrew.bowl import device_list as devices
 from feederscrew.bowl import friction_table, schema, verified
 from feederscrew.bowl.devices.base import Device
-from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track, vibration_angle
+from feederscrew.bowl.record import Bowl, BowlGrid, Drive, Friction, Machine, Sizing, Track, vibration_angle
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
 
 DEVICES_SECTION = devices.DEVICES_SECTION
@@ -267,7 +267,7 @@ def record(settings: Sequence[Setting]) -> Bowl:
     return bowl
 
 
-def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
+def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> BowlGrid:
     """Return the bowl of settings of which some are varied, and with them the keys that follow these.
 
     Parameters
@@ -279,7 +279,7 @@ def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
 
     Returns
     -------
-    Bowl
+    BowlGrid
         The varied fields are those arrays.
     """
     varied = {name: Setting(BY_NAME[name], "", value, "varied") for name, value in values.items()}

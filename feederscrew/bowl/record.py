@@ -5,17 +5,27 @@ Source: a rigid bowl on inclined leaf springs; docs/method/bowl.md.
 
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar, Unpack, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Unpack, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from feederscrew.base.arrays import Reals
 from feederscrew.base.columns import Column
 from feederscrew.base.records import ReadableRecord
 from feederscrew.bowl.devices.base import Device
 
 if TYPE_CHECKING:
+    from typing_extensions import TypeVar
+
     from feederscrew.bowl.values import BowlValues, Overrides
+
+    # a number, or an array of them where many bowls are computed at once
+    Number = TypeVar("Number", bound=Reals, default=float, covariant=True)
+else:
+    from typing import TypeVar
+
+    Number = TypeVar("Number")
 
 VALUES_MODULE = "feederscrew.bowl.values"
 WRITING_MODULE = "feederscrew.bowl.writing"
@@ -23,24 +33,24 @@ MAX_TRACK_WIDTH_SHARE = 0.95  # of the wall's radius: about the axis there is no
 
 
 @dataclass(frozen=True)
-class Drive:
+class Drive(Generic[Number]):
     """Vibration of the bowl: harmonic, and straight, unless its last four fields say otherwise."""
 
-    amplitude: float  # [m] half the peak-to-peak stroke, along the vibration direction
-    frequency: float  # [Hz]
-    vibration_angle: float  # [rad] beta, from the floor or track surface to the vibration direction
-    direction: float  # [rad] alpha, of the vibration in the floor, from the Z axis
-    phase: float = 0.0  # [rad] by which the motion along the normal leads the one along the track
-    second_harmonic: float = 0.0  # [1] amplitude at twice the frequency, of ``amplitude``
-    second_harmonic_phase: float = 0.0  # [rad] psi of sin(w t) + r sin(2 w t + psi)
-    second_harmonic_angle: float | None = None  # [rad] of a second mode; None: as vibration_angle
+    amplitude: Number  # [m] half the peak-to-peak stroke, along the vibration direction
+    frequency: Number  # [Hz]
+    vibration_angle: Number  # [rad] beta, from the floor or track surface to the vibration direction
+    direction: Number  # [rad] alpha, of the vibration in the floor, from the Z axis
+    # the defaults are numbers, as those of a Bowl are
+    phase: Number = 0.0  # type: ignore[assignment]  # [rad] by which the motion along the normal leads
+    second_harmonic: Number = 0.0  # type: ignore[assignment]  # [1] of ``amplitude``, at twice the frequency
+    second_harmonic_phase: Number = 0.0  # type: ignore[assignment]  # [rad] psi: sin(w t) + r sin(2 w t + psi)
+    second_harmonic_angle: Number | None = None  # [rad] of a second mode; None: as vibration_angle
 
     @property
-    def second_harmonic_turn(self) -> float:
+    def second_harmonic_turn(self) -> "Number | float":
         """Angle from the direction of the first harmonic up to that of the second [rad]."""
-        if self.second_harmonic_angle is None:
-            return 0.0
-        return self.second_harmonic_angle - self.vibration_angle
+        angle: Any = self.second_harmonic_angle
+        return 0.0 if angle is None else cast("Number", angle - self.vibration_angle)
 
 
 DRIVE_PHASE_COLUMNS: tuple[Column[Drive], ...] = (  # of documents
@@ -50,33 +60,33 @@ DRIVE_PHASE_COLUMNS: tuple[Column[Drive], ...] = (  # of documents
 
 
 @dataclass(frozen=True)
-class Friction:
+class Friction(Generic[Number]):
     """Coulomb coefficients between part and bowl."""
 
-    static: float  # [1] against sliding up the track, and on the floor
-    kinetic: float  # [1] never above static
-    wall: float  # [1] kinetic, against the bowl wall
-    static_backward: float | None = None  # [1] against sliding down the track; None: as static
-    kinetic_backward: float | None = None  # [1] never above static_backward; None: as kinetic
+    static: Number  # [1] against sliding up the track, and on the floor
+    kinetic: Number  # [1] never above static
+    wall: Number  # [1] kinetic, against the bowl wall
+    static_backward: Number | None = None  # [1] against sliding down the track; None: as static
+    kinetic_backward: Number | None = None  # [1] never above static_backward; None: as kinetic
 
     @property
-    def backward(self) -> tuple[float, float]:
+    def backward(self) -> tuple[Number, Number]:
         """Static and kinetic coefficient against sliding down the track."""
         static, kinetic = self.static_backward, self.kinetic_backward
         return self.static if static is None else static, self.kinetic if kinetic is None else kinetic
 
 
 @dataclass(frozen=True)
-class Track:
+class Track(Generic[Number]):
     """The helical track along the bowl wall."""
 
-    climb: float  # [rad] phi, rise along the track
-    bank: float  # [rad] delta, tilt about the track's direction
-    radius: float  # [m] of the bowl wall
-    width: float  # [m]
+    climb: Number  # [rad] phi, rise along the track
+    bank: Number  # [rad] delta, tilt about the track's direction
+    radius: Number  # [m] of the bowl wall
+    width: Number  # [m]
 
     @property
-    def extent(self) -> float:
+    def extent(self: "Track[float]") -> float:
         """Return how far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
         return min(self.width, MAX_TRACK_WIDTH_SHARE * self.radius)
 
@@ -185,14 +195,14 @@ class Sizing:
 
 
 @dataclass(frozen=True)
-class Bowl(ReadableRecord, view="record_lines.BOWL_VIEW"):
+class Bowl(ReadableRecord, Generic[Number], view="record_lines.BOWL_VIEW"):
     """Drive, surface, track and devices of one bowl."""
 
-    drive: Drive
-    friction: Friction
-    track: Track
-    restitution: float  # [1] of an impact on the track
-    gravity: float  # [m/s2]
+    drive: Drive[Number]
+    friction: Friction[Number]
+    track: Track[Number]
+    restitution: Number  # [1] of an impact on the track
+    gravity: Number  # [m/s2]
     machine: Machine = None  # type: ignore[assignment]  # None only of a record made by hand
     sizing: Sizing = None  # type: ignore[assignment]
     devices: tuple[Device, ...] = ()  # along the track, in the order parts meet them
@@ -242,6 +252,9 @@ class Bowl(ReadableRecord, view="record_lines.BOWL_VIEW"):
         return cast(str, import_module(WRITING_MODULE).yaml_text(self))
 
 
+# Many bowls at once: fields of drive, friction and track, restitution and gravity may be arrays, which
+# broadcast together. A ``Bowl`` is one of these as well.
+BowlGrid = Bowl[Reals]
 RIGHT_ANGLE_RAD = 0.5 * np.pi  # [rad] upright
 
 

@@ -154,7 +154,11 @@ def _chains(search: Search, tracks: list[TrackAtBank], cost_class: int) -> Itera
 
 
 def _blown_off(search: Search) -> Iterator[Candidate]:
-    """Candidates with rails of steel and a jet before them, for what came to stand; the latest first."""
+    """Yield candidates with a steady air jet before their rails, which blows off what stood at the rails.
+
+    They are made of the chains whose parts stood at rails in a trial or a queue, the latest first, at most
+    ``air_trials`` of them. Each has a short trial of its own; a chain that was tried already is left out.
+    """
     state = search.state
     if set(search.request.without) & {kind.kind for kind in KINDS.values() if kind.action is Action.BLOW}:
         return

@@ -383,34 +383,41 @@ class RailsSearch:
 def blow_off(
     proposal: Proposal, trial: ShortTrial, stands: Sequence[int], orientations: Sequence[Orientation]
 ) -> Proposal | None:
-    """Return a chain with a steady jet at its begin, which blows off what would stand at its rails.
+    """Return a chain that begins with a steady air jet against the parts that stand at its rails.
 
-    A queue pushes past a cut what single parts fall from, and a blade does not sweep what leans on it: air
-    meets no face. It blows where the track is whole, before what it blows off leans on the edge of a cut. A
-    cut that was to return the same goes to the middle of what is left to it: the less it takes of the track,
-    the less hooks there.
+    The jet blows off orientations that stood at the rails and are not wanted. Of all jets that
+    leave the wanted orientations, the one that blows off most of those that stood is taken. Cuts and blades
+    do not always do this: a queue pushes parts past a cut from which a single part falls, and a part may
+    lean on a blade without being swept off.
+
+    The jet stands first, where the track is whole: further on a part may already lean on the edge of a cut.
+    A cut that now has fewer orientations to return is made smaller, see ``_leave_to``.
 
     Parameters
     ----------
     proposal : Proposal
-        With rails.
+        A chain with rails.
     trial : ShortTrial
-        That shows what hangs: the jet leaves it on the track.
+        Its trial, which says the wanted orientations: the jet leaves these on the track.
     stands : sequence of int
-        Orientations that came to stand, in a queue or in the trial. Where they all hang, what a cut before
-        the rails returns is blown off in their place: pushed past that cut, it is what others stand behind.
+        Rows of the orientations that stood still, in a queue or in the trial. If they are all wanted, the
+        jet blows off what a cut before the rails returns: a queue pushes such parts past the cut, and they
+        block the others.
     orientations : sequence of Orientation
+        All of the part.
 
     Returns
     -------
     Proposal or None
-        None where the chain has a jet, or none surely tells one of those that stand from what hangs.
+        None if the chain has no rails or has a jet already, if there is nothing to blow off, or if each jet
+        that is sure to blow off one of these orientations blows off a wanted one too. A jet is sure to blow
+        an orientation off where that fails by ``MARGINS[-1]`` or more.
     """
     wanted, placed = trial.wanted, [cut.device.action for cut in proposal.cuts]
     if not wanted or Action.BLOW in placed or Action.HANG not in placed:
         return None
     before = placed.index(Action.HANG)
-    # what falls from a cut before them, a queue may push past it as well
+    # a queue may also push past a cut what a single part falls from there: the jet shall blow that off too
     leaks = [
         row
         for row, orientation in enumerate(orientations)
@@ -437,7 +444,12 @@ def blow_off(
 
 
 def _leave_to(cut: Cut, gone: Bools, wanted: Sequence[int], orientations: Sequence[Orientation]) -> Cut:
-    """A cut amid what it passes and what it has to return beside those that are gone by another device."""
+    """Return a cut with a new value, where another device already blows off a part of what it returned.
+
+    The value lies in the middle between the orientations that pass the cut and those that it alone returns.
+    The cut stays as it is if the other device blows off none or all of its orientations, or if less than
+    ``LEAST_WINDOW`` lies between the two. ``gone`` (M,) tells which orientations are blown off.
+    """
     kind = type(cut.device)
     returned = [row for row, one in enumerate(orientations) if one.name in cut.returns]
     left = [row for row in returned if not gone[row] and row not in wanted]

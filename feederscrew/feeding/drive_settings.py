@@ -2,14 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import overload
 
 import numpy as np
 
 from feederscrew.base import units
-from feederscrew.base.arrays import Floats
+from feederscrew.base.arrays import Floats, Reals
 from feederscrew.base.errors import ArgumentError, FeederError
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, BowlGrid
 from feederscrew.bowl.schema import BY_NAME, Key
 from feederscrew.motion import conveying as answer
 from feederscrew.motion.limits import Regime
@@ -199,22 +199,27 @@ def solutions(
     raise ArgumentError("target", what + most, mend)
 
 
-def turned(bowl: Bowl, key: Key, value: Any) -> Bowl:
+@overload
+def turned(bowl: Bowl, key: Key, value: float) -> Bowl: ...
+@overload
+def turned(bowl: BowlGrid, key: Key, value: Reals) -> BowlGrid: ...
+def turned(bowl: BowlGrid, key: Key, value: Reals) -> BowlGrid:
     """Return the bowl with one key of its drive at another value, or at an array of values.
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
     key : Key
         Of the section ``drive``.
     value : float or (V,) float [SI]
 
     Returns
     -------
-    Bowl
+    BowlGrid
         Its field of that key is an array where ``value`` is one.
     """
-    return replace(bowl, drive=replace(bowl.drive, **{key.word: value}))
+    drive = replace(bowl.drive, **{key.word: value})
+    return replace(bowl, drive=drive)
 
 
 @dataclass(frozen=True, eq=False)

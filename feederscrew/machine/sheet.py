@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from feederscrew.bowl.arguments import Quantity, former_keywords
 from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import Setting, has_machine
-from feederscrew.bowl.record import Bowl, Track, vibration_angle
+from feederscrew.bowl.record import Bowl, BowlGrid, Track, vibration_angle
 from feederscrew.bowl.size import Size
 from feederscrew.cad import solid as solidbowl
 from feederscrew.cad.closed_body import BowlSolid
@@ -553,9 +553,10 @@ def _sheet(
     def velocities(strokes: Floats) -> Floats:
         """At multiples of the bowl's stroke [m/s]; the stroke ends where the magnet would strike."""
         most = max(leaves.greatest_amplitude(bowl), bowl.drive.amplitude)
-        amplitudes: Any = np.minimum(bowl.drive.amplitude * strokes, most)
-        drive = replace(bowl.drive, amplitude=amplitudes, vibration_angle=cast(Any, emptied.angles))
-        return check.frozen(answer.cells(replace(bowl, drive=drive))["velocity"])
+        many: BowlGrid = bowl
+        amplitudes = np.minimum(bowl.drive.amplitude * strokes, most)
+        drive = replace(many.drive, amplitude=amplitudes, vibration_angle=emptied.angles)
+        return check.frozen(answer.cells(replace(many, drive=drive))["velocity"])
 
     return MachineSheet(
         bowl=bowl,

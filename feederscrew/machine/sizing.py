@@ -1,7 +1,6 @@
 """The bowl that a part needs: diameter, track, climb, turns; its fill; and the stroke that brings a rate."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +13,7 @@ from feederscrew.bowl.devices.orientation_names import nearest
 from feederscrew.bowl.record import (
     RIGHT_ANGLE_RAD,
     Bowl,
+    BowlGrid,
     Machine,
     Sizing,
     Track,
@@ -510,10 +510,10 @@ def _speeds(bowl: Bowl, amplitudes: Floats, strokes: ArrayLike, angles: ArrayLik
 
     No stroke is beyond what drives are built for: there the magnet strikes.
     """
-    each: Any = np.minimum(np.multiply.outer(amplitudes, strokes), greatest_amplitude(bowl))
-    drive = replace(bowl.drive, amplitude=each)
+    many: BowlGrid = bowl
+    each = np.minimum(np.multiply.outer(amplitudes, strokes), greatest_amplitude(bowl))
+    drive = replace(many.drive, amplitude=each)
     if angles is not None:
-        turned: Any = np.broadcast_to(angles, each.shape)
-        drive = replace(drive, vibration_angle=turned)
-    velocities = answer.cells(replace(bowl, drive=drive))["velocity"]
+        drive = replace(drive, vibration_angle=np.broadcast_to(angles, each.shape))
+    velocities = answer.cells(replace(many, drive=drive))["velocity"]
     return np.where(np.isfinite(velocities), velocities, -np.inf).min(axis=-1)

@@ -17,7 +17,7 @@ from feederscrew.base.units import DEG, MM
 from feederscrew.bowl import arguments
 from feederscrew.bowl.arguments import former_keywords
 from feederscrew.bowl.reading import KeyRange, Setting
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, BowlGrid
 from feederscrew.motion import conveying as answer
 from feederscrew.motion import steady
 from feederscrew.motion.conveying import Neighbours
@@ -117,7 +117,7 @@ class ConveyMap(ReadableRecord, view="convey.MAP_VIEW"):
 
     ranges: tuple[KeyRange, KeyRange]
     grid: grids.Grid  # velocities [m/s], several, throw_number [1], status; the codes are the regimes
-    line: Bowl | None  # operating points to be drawn over the map; None if not asked for
+    line: BowlGrid | None  # operating points to be drawn over the map; None if not asked for
 
     @property
     def statuses(self) -> Ints:

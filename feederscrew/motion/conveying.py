@@ -12,18 +12,18 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any
+from typing import Any, cast, overload
 
 import numpy as np
 
 from feederscrew.base import check
-from feederscrew.base.arrays import Array, Floats, Values
+from feederscrew.base.arrays import Array, Floats, Reals
 from feederscrew.base.columns import Column
 from feederscrew.base.errors import ConfigError
 from feederscrew.base.geometry.compiled import compiled, entry, on_disk, outlined
 from feederscrew.base.records import ReadableRecord
 from feederscrew.base.units import MM_S
-from feederscrew.bowl.record import Bowl, Friction, Sizing
+from feederscrew.bowl.record import Bowl, BowlGrid, Friction, Number, Sizing
 from feederscrew.motion import limits, operating_point, point_motion, steady, waves
 from feederscrew.motion.limits import Regime
 from feederscrew.motion.operating_point import PHASES, OperatingPoint
@@ -175,7 +175,7 @@ def _surveyed(setting: OperatingPoint) -> Floats:
     return check.frozen(out)
 
 
-def conveying(bowl: Bowl) -> Bowl:
+def conveying(bowl: Bowl[Number]) -> Bowl[Number]:
     """Return the bowl itself if it can convey.
 
     Parameters
@@ -202,13 +202,13 @@ def conveying(bowl: Bowl) -> Bowl:
         raise ConfigError("drive.amplitude", "is 0 mm, so nothing moves", "give more than 0 mm")
     pairs = zip(("", "_backward"), ((bowl.friction.static, bowl.friction.kinetic), bowl.friction.backward))
     for suffix, (static, kinetic) in pairs:
-        if np.any(kinetic > static):
+        if np.any(np.greater(kinetic, static)):
             what, mend = f"is above friction.static{suffix}", f"lower it or raise friction.static{suffix}"
             raise ConfigError(f"friction.kinetic{suffix}", what, mend)
     return bowl
 
 
-def settings(bowl: Bowl) -> Floats:
+def settings(bowl: BowlGrid) -> Floats:
     """Return the ``OperatingPoint`` of a bowl, its fields along the last axis.
 
     The bank is reckoned as friction (``limits.level``). A bowl at rest gets the acceleration ratio
@@ -216,7 +216,7 @@ def settings(bowl: Bowl) -> Floats:
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
         Its fields may be arrays that broadcast together.
 
     Returns
@@ -322,7 +322,7 @@ def throw_of_flight(periods: float) -> float:
     return math.hypot(1.0, (0.5 * turn * turn - 1.0 + math.cos(turn)) / (turn - math.sin(turn)))
 
 
-def greatest_speed(bowl: Bowl) -> float:
+def greatest_speed(bowl: Bowl[Number]) -> Number:
     """Return the greatest speed of the plate: A w, of the first harmonic.
 
     Parameters
@@ -338,7 +338,8 @@ def greatest_speed(bowl: Bowl) -> float:
     ----------
     The derivative of the motion A sin(w t).
     """
-    return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
+    amplitude: Any = bowl.drive.amplitude
+    return cast("Number", amplitude * 2.0 * np.pi * bowl.drive.frequency)
 
 
 def validity(run: Answer, bowl: Bowl) -> str:
@@ -363,12 +364,12 @@ def validity(run: Answer, bowl: Bowl) -> str:
     return f"{remarks}; the centripetal force, up to {100.0 * share:.2g} % of the weight, is left out"
 
 
-def cells(bowl: Bowl) -> dict[str, Array]:
+def cells(bowl: BowlGrid) -> dict[str, Array]:
     """Return how a part travels over a map.
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
         Its fields are arrays that broadcast together.
 
     Returns
@@ -481,12 +482,20 @@ def _loop(rows: Floats, out: Floats, arrays: steady.Memory) -> None:
         steady.survey(point, out[k], arrays)
 
 
-def scaled(bowl: Bowl, *, amplitude: Values = 1.0, friction: Values = 1.0, angle: Values = 1.0) -> Bowl:
+@overload
+def scaled(
+    bowl: Bowl[Number], *, amplitude: float = ..., friction: float = ..., angle: float = ...
+) -> Bowl[Number]: ...
+@overload
+def scaled(
+    bowl: BowlGrid, *, amplitude: Reals = ..., friction: Reals = ..., angle: Reals = ...
+) -> BowlGrid: ...
+def scaled(bowl: BowlGrid, *, amplitude: Reals = 1.0, friction: Reals = 1.0, angle: Reals = 1.0) -> BowlGrid:
     """Return the bowl with its stroke, every coefficient of friction or its vibration angle multiplied.
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
     amplitude : float or (...) float [1]
         Factor of the stroke.
     friction : float or (...) float [1]
@@ -496,7 +505,7 @@ def scaled(bowl: Bowl, *, amplitude: Values = 1.0, friction: Values = 1.0, angle
 
     Returns
     -------
-    Bowl
+    BowlGrid
     """
     steep, mu = np.minimum(bowl.drive.vibration_angle * angle, np.pi / 2), bowl.friction
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * amplitude, vibration_angle=steep)
@@ -582,7 +591,7 @@ def restitution_doubt(bowl: Bowl) -> Neighbours:
     return Neighbours(*(answer(replace(bowl, restitution=end)).velocity for end in rebounds(bowl)))
 
 
-def surfaces(bowl: Bowl, hops: bool) -> list[Bowl]:
+def surfaces(bowl: Bowl[Number], hops: bool) -> list[Bowl[Number]]:
     """Return the bowl on the surfaces that may be there, its own first.
 
     They are the bowl as it is, with friction ``FRICTION_DOUBT`` [1] lower and higher, and with both ends of
@@ -604,22 +613,25 @@ def surfaces(bowl: Bowl, hops: bool) -> list[Bowl]:
     docs/validation.md, "Restitution is a spread".
     """
     bowls = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
-    return bowls + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
+    return bowls + (
+        [replace(bowl, restitution=cast("Number", end)) for end in rebounds(bowl)] if hops else []
+    )
 
 
-def rebounds(bowl: Bowl) -> tuple[float, ...]:
+def rebounds(bowl: BowlGrid) -> tuple[float, ...]:
     """Return both ends of the spread of a bowl's restitution.
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
+        Its restitution is one number; other fields may be arrays.
 
     Returns
     -------
     tuple of float [1]
         Not above ``MAX_RESTITUTION``.
     """
-    return tuple(min(end, MAX_RESTITUTION) for end in even_range(bowl.restitution))
+    return tuple(min(end, MAX_RESTITUTION) for end in even_range(float(bowl.restitution)))
 
 
 def even_range(restitution: float) -> tuple[float, float]:
@@ -643,7 +655,7 @@ def even_range(restitution: float) -> tuple[float, float]:
     return restitution - half, restitution + half
 
 
-def inwards(bowl: Bowl) -> Bowl:
+def inwards(bowl: Bowl) -> BowlGrid:
     """Return the bowl at radii from ``INNER_RADIUS_SHARE`` of the track's to its own, evenly spaced.
 
     Parameters
@@ -652,13 +664,13 @@ def inwards(bowl: Bowl) -> Bowl:
 
     Returns
     -------
-    Bowl
+    BowlGrid
         Its fields are arrays over the radii.
     """
     return at_radius(bowl, bowl.track.radius * np.linspace(INNER_RADIUS_SHARE, 1.0, RADIUS_STEPS))
 
 
-def at_radius(bowl: Bowl, radius: Values) -> Bowl:
+def at_radius(bowl: BowlGrid, radius: Reals) -> BowlGrid:
     """Return the bowl as a part feels it nearer to its axis.
 
     All points rise by the same amplitude and turn by the same angle. So the tangent of the angle to the
@@ -666,12 +678,12 @@ def at_radius(bowl: Bowl, radius: Values) -> Bowl:
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
     radius : float or (...) float [m]
 
     Returns
     -------
-    Bowl
+    BowlGrid
         Its fields are arrays where the radius is one.
 
     Raises
@@ -691,8 +703,7 @@ def at_radius(bowl: Bowl, radius: Values) -> Bowl:
     reach = turn * radius
     angle = np.arctan2(rise, reach) - bowl.track.climb
     drive = replace(bowl.drive, amplitude=np.hypot(rise, reach), vibration_angle=angle)
-    track: Any = replace(bowl.track, radius=radius)
-    return replace(bowl, drive=drive, track=track)
+    return replace(bowl, drive=drive, track=replace(bowl.track, radius=radius))
 
 
 @dataclass(frozen=True, eq=False)
@@ -780,17 +791,17 @@ def best_phase(bowl: Bowl) -> BestPhase:
     )
 
 
-def with_phase(bowl: Bowl, phase: Values) -> Bowl:
+def with_phase(bowl: BowlGrid, phase: Reals) -> BowlGrid:
     """Return the bowl with another phase of its drive.
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
     phase : float or (...) float [rad]
 
     Returns
     -------
-    Bowl
+    BowlGrid
     """
     return replace(bowl, drive=replace(bowl.drive, phase=phase))
 

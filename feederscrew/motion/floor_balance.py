@@ -18,7 +18,7 @@ from feederscrew.base.arrays import Bools, Floats, Ints, Reals
 from feederscrew.base.columns import Column
 from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.polygons import inset
-from feederscrew.bowl.record import Bowl, Friction
+from feederscrew.bowl.record import Bowl, BowlGrid, Friction
 from feederscrew.motion import cycle
 from feederscrew.resting.posture import Posture
 
@@ -61,7 +61,7 @@ FLOOR_LINE_COLUMNS: tuple[Column[FloorMotion], ...] = (
 )
 
 
-def drive_force(mass: float, bowl: Bowl, heading: Reals, phase: Reals = UPPER_REVERSAL) -> Floats:
+def drive_force(mass: float, bowl: BowlGrid, heading: Reals, phase: Reals = UPPER_REVERSAL) -> Floats:
     """Return the inertial force of the vibration on a mass, as seen from the bowl.
 
         F = m A w^2 sin(w t) (cos b cos(alpha - theta), cos b sin(alpha - theta), sin b)
@@ -69,7 +69,7 @@ def drive_force(mass: float, bowl: Bowl, heading: Reals, phase: Reals = UPPER_RE
     Parameters
     ----------
     mass : float [kg]
-    bowl : Bowl
+    bowl : BowlGrid
         Its drive: amplitude A, frequency, vibration angle b, direction alpha.
     heading : float or (...) float [rad]
         theta of the part.
@@ -93,7 +93,7 @@ def drive_force(mass: float, bowl: Bowl, heading: Reals, phase: Reals = UPPER_RE
 
 
 def motion(
-    posture: Posture, bowl: Bowl, heading: Reals, phase: Reals = UPPER_REVERSAL, moving: Reals = 0.0
+    posture: Posture, bowl: BowlGrid, heading: Reals, phase: Reals = UPPER_REVERSAL, moving: Reals = 0.0
 ) -> FloorMotion:
     """Return how a part moves on the level bowl floor at one phase of the vibration.
 
@@ -115,7 +115,7 @@ def motion(
         Its ``offset`` e [m] is a parameter of the published model: the lever by which the drive turns the
         part, from the foot of the centre of mass to the centroid of the contact polygon. Inertia itself acts
         at the centre of mass; with e = 0 nothing turns.
-    bowl : Bowl
+    bowl : BowlGrid
         Drive, friction and gravity; the floor is level. Fields may be arrays that broadcast.
     heading : float or (...) float [rad]
         theta.
@@ -259,7 +259,7 @@ def regime(states: Ints) -> str:
     return next(MOTION_STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
 
 
-def stable_heading(posture: Posture, bowl: Bowl) -> Any:
+def stable_heading(posture: Posture, bowl: BowlGrid) -> Any:
     """Return the heading to which the drive turns the part, by the sign of eq. [4.17].
 
     theta'' is proportional to e sin(alpha - theta): with e > 0 the part turns to the drive's direction alpha,
@@ -268,7 +268,7 @@ def stable_heading(posture: Posture, bowl: Bowl) -> Any:
     Parameters
     ----------
     posture : Posture
-    bowl : Bowl
+    bowl : BowlGrid
         Its drive's direction may be an array.
 
     Returns
@@ -281,21 +281,19 @@ def stable_heading(posture: Posture, bowl: Bowl) -> Any:
     return bowl.drive.direction + (0.0 if posture.offset > 0.0 else np.pi)
 
 
-def with_friction(bowl: Bowl, friction: Reals) -> Bowl:
+def with_friction(bowl: BowlGrid, friction: Reals) -> BowlGrid:
     """Return the bowl with one coefficient for sticking and sliding; the wall keeps its own.
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
     friction : float or (...) float [1]
 
     Returns
     -------
-    Bowl
+    BowlGrid
     """
-    # a map gives arrays here, which the fields of a record name as numbers
-    coefficient: Any = friction
-    return replace(bowl, friction=replace(bowl.friction, static=coefficient, kinetic=coefficient))
+    return replace(bowl, friction=replace(bowl.friction, static=friction, kinetic=friction))
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,7 +307,7 @@ class Rolling:
     limiting_friction: Floats  # (...) [1] least static friction with which it only rolls
 
 
-def solve_rolling(posture: Posture, coefficients: Friction, push: Floats, normal: Floats) -> Rolling:
+def solve_rolling(posture: Posture, coefficients: Friction[Reals], push: Floats, normal: Floats) -> Rolling:
     """Return the forces on a part of a rolling aspect, from rest.
 
     The rolling axis goes through the centre of mass, ``height`` h above the floor; a ball has none and rolls

@@ -23,13 +23,12 @@ for [4.27] and [4.28], a level floor at s = +1. The track's limits follow from t
 
 import enum
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 
 from feederscrew.base.arrays import Bools, Floats, Ints, Reals
 from feederscrew.base.errors import ConfigError
-from feederscrew.bowl.record import Bowl, Friction
+from feederscrew.bowl.record import Bowl, BowlGrid, Friction, Number
 
 
 class Regime(enum.StrEnum):
@@ -54,7 +53,7 @@ HOP_ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there t
 USE = "leave it out, or use feeder convey"
 
 
-def plain(bowl: Bowl) -> Bowl:
+def plain(bowl: Bowl[Number]) -> Bowl[Number]:
     """Return the Bowl itself if its drive is straight and harmonic, with friction the same both ways.
 
     Parameters
@@ -451,19 +450,19 @@ def of_floor(friction: Reals, wall: Reals, bank: Reals) -> Floats:
     return friction * np.cos(bank) - wall * np.sin(bank)
 
 
-def level(bowl: Bowl) -> Bowl:
+def level(bowl: BowlGrid) -> BowlGrid:
     """Return the Bowl without bank on which a part travels as in this one.
 
     It has the effective friction, of rest and of sliding, up and down the track.
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
         Fields may be arrays that broadcast.
 
     Returns
     -------
-    Bowl
+    BowlGrid
 
     References
     ----------
@@ -471,6 +470,6 @@ def level(bowl: Bowl) -> Bowl:
     """
     mu, bank = bowl.friction, bowl.track.bank
     coefficients = (mu.static, mu.kinetic, *mu.backward)
-    static, kinetic, *back = cast("list[float]", [effective(k, mu.wall, bank) for k in coefficients])
+    static, kinetic, *back = (effective(k, mu.wall, bank) for k in coefficients)
     surfaces = Friction(static, kinetic, mu.wall, *back)
     return replace(bowl, friction=surfaces, track=replace(bowl.track, bank=0.0 * bank))

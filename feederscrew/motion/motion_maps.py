@@ -11,7 +11,7 @@ import numpy as np
 from feederscrew.base.arrays import Array, Bools, Floats, Reals
 from feederscrew.base.errors import FeederError
 from feederscrew.base.signatures import Keywords
-from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.record import Bowl, BowlGrid, Track
 from feederscrew.motion import floor_balance, limits, track_balance
 from feederscrew.motion.floor_balance import HOP, MOTION_STATES
 from feederscrew.motion.headings import Headings, headings, on_track, stable_row, supported_reaches
@@ -21,13 +21,13 @@ from feederscrew.resting.posture import Posture
 FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
 
 
-def floor_cells(posture: Posture, bowl: Bowl, heading: Reals) -> dict[str, Array]:
+def floor_cells(posture: Posture, bowl: BowlGrid, heading: Reals) -> dict[str, Array]:
     """Return the upper reversal on the floor for arrays of bowl settings, cell by cell.
 
     Parameters
     ----------
     posture : Posture
-    bowl : Bowl
+    bowl : BowlGrid
         Fields may be arrays that broadcast.
     heading : float or (...) float [rad]
         theta.
@@ -108,13 +108,13 @@ def seated(posture: Posture, bowl: Bowl, heading: float | None = None) -> tuple[
     return seat(posture, float(stable.headings[row]), stable.touching[row], bowl.track.bank), stable, row
 
 
-def track_cells(posture: Posture, bowl: Bowl, heading: float | None = None) -> dict[str, Array]:
+def track_cells(posture: Posture, bowl: BowlGrid, heading: float | None = None) -> dict[str, Array]:
     """Return the upper reversal on the track at every cell of a map.
 
     Parameters
     ----------
     posture : Posture
-    bowl : Bowl
+    bowl : BowlGrid
         Fields may be arrays that broadcast.
     heading : float [rad] or None
         As in ``seated``.
@@ -159,7 +159,7 @@ def track_cells(posture: Posture, bowl: Bowl, heading: float | None = None) -> d
 
 
 def _seats(
-    posture: Posture, bowl: Bowl, heading: float | None, shape: tuple[int, ...]
+    posture: Posture, bowl: BowlGrid, heading: float | None, shape: tuple[int, ...]
 ) -> Iterator[tuple[Seat, Bools]]:
     """Each seat that occurs and the cells, (...) bool, where it does."""
     if posture.corners is None:

@@ -31,7 +31,7 @@ from feederscrew.base.columns import Column
 from feederscrew.base.errors import FeederError
 from feederscrew.base.geometry.polygons import cross, inset, turned
 from feederscrew.base.geometry.vectors import dot, ratio
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, BowlGrid
 from feederscrew.motion import cycle
 from feederscrew.motion.floor_balance import HOP, ON_THE_LINE, SLIDE, STICK, TIP, UPPER_REVERSAL
 from feederscrew.resting.posture import Posture
@@ -200,12 +200,12 @@ def card_seat(posture: Posture) -> Seat:
     )
 
 
-def frame(bowl: Bowl, walls: Floats) -> TrackAxes:
+def frame(bowl: BowlGrid, walls: Floats) -> TrackAxes:
     """Return the directions on the track of a Bowl.
 
     Parameters
     ----------
-    bowl : Bowl
+    bowl : BowlGrid
         Fields may be arrays that broadcast.
     walls : (..., 2, 3) float [m]
         Wall contacts of a Seat.
@@ -245,7 +245,7 @@ def frame(bowl: Bowl, walls: Floats) -> TrackAxes:
 
 def loads(
     seat: AnySeat,
-    bowl: Bowl,
+    bowl: BowlGrid,
     axes: TrackAxes,
     phase: Reals,
     speed: Reals = 0.0,
@@ -261,7 +261,7 @@ def loads(
     Parameters
     ----------
     seat : Seat or SeatStack
-    bowl : Bowl
+    bowl : BowlGrid
     axes : TrackAxes
     phase : float or (...) float [rad]
         w t.
@@ -674,7 +674,7 @@ TRACK_CYCLE_COLUMNS: tuple[Column[TrackMotion], ...] = (  # over a cycle
 
 def motion(
     seat: AnySeat,
-    bowl: Bowl,
+    bowl: BowlGrid,
     phase: Reals = UPPER_REVERSAL,
     moving: Reals = 0.0,
     speed: Reals = 0.0,
@@ -690,7 +690,7 @@ def motion(
     Parameters
     ----------
     seat : Seat or SeatStack
-    bowl : Bowl
+    bowl : BowlGrid
         Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat.
         For a stack they are single values, and the other arguments single values or (P,).
     phase : float or (...) float [rad]
@@ -795,13 +795,15 @@ def over_cycle(
     return motion(seat, bowl, cycle.phases(samples), np.sign(speed), speed), course
 
 
-def _coefficients(bowl: Bowl) -> tuple[Array, ...]:
+def _coefficients(bowl: BowlGrid) -> tuple[Array, ...]:
     """Return static, kinetic and wall friction, of one shape."""
     friction = bowl.friction
     return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
 
 
-def _choose_rest(seat: AnySeat, bowl: Bowl, axes: TrackAxes, load: Floats) -> tuple[dict[str, Array], Floats]:
+def _choose_rest(
+    seat: AnySeat, bowl: BowlGrid, axes: TrackAxes, load: Floats
+) -> tuple[dict[str, Array], Floats]:
     """Return the part at rest as in ``solve_rest``, and the friction over normal force (..., 3) it needs."""
     static, _, wall = _coefficients(bowl)
     wall_share = ratio(wall, static, 0.0)
@@ -817,14 +819,15 @@ def _choose_rest(seat: AnySeat, bowl: Bowl, axes: TrackAxes, load: Floats) -> tu
     return still, np.concatenate([floor[..., None], wall], axis=-1)
 
 
-def _choose_contacts(solve: Callable[[Closed], dict[str, Array]], gravity: float) -> dict[str, Array]:
+def _choose_contacts(solve: Callable[[Closed], dict[str, Array]], gravity: Reals) -> dict[str, Array]:
     """Return at each instant the solution with most closed contacts of which none pulls and no gap closes."""
     least = -PULL_TOLERANCE * np.max(gravity)
     chosen: dict[str, Array] = {}
     for closed in SETS:
         solution = solve(closed)
         solution = solution | {"closed": np.broadcast_to(closed, solution["walls"].shape)}
-        fits = (solution["walls"] >= least).all(axis=-1) & (solution["parting"] >= least).all(axis=-1)
+        pushes, opens = (np.asarray((solution[name] >= least).all(axis=-1)) for name in ("walls", "parting"))
+        fits = pushes & opens
         if not chosen:
             chosen, decided = solution, fits
             continue

@@ -9,7 +9,7 @@ from feederscrew.arrivals import floor as floor_study
 from feederscrew.base.arrays import Array
 from feederscrew.base.columns import Column, Frame, of_records
 from feederscrew.base.geometry import vectors
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, BowlGrid
 from feederscrew.motion.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL, drive_force
 from feederscrew.motion.limits import acceleration_ratio, published_limit
 from feederscrew.motion.track_balance import Seat, TrackMotion, frame
@@ -104,7 +104,7 @@ class FloorAsPublished(floor_study.FloorStudy):
     printed: PrintedFloor  # type: ignore[misc]
     terms = FLOOR_TERMS
 
-    def cells(self, bowl: Bowl, heading: Quantity) -> dict[str, Array]:
+    def cells(self, bowl: BowlGrid, heading: Quantity) -> dict[str, Array]:
         """Return what ``FloorStudy.cells`` does, and what print says of it as ``published_*``."""
         printed = solve_floor(self.posture, bowl, heading)
         return super().cells(bowl, heading) | {
@@ -196,7 +196,7 @@ def track(
 
 
 def solve_floor(
-    posture: Posture, bowl: Bowl, heading: Quantity, phase: Quantity = UPPER_REVERSAL
+    posture: Posture, bowl: BowlGrid, heading: Quantity, phase: Quantity = UPPER_REVERSAL
 ) -> PrintedFloor:
     """Solve the printed equations for a part at rest on the floor, with any part's h, e and I.
 
@@ -207,7 +207,7 @@ def solve_floor(
     ----------
     posture : Posture
         Of the part on its aspect: h, e and I.
-    bowl : Bowl
+    bowl : BowlGrid
         Its fields may be arrays that broadcast.
     heading : float or array [rad]
         theta.
@@ -278,7 +278,9 @@ def levers_of(seat: Seat, offset: float, axes: str = "tilted") -> Levers:
     )
 
 
-def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0.5 * np.pi) -> PrintedTrack:
+def solve_track(
+    part: Levers, bowl: BowlGrid, heading: Quantity, phase: Quantity = 0.5 * np.pi
+) -> PrintedTrack:
     """Solve the printed equations of a part against the wall.
 
     R4 = mu F_N while V'_X > 0; else V'_X = 0, and R4 is as much as that needs. In [4.36] the drive's moment
@@ -287,7 +289,7 @@ def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0
     Parameters
     ----------
     part : Levers
-    bowl : Bowl
+    bowl : BowlGrid
         Its fields may be arrays that broadcast; ``track.radius`` sets sigma.
     heading : float or array [rad]
         theta.
@@ -333,7 +335,7 @@ def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0
     )
 
 
-def _matrix(part: Levers, bowl: Bowl, shape: tuple[int, ...], slides: bool) -> Array:
+def _matrix(part: Levers, bowl: BowlGrid, shape: tuple[int, ...], slides: bool) -> Array:
     """Columns of V'_X (or R4), F_N, R1, R2, R3 and d F_N; (..., 6, 6)."""
     delta, sigma = np.asarray(bowl.track.bank), half_angle(part, bowl.track.radius)
     mu, wall = (bowl.friction.kinetic, bowl.friction.wall) if slides else (0.0, 0.0)

@@ -1,11 +1,15 @@
-"""A heap of parts in a bucket: poured, shaken, and each pulled out. How many come single?
+"""A heap of parts in a bucket: parts are poured, shaken, and each is pulled out. How many come single?
 
-A part hangs to another only where it reaches into the other's hull: two convex bodies that do not overlap
-have a plane between them, and part along it. So only such pairs are pulled.
+Only pairs of parts are pulled in which each part reaches into the hull of the other. Two convex bodies that
+do not overlap have a plane between them, and separate along it.
+
+Lengths, speeds and times are without dimensions where a unit has L in it: L is the cube root of the volume
+of the part's hull, g the acceleration of gravity.
 """
 
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,21 +29,26 @@ from feederscrew.trials.kernel.workspace import JOURNAL, QueueSteps, TrueSolid
 from feederscrew.trials.shape import solid_of
 from feederscrew.trials.tangling import CELLS_ALONG_PART, PullTest, is_hollow, measure_limb, ring_discs
 
-PARTS = 16  # of a heap
-THIN_CELLS, MAX_CELLS = 6, 200  # cells across the thinnest way through a part's hull; along it at most
-# the bucket: a level floor and a round wall
-LEAST_RADIUS = 0.5  # of the part's greatest length
-HEAP_HEIGHT = 0.6  # of the same: a heap of parts that pack as loosely as PACKING is no higher
-PACKING = 0.5  # share of a heap that is in the hulls of its parts
-# laid anywhere in it, none in another; it is made higher where that does not go
-FIRST_HEIGHT, GROWTH, TRIES = 0.25, 1.05, 1000  # of the greatest length; factor; tries to the next growth
-SEEN_CELLS = 600  # cells of a part's rim that are looked at
-FALL_TIME = 1.5  # of the time of a free fall over the greatest length, or over the height it is laid to
-SHAKE_FREQUENCY, SHAKE_THROW, SHAKE_ANGLE = 50.0, 2.5, math.radians(60.0)  # [Hz], throw number, [rad]
-SHAKE_PERIODS = 5
-COARSE_STEP = 2.0  # times the steps of the trial: nothing is measured of the way
-HEAP_DEPTH = 0.05  # [L] so deep in each other parts of a heap may be as they are pulled
-WITHIN_HULL = 1.5  # cells: a part of which nothing is deeper than that in another's hull does not reach in
+PARTS = 16  # in a heap
+THIN_CELLS = 6  # cells over the shortest side of a part's box
+MAX_CELLS = 200  # cells along its longest side, at most
+# the bucket has a level floor and a round wall
+LEAST_RADIUS = 0.5  # [1] radius of the bucket over the part's greatest length, at least
+HEAP_HEIGHT = 0.6  # [1] height of the heap over the part's greatest length, at most
+PACKING = 0.5  # [1] share of the heap's volume that the hulls of its parts fill
+# parts are laid at random up to a height; it grows while they find no place
+FIRST_HEIGHT = 0.25  # [1] that height at first, over the part's greatest length
+GROWTH = 1.05  # [1] factor by which it grows
+TRIES = 1000  # places that are tried before it grows
+SEEN_CELLS = 600  # cells of a part's surface that are looked at first
+FALL_TIME = 1.5  # [1] time for which the heap falls, over that of a free fall from its height
+SHAKE_FREQUENCY = 50.0  # [Hz]
+SHAKE_THROW = 2.5  # [1] throw number of the shaking
+SHAKE_ANGLE = math.radians(60.0)  # [rad] of the shaking, from the floor
+SHAKE_PERIODS = 5  # periods of the shaking
+COARSE_STEP = 2.0  # [1] step of time over that of the trial: only where parts come to rest counts
+HEAP_DEPTH = 0.05  # [L] by which parts of a heap may overlap as they are pulled
+WITHIN_HULL = 1.5  # cells: a part reaches into a hull where it is deeper in it than this
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,24 +76,24 @@ class Bucket:
 def heap(part: Part, bowl: Bowl | None = None, seed: int = 1) -> HeapCount:
     """Return how many parts of a heap come single.
 
-    Parts into whose hull others may come are laid as after long mixing, anywhere and turned anyhow, none in
-    another; each such arrangement is equally likely, but for closed rings that are linked: those were never
-    apart. Other parts start apart. The heap falls, is shaken in the trial's engine, and each part is pulled
-    from every other that it reaches into: one upwards, the other down, then both to and fro.
+    Parts with hollows are laid as after long mixing: at random places and in random poses, so that no part
+    overlaps another. Each such arrangement is equally likely. Closed rings are not linked, because they
+    never were apart. Parts without hollows are laid so that their hulls do not overlap. The heap falls and
+    is shaken in the trial's engine. Then the pairs that reach into each other are pulled: ``pull_pairs``.
 
     Parameters
     ----------
     part : Part
         From a mesh.
     bowl : Bowl, optional
-        Its friction, restitution and gravity are those of the heap; the default bowl's without it.
+        The heap has its friction, restitution and gravity; by default those of the default bowl.
     seed : int, optional
-        Of the poses.
+        Of the random places and poses.
 
     Returns
     -------
     HeapCount
-        A part of which it cannot be told, as it lies in another within the engine's depth, is left out.
+        A part is left out if no pull tells, because it overlaps another part by more than ``HEAP_DEPTH``.
 
     Raises
     ------
@@ -106,18 +115,7 @@ def heap(part: Part, bowl: Bowl | None = None, seed: int = 1) -> HeapCount:
     bucket = make_bucket(solid, grid, length, bowl)
     states = shake(bucket, lay_heap(bucket, is_mixed, discs, np.random.default_rng(seed)))
     pulled = PullTest(solid, grid, length, (bowl.friction.static, bowl.friction.kinetic))
-    held, unknown = np.zeros((2, len(states)), bool)
-    for n, m in reaching_pairs(grid, states, bucket.size):
-        first, second = (part_poses.matrix(states[k]) for k in (n, m))
-        up = np.array([0.0, 0.0, math.copysign(1.0, states[m, body.Z] - states[n, body.Z])])
-        parted = pulled.pull_apart(
-            vectors.product(first.T, second),
-            vectors.product(first.T, states[m, :3] - states[n, :3]),
-            vectors.product(first.T, up),
-            HEAP_DEPTH,
-        )
-        held[[n, m]] |= parted is False
-        unknown[[n, m]] |= parted is None
+    held, unknown = pull_pairs(pulled, states, reaching_pairs(grid, states, bucket.size))
     known = held | ~unknown
     return HeapCount(int(known.sum()), int((known & ~held).sum()), is_mixed, seed)
 
@@ -156,20 +154,22 @@ def make_bucket(solid: TrueSolid, grid: Cells, length: float, bowl: Bowl) -> Buc
 
 
 def lay_heap(bucket: Bucket, is_mixed: bool, discs: Bools, rng: np.random.Generator) -> Floats:
-    """Return states of parts at rest anywhere in a bucket, none in another, as low as chance lays them.
+    """Return the states of parts at rest at random places of a bucket, where no part overlaps another.
 
     Parameters
     ----------
     bucket : Bucket
     is_mixed : bool
-        Whether their hulls may overlap.
+        Whether the hulls of two parts may overlap.
     discs : (I, J, K) bool
-        Cells of the grid that closed rings of the part enclose: two parts do not come through each other's.
+        Cells of the grid that closed rings of the part enclose. Two parts are linked if each comes into the
+        discs of the other; such places are not taken.
     rng : numpy.random.Generator
 
     Returns
     -------
     (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        Place, velocity, attitude as a quaternion, and angular velocity of each part.
     """
     grid, size, radius, corners = bucket.grid, bucket.size, bucket.radius, bucket.solid.corners
     free = grid.away > 0.0 if is_mixed else ~grid.hull
@@ -197,7 +197,7 @@ def lay_heap(bucket: Bucket, is_mixed: bool, discs: Bools, rng: np.random.Genera
         if (
             all(_is_free(grid, free, spots, here, there) for spots in (some, whole) for there in near)
             and all(_is_free(grid, free, whole, there, here) for there in near)
-            # linked: each comes through the ring of the other
+            # two rings are linked where each comes through the other: one of them must not
             and all(
                 _is_free(grid, ~discs, whole, here, there) or _is_free(grid, ~discs, whole, there, here)
                 for there in near
@@ -211,23 +211,28 @@ def lay_heap(bucket: Bucket, is_mixed: bool, discs: Bools, rng: np.random.Genera
 def _is_free(
     grid: Cells, free: Bools, spots: Points, own: tuple[Floats, Floats], other: tuple[Floats, Floats]
 ) -> bool:
-    """Tell whether no spot (K, 3) [L] of a part is in another; both by state (13,) and rotation (3, 3)."""
+    """Tell whether all spots (K, 3) [L] of a part lie in free cells of another part's grid.
+
+    ``own`` and ``other`` are state (13,) and rotation (3, 3) of each.
+    """
     (state, turn), (there, spun) = own, other
     placed = state[:3] + vectors.product(spots, turn.T) - there[:3]
     return bool(free[grid.at(vectors.product(placed, spun))].all())
 
 
 def shake(bucket: Bucket, states: Floats) -> Floats:
-    """Return the states of parts after they have fallen and were shaken.
+    """Return the states of parts after they fell and were shaken.
 
     Parameters
     ----------
     bucket : Bucket
     states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        As ``lay_heap`` returns them.
 
     Returns
     -------
     (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        As ``states``.
     """
     moving = bucket.part_in_bowl
     surface = runs.surface_of(moving, bucket.stage)
@@ -248,7 +253,7 @@ def shake(bucket: Bucket, states: Floats) -> Floats:
 
 
 def reaching_pairs(grid: Cells, states: Floats, size: float) -> list[tuple[int, int]]:
-    """Return the pairs of parts of which each reaches into the other's hull.
+    """Return the pairs of parts in which each part reaches into the hull of the other.
 
     Parameters
     ----------
@@ -256,11 +261,13 @@ def reaching_pairs(grid: Cells, states: Floats, size: float) -> list[tuple[int, 
         Of the part.
     states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
     size : float [L]
-        Its greatest length.
+        The part's greatest length.
 
     Returns
     -------
     list of (int, int)
+        Rows of both parts, the larger first. A part that reaches into a hull whose own part does not reach
+        back is in no pair.
     """
     within, own = distance_transform_edt(grid.hull) > WITHIN_HULL, grid.middles(grid.solid)
     turns = [part_poses.matrix(state) for state in states]
@@ -275,3 +282,41 @@ def reaching_pairs(grid: Cells, states: Floats, size: float) -> list[tuple[int, 
         for m in range(n)
         if vectors.norm(states[n, :3] - states[m, :3]) < size and reaches(n, m) and reaches(m, n)
     ]
+
+
+def pull_pairs(pulled: PullTest, states: Floats, pairs: Sequence[tuple[int, int]]) -> tuple[Bools, Bools]:
+    """Return which parts of a heap hold another part, and of which it is unknown.
+
+    The parts of each pair are pulled apart without the others: the upper one upwards and the lower one
+    downwards, then to and fro.
+
+    Parameters
+    ----------
+    pulled : PullTest
+        Of the part.
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        Of the parts in the heap.
+    pairs : sequence of (int, int)
+        Rows of both parts, as ``reaching_pairs`` returns them.
+
+    Returns
+    -------
+    held : (N,) bool
+        Whether a pull did not separate the part from another one.
+    unknown : (N,) bool
+        Whether the part overlaps another one by more than ``HEAP_DEPTH``, so that a pull tells nothing.
+    """
+    held, unknown = np.zeros((2, len(states)), bool)
+    for n, m in pairs:
+        # as the first part sees it
+        first, second = (part_poses.matrix(states[k]) for k in (n, m))
+        up = np.array([0.0, 0.0, math.copysign(1.0, states[m, body.Z] - states[n, body.Z])])
+        parted = pulled.pull_apart(
+            vectors.product(first.T, second),
+            vectors.product(first.T, states[m, :3] - states[n, :3]),
+            vectors.product(first.T, up),
+            HEAP_DEPTH,
+        )
+        held[[n, m]] |= parted is False
+        unknown[[n, m]] |= parted is None
+    return held, unknown

@@ -24,13 +24,14 @@ CUBE_DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
         np.array([corner for corner in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(corner)])
     )
 )
-CELLS_ALONG_PART = 36  # along the longest side of a part
-HOLLOW = 0.03  # of its hull that is not of the part: with less nothing reaches into it
-TRIES, POSES = 3000, 24  # pairs that are laid out by chance; of them, the deepest that are pulled
-LEAST_DEPTH_SHARE = 0.02  # of both parts that lies in the other's hull: less is no hooking
-POSE_DIFFERENCE = 0.4  # of a part's radius by which poses differ that are both pulled
-LOOSE = 0.8  # of the pulls: a closed ring that holds in more of them was never apart, as a link of a chain
-THINNEST = 0.25  # of a part: its edges and corners are less of it than its thinnest limb
+CELLS_ALONG_PART = 36  # cells along the longest side of a part
+HOLLOW = 0.03  # [1] share of the hull that is not part: below it nothing reaches into the hull
+TRIES = 3000  # pairs that are laid at random
+POSES = 24  # of them, the deepest, that are pulled
+LEAST_DEPTH_SHARE = 0.02  # [1] share of each part in the other's hull: with less they do not hook
+POSE_DIFFERENCE = 0.4  # [1] difference of two poses that are both pulled, over the part's radius
+LOOSE = 0.8  # [1] share of pulls that hold: closed rings with more were never apart, as links of a chain
+THINNEST = 0.25  # [1] share of a part's cells: edges and corners are less of it than its thinnest limb
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,18 +41,18 @@ class Tangle:
     turn: Floats  # (3, 3) [1] of the second part in the file's axes of the first
     place: Floats  # (3,) [m] of its centre of mass from that of the first, in those axes
     pulls: int
-    held: int  # of them that did not part the two
-    opening: float  # [m] through which they come to hook; NaN where they part in some direction
-    section: float  # [m] thinnest of the part
+    held: int  # of them that did not separate the two
+    opening: float  # [m] of the slit through which they come to hook; NaN of a part without one
+    section: float  # [m] diameter of the part's thinnest limb
 
     @property
     def share(self) -> float:
-        """Share of the pulls that do not part them [1]."""
+        """Share of the pulls that do not separate them [1]."""
         return self.held / self.pulls
 
 
 def is_hollow(grid: Cells) -> bool:
-    """Tell whether anything may reach into the hull of a part beside it.
+    """Tell whether a part has hollows into which another part may reach.
 
     Parameters
     ----------
@@ -61,6 +62,7 @@ def is_hollow(grid: Cells) -> bool:
     Returns
     -------
     bool
+        Whether at least ``HOLLOW`` of its hull is not part.
     """
     return bool(1.0 - grid.solid.sum() / grid.hull.sum() >= HOLLOW)
 
@@ -71,19 +73,20 @@ class Limb:
 
     section: float  # [L] diameter of the thinnest limb
     mouth: float  # [L] width of the slit that closes a ring of the part; NaN where none does
-    is_closed: bool  # nothing of its kind comes into the ring: what is linked there was never apart
+    is_closed: bool  # whether the part has a ring that no other part of this shape can come into
 
 
 def measure_limb(grid: Cells) -> Limb:
     """Return the thinnest limb of a part and the mouth of its ring.
 
-    The limb is the diameter of the ball that fits into the part wherever it is, but for its edges and
-    corners. The mouth is found as the solid grows: then it has a handle more.
+    The thinnest limb has the diameter of the largest ball that fits at every place of the part, edges and
+    corners left out. For the mouth the solid grows cell by cell: where a slit closes, the solid has one more
+    handle.
 
     Parameters
     ----------
     grid : Cells
-        Of the part; lengths as its own.
+        Of the part. The limb has the unit of length of its cells.
 
     Returns
     -------
@@ -101,9 +104,9 @@ def measure_limb(grid: Cells) -> Limb:
         within = ((solid_cells - solid_cells[k]) ** 2).sum(axis=1) * grid.size**2 < inside[k] ** 2
         widest[within] = inside[k]
     section = 2.0 * float(np.quantile(widest, THINNEST)) - grid.size
-    mouth, own_handles, step, padded = np.nan, handles(grid.solid), 0.5 * grid.size, np.pad(grid.away, 0)
+    mouth, own_handles, step = np.nan, handles(grid.solid), 0.5 * grid.size
     for k in range(1, 4 * (min(grid.solid.shape) // 2)):
-        if handles(padded <= k * step) > own_handles:
+        if handles(grid.away <= k * step) > own_handles:
             mouth = 2.0 * k * step
             break
     return Limb(section, mouth, mouth < section if np.isfinite(mouth) else own_handles > 0)
@@ -117,7 +120,7 @@ def ring_discs(grid: Cells, section: float) -> Bools:
     grid : Cells
         Of the part, along its principal axes.
     section : float [L]
-        Of its thinnest limb: a mouth that is narrower closes a ring.
+        Diameter of its thinnest limb: a slit that is narrower counts as closed.
 
     Returns
     -------
@@ -139,10 +142,10 @@ def ring_discs(grid: Cells, section: float) -> Bools:
 
 @functools.lru_cache(maxsize=8)
 def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle | None:
-    """Return the pair of a part that holds best of those that reach into each other.
+    """Return the pose of a pair of parts in which most pulls do not separate them.
 
-    Pairs that are laid out by chance and reach deepest into each other's hulls are pulled apart in the
-    trial's engine.
+    Pairs are laid at random. Those that reach deepest into each other's hulls are pulled in the trial's
+    engine, in many directions.
 
     Parameters
     ----------
@@ -151,11 +154,12 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
     friction : (float, float) [1]
         Of part on part, static and kinetic.
     seed : int, optional
+        Of the random poses.
 
     Returns
     -------
     Tangle or None
-        None where none holds.
+        None if no pair holds.
 
     References
     ----------
@@ -183,7 +187,9 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
 
 
 def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[Floats, Floats]]:
-    """Return the deepest poses of a part in another of its kind that do not overlap.
+    """Return the poses in which a second part reaches deepest into the first without overlapping it.
+
+    How deep they are is the share of a part in the other's hull: the smaller one of both shares.
 
     Parameters
     ----------
@@ -194,7 +200,8 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[Floats, Floats]]:
     Returns
     -------
     list of ((3, 3) float [1], (3,) float [L])
-        Rotations and places, the deepest first, no two alike.
+        Rotation of the second part, and place of its centre of mass, as the first part sees them. The
+        deepest comes first, and no two are alike.
     """
     own, rim = grid.middles(grid.solid), grid.middles(grid.rim)
     hollow = grid.middles(grid.hull & ~grid.solid & (grid.away > grid.size))
@@ -231,20 +238,21 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[Floats, Floats]]:
     return distinct
 
 
-HOLDING_SHARE = 0.75  # of the pulls, that do not part the two: then they may hook
-PULL, SECONDS = 0.12, 0.06  # [sqrt(g L)] by which a pull changes their velocities; [sqrt(L/g)] to the next
-PULLS = 40  # in one direction
-SHAKES = 15  # then in any, away from each other in the mean
-SHAKEN = 1  # seed
-LEAKS = 1.7  # cells deep
-SEEN = 400  # so many of its cells are looked at
-SURE = 7  # pulls that hold, of a ring
-OVERLAP_DEPTH = 0.02  # of the unit of length: so deep in each other no two parts are
-HIGH, FAR = 1e3, 1e6  # over the track and from the wall, in units of length; radius of the wall
+HOLDING_SHARE = 0.75  # [1] share of pulls that do not separate the two: with more they may hook
+PULL = 0.12  # [sqrt(g L)] by which a pull changes the velocity of each part
+SECONDS = 0.06  # [sqrt(L/g)] from one pull to the next
+PULLS = 40  # pulls in one direction
+SHAKES = 15  # pulls after these, in random directions away from each other
+SHAKEN = 1  # seed of those directions
+LEAKS = 1.7  # cells by which a part that has come through another is in it
+SEEN = 400  # cells of a part's surface that are looked at for this
+SURE = 7  # pulls that have all held, after which closed rings are taken as linked
+OVERLAP_DEPTH = 0.02  # [L] by which two parts may overlap as the first pull begins
+HIGH, FAR = 1e3, 1e6  # [L] of the parts over the track and from the wall; radius of the wall
 
 
 class PullTest:
-    """Two parts without gravity, which are pulled apart."""
+    """Two parts without gravity and far from any track, which are pulled apart."""
 
     def __init__(self, solid: TrueSolid, grid: Cells, length: float, friction: tuple[float, float]) -> None:
         bowl = default()
@@ -264,24 +272,25 @@ class PullTest:
         self.pair = queue.PartsOnTrack(self.setting, nowhere, 2)
 
     def pull_all(self, turn: Floats, place: Floats, most: float) -> tuple[int, int]:
-        """Return how often a pose was pulled, and how often in vain.
+        """Return how often a pair was pulled, and how often the pull did not separate it.
 
-        It ends as soon as too few can hold, or, where ``most`` is below 1, as soon as the first ``SURE``
-        pulls that decide anything have all held.
+        Directions that push the parts together are left out. The test ends as soon as fewer than
+        ``HOLDING_SHARE`` of the pulls can hold. If ``most`` is below 1, it also ends as soon as the first
+        ``SURE`` pulls have all held.
 
         Parameters
         ----------
-        turn : (3, 3) array
-            Of the second part to the first.
-        place : (3,) array [m]
-            Of the second part from the first.
+        turn : (3, 3) float [1]
+            Rotation of the second part, as the first part sees it.
+        place : (3,) float [L]
+            Centre of mass of the second part from that of the first, as the first part sees it.
         most : float [1]
-            Share of pulls above which the pose is no hook.
+            Share of pulls that hold above which the pair does not count as hooked.
 
         Returns
         -------
         (int, int)
-            Pulls, and those in vain; 0 of both where that decides nothing.
+            Pulls, and those that held; 0 and 0 if the test ended early.
         """
         away = vectors.unit(place) if vectors.norm(place) > 0.0 else place
         directions = [direction for direction in CUBE_DIRECTIONS if vectors.dot(direction, away) > -1e-9]
@@ -298,22 +307,23 @@ class PullTest:
     def pull_apart(
         self, turn: Floats, place: Floats, direction: Floats, overlap: float = OVERLAP_DEPTH
     ) -> bool | None:
-        """Tell whether a pull parts the two, or shaking after it.
+        """Tell whether pulls in one direction, and shaking after them, separate the two parts.
 
         Parameters
         ----------
-        turn : (3, 3) array
-        place : (3,) array [m]
+        turn : (3, 3) float [1]
+        place : (3,) float [L]
             As for ``pull_all``.
-        direction : (3,) array [1]
-            Of the pull.
+        direction : (3,) float [1]
+            In which the second part is pulled, as the first part sees it; the first is pulled against it.
         overlap : float [L], optional
-            They may be so deep in each other at first.
+            By which they may overlap as the first pull begins.
 
         Returns
         -------
         bool or None
-            None where they overlap then.
+            True if their centres of mass come further apart than twice the part's radius. None if they
+            overlap more than ``overlap`` at first, or have come through each other.
         """
         states = np.zeros((2, body.STATE))
         states[:, 1:3] = HIGH

@@ -26,10 +26,13 @@ from feederscrew.designing import (
 )
 from feederscrew.designing.fill_verdicts import (
     DifferenceKind,
+    FillLack,
     FillState,
     differing_fills,
     judge_fill,
+    lacks_of_fill,
     longest_time,
+    sequential_test,
     time_to_settle,
 )
 from feederscrew.designing.findings import Move, MoveKind
@@ -165,6 +168,10 @@ def test_a_queue_that_was_stopped_or_brought_nothing_is_no_verdict_in_any_output
     (36, 4, 0, 40.0, FillState.REFUSED),  # at most 97.9 % (99 %, one-sided)
     (194, 7, 0, 60.0, FillState.OPEN),  # 7 ln 3 - 194 ln(0.99 / 0.97) is below ln 50
     (184, 7, 0, 60.0, FillState.REFUSED),
+    # of 4 wrong: 97.002 % at least of 303, and r ln(0.99 / 0.97) - 4 ln 3 >= ln(1 / 0.15) from r = 309 on
+    (299, 4, 0, 60.0, FillState.OPEN),
+    (308, 4, 0, 60.0, FillState.OPEN),
+    (309, 4, 0, 60.0, FillState.HOLDS),
     (37, 3, 0, 40.0, FillState.OPEN),
     (97, 3, 0, 200.0, FillState.OPEN),  # 300 in 600 s, of which 3 may be wrong
     (96, 4, 0, 200.0, FillState.REFUSED),
@@ -236,6 +243,23 @@ def test_the_sequential_test_is_that_of_wald():
             assert (ratio >= np.log(1.0 / 0.15)) == least
     back = evidence.log_likelihood_ratio(7, 10, 0.97, 0.99)
     assert back == pytest.approx(-evidence.log_likelihood_ratio(7, 10, 0.99, 0.97))
+
+
+def test_what_the_sequential_test_alone_decides_is_said_to_be_its():
+    """Four wrong: enough is pure from 299 right parts on, the test holds from 309 on (sums by hand)."""
+    lacks = {
+        right: lacks_of_fill(queue(right, right + 4, seconds=60.0), 0.0) for right in (298, 299, 308, 309)
+    }
+    assert lacks == {
+        298: (FillLack.PURITY_NOT_SHOWN,),
+        299: (FillLack.PURITY_OPEN,),
+        308: (FillLack.PURITY_OPEN,),
+        309: (),
+    }
+    refused = queue(184, 191, seconds=60.0)
+    assert evidence.share_at_most(184, 191, fill_verdicts.REFUSED_CONFIDENCE) > fill_verdicts.PURE
+    assert sequential_test(refused) is judge_fill(refused, 0.0, 1e6) is FillState.REFUSED
+    assert sequential_test(queue(194, 201)) is judge_fill(queue(194, 201), 0.0, 1e6) is FillState.OPEN
 
 
 def test_how_long_a_fill_is_followed_follows_from_the_rate_that_is_asked_for():

@@ -18,6 +18,9 @@ ON_RAMP = 2e-6  # [m] over a ramp, as the trial has it
 OVER_RAMP = 13e-6  # [m] over one that is made: 0.05 mm along the wall
 UNDER_RAMP = 2e-5  # [m] below it: bodies have it 0.01 mm lower, so that no face lies on a face
 SURE = 1e-5  # [m] by which a flat plate that reaches ahead may lean otherwise than the track below its end
+SURE_HEIGHT = (
+    3e-4  # [m] the same, of its upper and lower edges: they are looked at in the middle of the plate
+)
 IN_WALL = 5e-4  # [m] behind the wall's face
 SHARES = (0.17, 0.55, 0.83)  # of a side, of a width
 ABOVE = 4e-3  # [m] over the track, where a wall is met
@@ -51,6 +54,7 @@ def _of_device(tooled, placed):
             *_blades(tooled, placed),
             *_bores(placed),
             *_wall(tooled, placed),
+            *_free_edge(placed, width),
         )
     ]
 
@@ -126,13 +130,14 @@ def _blades(tooled, placed):
     """Beside each side of a blade's face, half its thickness behind it, and beside its face and its back.
 
     A flat plate that reaches ahead along a banked or climbing track cannot stand square to all of it: where
-    that is more than ``SURE`` nothing is looked at. Nor is anything where two plates of a device meet.
+    that is more than ``SURE`` its heights alone are looked at, and beyond ``SURE_HEIGHT`` nothing. Nor is
+    anything where two plates of a device meet.
     """
     lean = float(tooled.bank_at(placed.begin)) + float(tooled.climb_at(placed.begin))
     prints = [shapely.Polygon(ring) for ring in placed.footprints]
     for blade, own in zip(placed.features.blades, prints):
         others = shapely.union_all([ring for ring in prints if ring is not own])
-        for x, z, behind, solid in _of_plate(blade):
+        for x, z, behind, solid, sure in _of_plate(blade):
             (c, s), (ahead, inwards) = blade.axes
             far, off = x * c + behind * ahead, blade.foot[1] + x * s + behind * inwards
             y = placed.radius - np.hypot(far, placed.radius - off)
@@ -140,12 +145,12 @@ def _blades(tooled, placed):
             leans = z * abs(np.sin(lean)) * abs(far) / placed.radius
             is_alone = not prints[1:] or others.distance(shapely.Point(at, y)) > CLEAR
             is_over = CLEAR + z * abs(np.tan(lean)) < y < tooled.width - CLEAR and z > CLEAR
-            if is_over and is_alone and leans < SURE:
+            if is_over and is_alone and leans < sure:
                 yield "blade", at, y, placed.level, z, solid
 
 
 def _of_plate(blade):
-    """Yield places of a plate: along its face, up, behind it, and whether it is solid there."""
+    """Yield places of a plate: along its face, up, behind it; if solid there, and how far it may lean."""
     for part in (one for one in shapely.get_parts(blade.solid) if one.geom_type == "Polygon"):
         for ring in (part.exterior, *part.interiors):
             for start, stop in itertools.pairwise(shapely.get_coordinates(ring)):
@@ -154,10 +159,11 @@ def _of_plate(blade):
                 across = np.array([-along[1], along[0]]) / size
                 for share, off in itertools.product(SHARES if size > SHORT else (), (ASIDE, -ASIDE)):
                     x, z = start + share * along + off * across
-                    yield x, z, 0.5 * blade.thickness, bool(blade.solid.contains(shapely.Point(x, z)))
+                    is_solid = bool(blade.solid.contains(shapely.Point(x, z)))
+                    yield x, z, 0.5 * blade.thickness, is_solid, SURE_HEIGHT if along[1] == 0.0 else SURE
         x, z = shapely.get_coordinates(part.representative_point())[0]
         for behind in (ASIDE, blade.thickness - ASIDE, -ASIDE, blade.thickness + ASIDE):
-            yield x, z, behind, 0.0 < behind < blade.thickness
+            yield x, z, behind, 0.0 < behind < blade.thickness, SURE
 
 
 def _bores(placed):
@@ -167,6 +173,37 @@ def _bores(placed):
             r = 0.5 * bore.diameter + off
             s = placed.begin + bore.place + r * np.cos(turn)
             yield "bore", s, -IN_WALL, placed.level, bore.height + r * np.sin(turn), off > 0.0
+
+
+def through_bores(placed, wall):
+    """Return probes along the axis of each bore, from before the wall to behind it: all of it is open."""
+    return [
+        Probe("bore", placed.begin + bore.place, -deep, placed.level, bore.height, False)
+        for bore in placed.features.bores
+        for deep in np.linspace(-CLEAR, wall + CLEAR, 9)
+    ]
+
+
+def gate_in_notch(placed, play, wall):
+    """Return probes of the notch of each gate in the wall, beside its plate and below it, and of the plate.
+
+    The wall is open to ``play`` [m] around the plate. A list for the bowl, and one for the gate.
+    """
+    bowl, gate = [], []
+    for blade in (blade for blade in placed.features.blades if blade.is_gate):
+        middle, thick = 0.5 * blade.thickness, blade.thickness
+        sides = ((-play, -1.0), (thick + play, 1.0)), ((0.0, -1.0), (thick, 1.0))
+        for own, edges in zip((bowl, gate), sides):
+            for (edge, way), off in itertools.product(edges, (ASIDE, -ASIDE)):
+                s = placed.begin + blade.foot[0] + edge + way * off
+                is_open = (off < 0.0) == (own is bowl)
+                own.append(Probe("notch", s, -0.7 * wall, placed.level, 0.1 * blade.top, not is_open))
+        for own, edge in ((bowl, -play), (gate, 0.0)):
+            for off in (ASIDE, -ASIDE):
+                is_open = (off > 0.0) == (own is bowl)
+                s = placed.begin + blade.foot[0] + middle
+                own.append(Probe("notch", s, -0.7 * wall, placed.level, edge + off, not is_open))
+    return bowl, gate
 
 
 def _wall(tooled, placed):
@@ -180,6 +217,13 @@ def _wall(tooled, placed):
     for off in (ASIDE, -ASIDE):
         y, z = foot + off * np.cos(lean - bank), high + off * np.sin(lean - bank)
         yield "wall", s, y, placed.level, z, off < 0.0
+
+
+def _free_edge(placed, width):
+    """Within and beyond the free edge of the bare track before a device, just below its surface."""
+    for share, off in itertools.product(SHARES, (ASIDE, -ASIDE)):
+        s = placed.start + share * (placed.begin - placed.start)
+        yield "free edge", s, width + off, placed.level, -0.5 * ASIDE, off < 0.0
 
 
 def in_section(tooled, probe):
@@ -202,6 +246,25 @@ def in_queue(tooled, placed, probe):
     falls.append((probe.level - placed.level, float(tooled.bank_at(placed.begin))))
     low, out = (sum(fall * turn(bank) for fall, bank in falls) for turn in (np.cos, np.sin))
     return _in_plane(tooled, probe, probe.s, low, out)
+
+
+def on_ramp(tooled, placed, probe, begin, in_frame):
+    """Return where a probe of a ramp is in the trial: (3,) [m]. It falls upright, and the track leans.
+
+    The ramp goes straight on from where its ledge ends, which a consumer has ``in_frame``; ``begin`` [m] is
+    its length along the wall there.
+    """
+    bank, climb = float(tooled.bank_at(placed.begin)), float(tooled.climb_at(placed.begin))
+    end = placed.begin + placed.drop.length
+    foot = in_frame(tooled, placed, Probe(probe.what, end, 0.0, placed.level, 0.0, True))
+    theta, turn = (begin + placed.drop.length) / placed.radius, (probe.s - end) / placed.radius
+    ahead, inwards = [np.cos(theta), np.sin(theta), 0.0], [-np.sin(theta), np.cos(theta), 0.0]
+    r = placed.radius - probe.y
+    # lengths along the wall are level ones: what lies along the slope is shorter by the cosine
+    upright = np.sin(climb) * np.cos(climb), np.cos(climb) * np.sin(bank), np.cos(climb) * np.cos(bank)
+    way = np.array([r * np.sin(turn), placed.radius - r * np.cos(turn), 0.0])
+    way = way + (probe.level - placed.level) * np.array(upright)
+    return foot + way[0] * np.array(ahead) + way[1] * np.array(inwards) + [0.0, 0.0, way[2]]
 
 
 def _in_plane(tooled, probe, s, low, out):

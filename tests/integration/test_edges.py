@@ -14,9 +14,10 @@ import shapely
 import test_one_track as chains
 import track_views as views
 
+from feederscrew.bowl.devices.features import Features, Jet, Sensor, Slope
 from feederscrew.bowl.devices.kinds import KINDS, make_device
 from feederscrew.bowl.record import Track
-from feederscrew.cad import facets
+from feederscrew.cad import closed_body, facets
 from feederscrew.cad import section as printed
 from feederscrew.cad.closed_body import pieces
 from feederscrew.cad.exact import exact_body, exact_file
@@ -24,6 +25,7 @@ from feederscrew.output import bowl_sheet, tooling_drawing
 from feederscrew.output.drafting import Drawing
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations
+from feederscrew.sorting.solid import WALL, WALL_OVERLAP_M
 from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.trials import queue, staging
 
@@ -43,6 +45,8 @@ DROPS = {  # what falls on a bank lies further out as well, and so does all behi
     "a ledge between twists": [("step", {"limit": 4e-3}), ("banked track", {"angle": 5.0}),
                                ("tipping ledge", {"limit": 8e-3}), ("banked track ", {"angle": 2.0}),
                                ("wiper", {"limit": 6e-3}), ("gap", {"limit": 7e-3})],
+    "blades on a steep bank": [("banked track", {"angle": 16.0}), ("wiper", {"limit": 5e-3, "sweep": 28.0}),
+                               ("air jet", JET), ("height bar", {"limit": 7e-3})],
     "spaced within a groove": [("V groove", {"angle": 25.0}), ("spacing section", {"angle": 1.0}),
                                ("banked track", {"angle": 3.0}), ("canyon", {"limit": 4e-3})],
 }  # fmt: skip
@@ -57,7 +61,7 @@ def laid_out(case):
     every = orientations(chains.part(), find(chains.part()), track)
     chain = []
     for kind, values in DROPS[case]:
-        own = {k: np.radians(x) if k == "angle" else x for k, x in values.items()}
+        own = {k: np.radians(x) if k in ("angle", "sweep") else x for k, x in values.items()}
         chain.append(make_device(kind.strip(), "test", **own))
     return track, every, chain, lay_out(track, chain, every)
 
@@ -171,6 +175,56 @@ def test_ramps_of_the_trial(case):
     assert not wrong(tooled, lambda *one: edges.in_trial(tooled, *one), alone.__getitem__, ramps)
 
 
+def test_ramps_on_a_slope_in_the_trial_and_in_its_queue():
+    """To 2 um of their height, where the track climbs and is banked; the second ledge lies further out."""
+    case = "ledges on a bank"
+    track, every, chain, tooled = laid_out(case)
+    wide = lay_out(track, chain, every, whole=True)
+    alone = [of_stage(staging.stage_placed(wide, k, track, every)) for k in range(len(chain))]
+    crowd = of_stage(queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1).stage)
+    found, seen = [], 0
+    for number, (placed, own) in enumerate(zip(tooled.devices, edges.probes(tooled))):
+        for probe in (one for one in own if one.what.endswith("ramp as tried")):
+            seen += 1
+            lies = edges.on_ramp(tooled, placed, probe, placed.begin, edges.in_queue)
+            found += [("queue", probe)] * (crowd(lies) != probe.solid)
+            lies = edges.on_ramp(tooled, placed, probe, 0.0, edges.in_trial)
+            found += [("alone", probe)] * (alone[number](lies) != probe.solid)
+    assert not found
+    assert seen == 36
+
+
+def test_jets_of_any_direction_and_slopes_at_any_place():
+    """Turned about the bowl's axis with the track: devices of today blow straight off the wall."""
+    track, every, *_ = laid_out(0)
+    size, (x, y, z), towards = 0.5 * every[0].length, (4e-3, 2e-3, 5e-3), np.array([0.48, 0.6, -0.64])
+    jets = (
+        Jet((x, y, z), tuple(2.0 * towards), 1.1e-3, 0.21, 0.3, 0.04, 0.03),
+        Jet((x, y, z + 1e-3), tuple(towards), 1.1e-3, 0.21, 0.3, 0.04, 0.05),
+    )
+    slopes = Slope(3e-3, climb=0.02), Slope(7e-3, bank=0.1, wall=0.3)
+    sensor = Sensor(2e-3, "height", (every[0],), 1e-4, 1e-4)
+    own = Features(jets=jets, slopes=slopes, sensor=sensor)
+    air = staging.place_air([staging.Placement(own, (), size, 0.1)], track, every)
+    theta, r = (size + x) / track.radius, track.radius - y
+    ahead, inwards = np.array([np.cos(theta), np.sin(theta), 0.0]), [-np.sin(theta), np.cos(theta), 0.0]
+    for row, jet in zip(air.jets, jets):
+        mouth = [r * np.sin(theta), track.radius - r * np.cos(theta), jet.at[2]]
+        assert [row[f"mouth_{end}"] for end in "xyz"] == pytest.approx(mouth)
+        blows = towards[0] * ahead + towards[1] * np.array(inwards) + [0.0, 0.0, towards[2]]
+        assert [row[f"towards_{end}"] for end in "xyz"] == pytest.approx(blows)
+        told = [row[name] for name in ("radius", "spread", "thrust", "reach")]
+        assert told == pytest.approx([1.1e-3, 0.21, 0.3 / every[0].posture.mass, 0.04])
+        assert (row["begin"], row["end"]) == (np.inf, np.inf)
+    assert [(one.place, one.climb, one.bank, one.wall) for one in air.slopes] == [
+        (pytest.approx(size + 3e-3), 0.02, None, None),
+        (pytest.approx(size + 7e-3), None, 0.1, 0.3),
+    ]
+    (watch,) = air.watches
+    assert (watch.place, watch.nozzles) == (pytest.approx(size + 2e-3), pytest.approx(size + x))
+    assert (watch.seconds, watch.jets, watch.sensor) == (0.05, slice(0, 2), sensor)
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_edges_of_the_print_and_of_the_bowl(case):
     _, every, _, tooled = laid_out(case)
@@ -180,6 +234,28 @@ def test_edges_of_the_print_and_of_the_bowl(case):
     whole, gates = pieces(plan, facets)
     bowl = of_facets([whole, *(gate for _, gate in gates)])
     assert not wrong(tooled, lambda _, probe: edges.in_bowl(tooled, plan, probe), lambda _: bowl)
+
+
+@pytest.mark.parametrize("case", [0, 3, "steps on a bank", "blades on a steep bank"])
+def test_bores_go_through_the_wall_and_gates_stand_in_their_notches(case):
+    _, every, _, tooled = laid_out(case)
+    section, thick = of_facets([views.mesh(*printed.solid(tooled))]), WALL - WALL_OVERLAP_M
+    plan, _ = chains.bowl_of(tooled, every)
+    whole, gates = pieces(plan, facets)
+    bowl, own = of_facets([whole]), iter(of_facets([gate]) for _, gate in gates)
+    seen = 0
+    for placed in tooled.devices:
+        for probe in edges.through_bores(placed, thick):
+            assert not section(edges.in_section(tooled, probe)), probe
+        notch, gate = edges.gate_in_notch(placed, closed_body.GATE_PLAY_M, plan.material.wall)
+        bores = edges.through_bores(placed, plan.material.wall)
+        for probe in (*bores, *notch):
+            assert bowl(edges.in_bowl(tooled, plan, probe)) == probe.solid, probe
+        is_gate = next(own) if gate else None
+        for probe in gate:
+            assert is_gate(edges.in_bowl(tooled, plan, probe)) == probe.solid, probe
+        seen += len(bores) + len(gate)
+    assert seen > 0
 
 
 @pytest.mark.needs("OCP")

@@ -255,7 +255,7 @@ def differences(seed, radius, consumers):
             bores = views.in_order([*tried.bores, *mounts])
             assert len(view.bores) == len(bores), (seed, device.kind, name)
             for one, other in zip(view.bores, bores):
-                yield device.kind, name, "bore", max(abs(one[0] - other[0]), abs(one[1] - other[1]))
+                yield device.kind, name, "bore", max(abs(own - wanted) for own, wanted in zip(one, other))
 
 
 def drawn_view(tooled, placed, number):
@@ -325,10 +325,14 @@ def test_the_track_twists_in_the_trial_as_it_is_drawn(kinds):
     stage = queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1).stage
     rows = staging.tabulate_leans(stage.air.slopes, track.climb, track.bank, stage.size, 1.0)
     strip, s = printed.section_plan(tooled), np.linspace(0.0, tooled.length, 400)
-    tried = {k: np.interp(s, rows[:, 0], rows[:, k]) for k in range(4, 8)}
+    tried = {k: np.interp(s, rows[:, 0], rows[:, k]) for k in range(1, 8)}
     bank = strip.path.bank_at(strip.first + s)
     for k, own in ((4, np.sin(bank)), (5, np.cos(bank))):
         assert np.abs(tried[k] - own).max() * track.width < NEAR
+    # gravity as the turned track has it: back along the climb, to the wall and down
+    turned = -np.sin(track.climb), -np.cos(track.climb) * np.sin(bank), -np.cos(track.climb) * np.cos(bank)
+    for k, own in enumerate(turned, start=1):
+        assert np.abs(tried[k] - own).max() < 1e-3
     wall = bank - sum(
         np.where(
             (span.begin <= strip.first + s) & (strip.first + s <= span.closed),

@@ -13,7 +13,8 @@ from two_masses import GIVEN, amplitude, driven
 from feederscrew import bowl as bowls
 from feederscrew.base.errors import FeederError
 from feederscrew.bowl.record import Unbalance, direction, vibration_angle
-from feederscrew.machine import drive_sizing, sizing, springs
+from feederscrew.machine import checks, drive_sizing, sizing, springs
+from feederscrew.machine import sheet as machines
 from feederscrew.machine.springs import analyse_springs, gain, leaf_stiffness, leaf_stress, rocking
 
 BOWL = bowls.read(None, GIVEN)
@@ -187,6 +188,24 @@ def test_the_stroke_as_a_bowl_empties():
     assert np.all(np.diff(found.strokes) < 0.0) and np.all(found.controlled == 1.0)
     below = sizing.emptying(moved(leaves=6), fill)
     assert below.strokes[0] < 1.0 and below.controlled[0] == pytest.approx(min(1.0, below.strokes[0] / 0.8))
+
+
+@pytest.mark.parametrize("leaves, carried", [(12, 0.05), (6, 0.02)])
+def test_a_bowl_whose_speed_drifts_as_it_empties_is_warned_of(leaves, carried):
+    """Of its speed when empty, by more than it is to be tuned again for: a full one is faster, or slower."""
+
+    def sheet_with(retune):
+        texts = f"machine.leaves={leaves}", f"sizing.carried={carried}", f"sizing.retune={retune}"
+        return machines.machine(bowls.settings(None, texts))
+
+    speeds = sheet_with(0.15).velocities
+    drift = speeds[0] / speeds[-1] - 1.0
+    assert drift > 0.1 if leaves == 12 else drift < -0.1
+    for limit, is_warned in ((0.97 * abs(drift), True), (1.03 * abs(drift), False)):
+        warned = [one for one in checks.remarks(sheet_with(limit)) if one.startswith("sizing.carried: ")]
+        assert bool(warned) == is_warned
+        for speed in (speeds[0], speeds[-1]) if is_warned else ():
+            assert f"{1e3 * speed:.3g} mm/s" in warned[0]
 
 
 def moved(frequency=100.0, **more):

@@ -9,10 +9,14 @@ import feederscrew as fs
 
 PROGRAM = """
 import io
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 import feederscrew as fs
 from feederscrew.bowl.devices.base import Device
+from feederscrew.bowl.record import BowlGrid
 
 part: fs.Part = fs.load("p.stl", units="mm", density="abs", centre_of_mass=(0.0, 0.0, 1.0), allow_open=True)
 piped = fs.load("-", density=7850, names=Path("names.yaml"), stdin=io.BytesIO())
@@ -31,6 +35,9 @@ fs.calibrate(part, Path("counts.csv"))
 fs.drop(part, launch="drop", drops=2000, seed=2, jobs=2, traced=3, fall=("20 mm", 0.05), friction="0.3")
 fs.shake(part, [bowl, plain], seconds=1.0, restitution=0.2)
 
+amplitude: float = bowl.drive.amplitude
+grid: BowlGrid = bowl
+many = replace(grid, drive=replace(grid.drive, amplitude=np.linspace(1e-4, 3e-4, 5)))
 velocity: float = fs.convey(bowl.with_values({"track.climb": "2 deg"}, amplitude="0.3 mm")).answer.velocity
 answer: fs.Answer = fs.convey(bowl.with_values(amplitude=0.3e-3)).answer
 fs.slide(bowl, ["20 deg", 0.5])
@@ -67,6 +74,8 @@ fs.convey(part)
 fs.rate(part, bowl, "A", gap=[2])
 fs.tooling(part, bowl, purity="much")
 wrong: int = fs.design(part, "60/min")
+replace(bowl.drive, amplitude=np.linspace(1e-4, 3e-4, 5))
+fs.convey(many)
 """
 
 
