@@ -297,7 +297,7 @@ def _address(array: np.ndarray) -> int:
     if not flags.c_contiguous:
         raise ValueError(f"a kernel takes arrays in C order, not of strides {array.strides}")
     if flags.writeable and array.size:  # a quarter of what the array's own ``ctypes`` takes
-        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))  # type: ignore[arg-type]  # a buffer
     return int(array.ctypes.data)
 
 
