@@ -119,6 +119,8 @@ class Fence(click.Group):
             sys.stderr.flush()
         except (OSError, ValueError):
             _to_nowhere(sys.stderr)  # else the status would be 120
+        if args is None:  # the interpreter ends: its last search for garbage looks through all libraries
+            gc.freeze()
         sys.exit(status)
 
     def _status(self, arguments: list[str], extra: Mapping[str, Any]) -> Any:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feederscrew.base.arrays import Vector
+from feederscrew.base.arrays import Points, Triangles, Vector
 from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.graphs import component_of
 from feederscrew.base.geometry.polygons import outline, sides
@@ -98,11 +98,23 @@ def touching_area(part: Part, normal: Vector, height: float, noise: float = 0.0)
     float [m2]
         Of the facets of which every corner touches, as the floor sees them.
     """
-    corners, faces = part.corners, np.asarray(part.faces)
-    size = float(np.ptp(corners, axis=0).max())
-    depth = max(TOUCHING_SHARE * size, NOISE_DEPTHS * noise)
-    low = height - vectors.product(corners, normal) < depth
-    a, b, c = (corners[faces[low[faces].all(axis=1), k]] for k in range(3))
+    corners = part.corners
+    depth = max(TOUCHING_SHARE * _size(corners), NOISE_DEPTHS * noise)
+    return _area_near(corners, np.asarray(part.faces), normal, height - depth)
+
+
+def _size(corners: Points) -> float:
+    """Largest extent [m] of corners along an axis of the file."""
+    return float(np.ptp(corners, axis=0).max())
+
+
+def _area_near(corners: Points, faces: Triangles, normal: Vector, least: float) -> float:
+    """Area [m2], as a normal sees it, of the facets of which every corner is beyond a height [m] along it."""
+    low = vectors.product(corners, normal) > least
+    first, second, third = faces.T
+    touching = np.flatnonzero(low[first])  # of most sides of a round part only some facets
+    touching = touching[low[second[touching]] & low[third[touching]]]
+    a, b, c = (corners[column[touching]] for column in (first, second, third))
     facing = vectors.product(vectors.cross(b - a, c - a), normal)
     return 0.5 * float(np.maximum(facing, 0.0).sum())
 
@@ -139,10 +151,15 @@ def _side_areas(part: Part, hull: Hull, basins: Landscape, known: float) -> tupl
     bends = angle(*(hull.normals[basins.pairs[:, k]] for k in (0, 1)))
     plane = component_of(basins.pairs[bends < ONE_PLANE], len(hull.triangles))
     areas = np.bincount(plane, hull.areas)
+    sides_left = np.flatnonzero(areas > known * (1.0 + SAME_SIZE))
+    # the largest triangle of each side, the first of equal ones
+    order = np.lexsort((-hull.areas, plane))
+    _, starts = np.unique(plane[order], return_index=True)
+    middle = order[starts]
+    corners, faces = part.corners, np.array(part.faces, order="F")
+    depth = TOUCHING_SHARE * _size(corners)
     largest = known
-    for side in np.flatnonzero(areas > known * (1.0 + SAME_SIZE)):
-        of_side = np.flatnonzero(plane == side)
-        middle = of_side[np.argmax(hull.areas[of_side])]
-        area = touching_area(part, hull.normals[middle], float(hull.heights[middle]))
-        largest = max(largest, area)
+    for side in middle[sides_left]:
+        least = float(hull.heights[side]) - depth
+        largest = max(largest, _area_near(corners, faces, hull.normals[side], least))
     return float(areas[areas > 0.0].min()), largest

@@ -4,6 +4,7 @@ The verdicts of feet over holes are compiled: ``kernel``. Source: own; docs/tool
 """
 
 import math
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 kernel = heavy("feederscrew.sorting.kernel")
 
+MAX_SPARE = 16  # sizes of arrays for verdicts that a thread keeps
 SPOT = 1e-7  # [m] half the length of a single point of contact
 SECTOR_TOLERANCE = 1e-9  # [1] of an angle or a distance: what is beyond by more is so for certain
 ROLLING_FOOT_SHARE = 0.03  # of a rolling part's height of the centre of mass: its underside is foot
@@ -165,8 +167,26 @@ def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "Buffers":
     )
 
 
+class _Spare(threading.local):
+    """Arrays of a thread for verdicts, by their sizes: to make them takes longer than most verdicts."""
+
+    def __init__(self) -> None:
+        self.known: dict[tuple[int, ...], Buffers] = {}
+
+    def of(self, foot: "Foot", edges: int = 1, nodes: int = 0) -> "Buffers":
+        key = len(foot.sides), len(foot.corners), edges, nodes
+        if key not in self.known:
+            if len(self.known) >= MAX_SPARE:
+                self.known.clear()
+            self.known[key] = scratch(foot, edges=edges, nodes=nodes)
+        return self.known[key]
+
+
+SPARE = _Spare()
+
+
 def _scratch_of(foot: "Foot", hole: HoleEdges) -> "Buffers":
-    return scratch(foot, edges=len(hole.edges), nodes=len(hole.nodes))
+    return SPARE.of(foot, len(hole.edges), len(hole.nodes))
 
 
 def least(
@@ -244,7 +264,7 @@ def over_ring(foot: "Foot", low: float, high: float) -> float:
     ----------
     docs/tooling.md, "1. The method".
     """
-    return float(kernel.over_ring(foot, low, high, scratch(foot)))
+    return float(kernel.over_ring(foot, low, high, SPARE.of(foot)))
 
 
 def balcony(foot: "Foot", radius: float) -> float:
@@ -265,7 +285,7 @@ def balcony(foot: "Foot", radius: float) -> float:
     ----------
     docs/tooling.md, "1. The method".
     """
-    work, widest = scratch(foot), _extent(foot, radius)
+    work, widest = SPARE.of(foot), _extent(foot, radius)
 
     def carries(width: float) -> bool:
         return kernel.over_ring(foot, 0.0, radius - width, work) >= 0.0
@@ -287,7 +307,7 @@ def canyon(foot: "Foot", radius: float) -> float:
     float [m]
         0 where it passes none.
     """
-    work = scratch(foot)
+    work = SPARE.of(foot)
 
     def falls(width: float) -> bool:
         return kernel.over_ring(foot, radius - width, 2.0 * radius, work) < 0.0
@@ -312,6 +332,8 @@ def halve(holds: Callable[[float], bool], high: float) -> tuple[float, float]:
     low = 0.0
     for _ in range(60):
         middle = 0.5 * (low + high)
+        if not low < middle < high:  # nothing lies between them: they are next to each other
+            break
         low, high = (low, middle) if holds(middle) else (middle, high)
     return low, high
 

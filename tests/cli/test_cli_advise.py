@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+import shapes
 
 from feederscrew.designing import advice
 from feederscrew.designing.changes import list_changes
@@ -12,24 +13,24 @@ PARTS = Path(__file__).parents[2] / "parts"
 
 
 def test_a_part_is_graded_and_its_changes_are_written(run, tmp_path, monkeypatch):
-    """With two of its changes: all of them are judged in tests/designing/test_advice.py."""
+    """A cube, with two of its changes: all those of a washer are judged in tests/designing/test_advice.py."""
     monkeypatch.setattr(advice, "list_changes", lambda part: list_changes(part)[:2])
-    done = run(
-        "advise", PARTS / "washer_m6.stl", "--rule", "closed", "--static", "-o", tmp_path, "--format", "json"
-    )
+    shapes.box(20.0, 20.0, 20.0).export(tmp_path / "cube.stl")
+    done = run("advise", "cube.stl", "--rule", "closed", "--static", "-o", tmp_path, "--format", "json")
     assert done.exit_code == 0, done.stderr
     told = json.loads(done.stdout)
     assert told["grade"] in "ABCD" and told["reasons"] and len(told["changes"]) == 2
     assert told["way"]["rate_per_minute"] > 0.0
-    written = {path.name for path in (tmp_path / "washer_m6").iterdir()}
+    written = {path.name for path in (tmp_path / "cube").iterdir()}
     assert {"advice.html", "advice.json", "changes.csv", "run.json"} <= written
     said = " ".join(done.stderr.split())
     assert "by the static rule" in said and "that was tried" not in said
 
 
-def test_the_grade_alone_looks_for_no_change_and_prints_its_reasons(run):
+def test_the_grade_alone_looks_for_no_change_and_prints_its_reasons(run, tmp_path):
     """The table of no changes was a line of headings."""
-    call = ("advise", PARTS / "washer_m6.stl", "--rule", "closed", "--static", "--grade-only")
+    shapes.box(12.0, 12.0, 4.0).export(tmp_path / "plate.stl")
+    call = ("advise", "plate.stl", "--rule", "closed", "--static", "--grade-only")
     assert json.loads(run(*call, "--format", "json").stdout)["changes"] == []
     first, *lines = run(*call).stdout.splitlines()
     assert first.split() == ["reason", "grades", "less", "because"] and len(lines) >= 3

@@ -414,12 +414,11 @@ def test_a_part_whose_worker_dies_is_tried_again_then_told_and_tried_once_more_b
     assert again.done == ["b"]
     # processes are replaced after some parts, and tasks are read only when one is free
     crew, taken = batch.Processes(1, job=says_where, lifetime=2), []
-    first, second, third = (outcome.reason.split()[-1] for outcome in crew.outcomes(map(of, three)))
-    assert first == second != third
-    outcomes = batch.Processes(1, job=says_where).outcomes(taken.append(each) or of(each) for each in three)
-    next(outcomes)
+    outcomes = crew.outcomes(taken.append(each) or of(each) for each in three)
+    places = [next(outcomes).reason.split()[-1]]
     assert len(taken) == 2  # the process works at the second while the first is put in place
-    outcomes.close()
+    places += [outcome.reason.split()[-1] for outcome in outcomes]
+    assert places[0] == places[1] != places[2] and len(taken) == 3
 
 
 @pytest.mark.long

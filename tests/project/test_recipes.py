@@ -24,7 +24,8 @@ sys.path.insert(0, "docs")
 if any([importlib.import_module(page).main() for page in pages]):
     sys.exit("a page is out of date")
 from feederscrew_cli.main import feeder
-print(json.dumps([CliRunner().invoke(feeder, words).output for words in calls]))
+ends = [CliRunner().invoke(feeder, words) for words in calls]
+print(json.dumps([[end.exit_code, end.output] for end in ends]))
 """
 COPIED = ("feederscrew", "cli", "docs", "configs", "parts")
 PAGES = ("commands", "bowl_file")  # that are made from the program; of rules alone there is a third
@@ -72,8 +73,8 @@ def follow(root, names):
     shown = [(where, shlex.split(text)[1:]) for kind, where, text in blocks if kind == "shows"]
     calls = json.dumps([words for _, words in shown])
     said = run(root, sys.executable, "-c", RUN, " ".join(pages), calls).splitlines()[-1]
-    for (where, words), output in zip(shown, json.loads(said), strict=True):
-        assert where in output, (words, output)
+    for (where, words), (status, output) in zip(shown, json.loads(said), strict=True):
+        assert status == 0 and where in output, (words, output)  # a fault may name what is not there
 
 
 def test_every_recipe_is_here():

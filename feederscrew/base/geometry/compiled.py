@@ -181,6 +181,7 @@ MAX_REMEMBERED_TUPLES = 64  # of arguments whose words are remembered
 BLOCKS: OrderedDict[int, tuple[tuple[Any, ...], tuple[int, bytes]]] = OrderedDict()
 ENTERED: set[Callable[..., Any]] = set()  # functions of entries that numba is told of
 LOADED: list[Any] = []  # holds the code that is loaded
+PACK_NUMBER, PACK_WHOLE = struct.Struct("d").pack, struct.Struct("q").pack
 
 
 class Kernel:
@@ -237,39 +238,67 @@ def _block(value: Any) -> tuple[int, bytes]:
 
     A kind is float, int or bool, of an array its dtype and dimensions, of a tuple its class and kinds.
     """
-    kind: Any
-    if isinstance(value, tuple):
+    kind: Any = type(value)  # asked for each argument of each call: the usual ones first, and nothing twice
+    is_tuple = False
+    if kind is float:
+        words = PACK_NUMBER(value)
+    elif kind is int:
+        words = PACK_WHOLE(value)
+    elif issubclass(kind, tuple):
         remembered = BLOCKS.get(id(value))
         if remembered is not None and remembered[0] is value:
-            with contextlib.suppress(KeyError):  # another thread may have let it go
+            try:  # noqa: SIM105 - a context manager takes longer
                 BLOCKS.move_to_end(id(value))
+            except KeyError:  # another thread may have let it go
+                pass
             return remembered[1]
-        blocks = [_block(item) for item in value]
-        kind = (type(value), *(number for number, _ in blocks))
+        is_tuple, blocks = True, [_block(item) for item in value]
+        kind = (kind, *[number for number, _ in blocks])
         words = b"".join([words for _, words in blocks])
-    elif isinstance(value, np.ndarray):
-        value = np.asarray(value)  # attributes of records are slow to ask for
-        if not value.flags.c_contiguous:
-            raise ValueError(f"a kernel takes arrays in C order, not of strides {value.strides}")
+    elif issubclass(kind, np.ndarray):
+        if kind is not np.ndarray:
+            value = np.asarray(value)  # attributes of records are slow to ask for
         kind = value.dtype, value.ndim
-        words = struct.pack(f"{1 + value.ndim}q", value.ctypes.data, *value.shape)
+        words = _shape_packer(value.ndim)(_address(value), *value.shape)
     elif isinstance(value, bool | np.bool_):
-        kind, words = bool, struct.pack("q", value)
+        kind, words = bool, PACK_WHOLE(value)
     elif isinstance(value, int | np.integer):
-        kind, words = int, struct.pack("q", value)
+        kind, words = int, PACK_WHOLE(value)
     else:
-        kind, words = float, struct.pack("d", value)
+        kind, words = float, PACK_NUMBER(value)
     number = KINDS.get(kind)
     if number is None:
         with LOADING:
             number = KINDS.setdefault(kind, len(KINDS))
             KIND_OF[number] = kind
-    if isinstance(value, tuple):
+    if is_tuple:
         if len(BLOCKS) >= MAX_REMEMBERED_TUPLES:
             with contextlib.suppress(KeyError):
                 BLOCKS.popitem(last=False)
         BLOCKS[id(value)] = value, (number, words)
     return number, words
+
+
+@functools.cache
+def _shape_packer(dimensions: int) -> Callable[..., bytes]:
+    """Pack an array's address and shape into words."""
+    return struct.Struct(f"{1 + dimensions}q").pack
+
+
+def _address(array: np.ndarray) -> int:
+    """Return the address of an array in C order.
+
+    Raises
+    ------
+    ValueError
+        If the array is in another order.
+    """
+    flags = array.flags
+    if not flags.c_contiguous:
+        raise ValueError(f"a kernel takes arrays in C order, not of strides {array.strides}")
+    if flags.writeable and array.size:  # a quarter of what the array's own ``ctypes`` takes
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))  # type: ignore[arg-type]  # a buffer
+    return int(array.ctypes.data)
 
 
 def _text(kinds: Sequence[Any]) -> str:

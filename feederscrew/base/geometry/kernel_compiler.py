@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from llvmlite import binding, ir
-from numba import carray, cfunc, extending, from_dtype, njit, types
+from numba import cfunc, extending, from_dtype, njit, types
 
 from feederscrew.base.signatures import Keywords
 
@@ -32,6 +32,7 @@ class HandedRecord(types.Type):
 
 
 extending.register_model(HandedRecord)(extending.models.OpaqueModel)
+
 
 DECLARED: set[str] = set()  # names of fields that numba is told of
 
@@ -66,56 +67,65 @@ def _items(kind: Any) -> tuple[Any, ...]:
     return tuple(kind.types)
 
 
-def _reader(kind: Any, place: int) -> Callable[[Any], Any]:
-    """A function to be compiled: the value of a type that lies at a place behind an address."""
-    if isinstance(kind, types.Array):  # in C order, of its address and shape
-        data = _loader(types.CPointer(kind.dtype), place)
-        shape = _loader(types.UniTuple(types.int64, kind.ndim), place + 1)
-        return lambda record: carray(data(record), shape(record))
-    if isinstance(kind, types.BaseTuple):
-        items = _items(kind)
-        places = [place + first for first in _places(items)]
-        return _joined([_reader(*each) for each in zip(items, places, strict=True)])
-    load = _loader(kind, place)
-    return lambda record: load(record)
+def _reader(kind: Any, place: int = 0) -> Callable[[Any], Any]:
+    """A function to be compiled: the value of a type that lies at a place behind an address.
 
-
-def _joined(readers: Sequence[Callable[[Any], Any]]) -> Callable[[Any], Any]:
-    """A function to be compiled: a tuple of what some of them read."""
-    first = njit(**OPTIONS)(readers[0])
-    if len(readers) == 1:
-        return lambda record: (first(record),)
-    others = njit(**OPTIONS)(_joined(readers[1:]))
-    return lambda record: (first(record), *others(record))
-
-
-def _loader(kind: Any, place: int) -> Any:
-    """A function for compiled code: the words at a place, as a number, an address, or a tuple of numbers."""
+    It is one instruction to numba: a call of ``carray`` and those of its arguments take longer to compile.
+    """
 
     @extending.intrinsic
     def load(typing_context: Any, record: Any) -> Any:
         def emit(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             words = builder.bitcast(arguments[0], WORD.as_pointer())
-            if not isinstance(kind, types.UniTuple):
-                return _load(context, builder, kind, words, place)
-            values = [_load(context, builder, kind.dtype, words, place + k) for k in range(kind.count)]
-            return context.make_tuple(builder, kind, values)
+            return _load(context, builder, kind, words, place)
 
         return kind(record), emit
 
-    return load
+    return lambda record: load(record)  # type: ignore[call-arg]  # numba gives the context
 
 
 def _load(context: Any, builder: Any, kind: Any, words: Any, place: int) -> Any:
+    """Emit the reading of a value of a type whose first word lies at a place."""
+    if isinstance(kind, types.Array):
+        return _load_array(context, builder, kind, words, place)
+    if isinstance(kind, types.BaseTuple):
+        items = _items(kind)
+        places = [place + first for first in _places(items)]
+        values = [_load(context, builder, item, words, at) for item, at in zip(items, places, strict=True)]
+        return context.make_tuple(builder, kind, values)
+    if isinstance(kind, HandedRecord):
+        return builder.bitcast(builder.gep(words, [WORD(place)]), context.get_value_type(kind))
+    if isinstance(kind, types.Boolean):
+        return builder.icmp_signed("!=", _load_word(builder, WORD, words, place), WORD(0))
+    return _load_word(builder, context.get_value_type(kind), words, place)
+
+
+def _load_word(builder: Any, value_type: Any, words: Any, place: int) -> Any:
     """Emit the reading of a word, which stays as it is as long as the kernel runs."""
     pointer = builder.gep(words, [WORD(place)])
-    if isinstance(kind, HandedRecord):
-        return builder.bitcast(pointer, context.get_value_type(kind))
-    is_flag = isinstance(kind, types.Boolean)
-    value_type = WORD if is_flag else context.get_value_type(kind)
     loaded = builder.load(builder.bitcast(pointer, value_type.as_pointer()))
     loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
-    return builder.icmp_signed("!=", loaded, WORD(0)) if is_flag else loaded
+    return loaded
+
+
+def _load_array(context: Any, builder: Any, kind: Any, words: Any, place: int) -> Any:
+    """Emit the making of an array in C order from its address and shape; nobody owns its memory."""
+    item = context.get_data_type(kind.dtype)
+    lengths = [_load_word(builder, WORD, words, place + 1 + k) for k in range(kind.ndim)]
+    step = size = WORD(context.get_abi_sizeof(item))
+    count: Any = WORD(1)
+    strides: list[Any] = []
+    for length in reversed(lengths):
+        strides.insert(0, step)
+        step = builder.mul(step, length, flags=["nsw"])
+        count = builder.mul(count, length, flags=["nsw"])
+    several = types.UniTuple(types.intp, kind.ndim)
+    array = context.make_array(kind)(context, builder)  # zeros: of no owner and no parent
+    array.data = _load_word(builder, item.as_pointer(), words, place)
+    array.itemsize, array.nitems = size, count
+    array.shape = context.make_tuple(builder, several, lengths)
+    array.strides = context.make_tuple(builder, several, strides)
+    return array._getvalue()
 
 
 def register(function: Callable[..., Any], is_inlined: bool) -> None:
@@ -142,7 +152,7 @@ def llvm_code(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[str, 
 
     ``kinds`` are numba's types of its arguments, which lie in the block one behind the other.
     """
-    read = njit(**OPTIONS)(_reader(types.Tuple(tuple(kinds)), 0))
+    read = njit(**OPTIONS)(_reader(types.Tuple(tuple(kinds))))
 
     def call(words: Any) -> Any:
         return function(*read(words))

@@ -6,13 +6,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
-from scipy import optimize
 
 from feederscrew.base import value_forms as forms
 from feederscrew.base.columns import Document
 from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
+from feederscrew.base.heavy import heavy
 from feederscrew.bowl.devices import values
 from feederscrew.bowl.devices.asked import Encounter, LyingPart
 from feederscrew.bowl.devices.base import (
@@ -32,6 +31,9 @@ from feederscrew.bowl.devices.values import DeviceFields
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
+
+optimize = heavy("scipy.optimize")
+shapely = heavy("shapely")
 
 DEFLECTOR_BEGIN_RAD = math.radians(12.0)  # [rad] at the wall, as tried
 DEFLECTOR_END_RAD = math.radians(50.0)  # [rad] at the free edge, as tried

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 from feederscrew.base.arrays import Ints, Points
 from feederscrew.base.errors import FeederError, MissingPackage
@@ -33,6 +32,7 @@ GC = heavy("OCP.GC")
 GProp = heavy("OCP.GProp")
 Geom = heavy("OCP.Geom")
 IntCurvesFace = heavy("OCP.IntCurvesFace")
+interpolate = heavy("scipy.interpolate")
 arrays = heavy("OCP.OCP.collections")
 TopAbs = heavy("OCP.TopAbs")
 TopExp = heavy("OCP.TopExp")
@@ -285,7 +285,7 @@ def spline(places: Points) -> Spline:
         3, or less through fewer than four places.
     """
     degree = min(3, len(places) - 1)
-    curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
+    curve = interpolate.make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
     return curve.c, *np.unique(curve.t, return_counts=True), degree
 
 
