@@ -24,9 +24,11 @@ MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes l
 LEDGE_SINK_M = 1e-5  # [m] by which a ledge lies lower than the plate before it: no face on a face
 PLATE_OVERLAP_M = 3e-5  # [m] by which the side of the outlet reaches into the plate: no face on a face
 TWISTED = 4  # facets where the bank changes in place of one
-# [rad] of bank from which on the fillet below the plate becomes a gusset, and at which it is one
-STEEP_BANK_RAD, UPRIGHT_BANK_RAD = np.radians(60.5), np.radians(72.0)
+STEEP_BANK_RAD = np.radians(60.5)  # [rad] steeper than any groove: the track stands on edge
+# [rad] of bank, on the way there, from which on the fillet below the plate becomes a gusset, to where
+GUSSET_BANKS_RAD = np.radians(8.0), np.radians(40.0)
 TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led through
+EXACT_TWIST_STEP_RAD = np.radians(4.0)  # [rad] of bank between two such places
 
 
 def fillet(plan: BowlPlan) -> float:
@@ -108,8 +110,10 @@ def steps(plan: BowlPlan, kit: ModuleType, start: float, end: float) -> Floats:
         Ascending.
     """
     path = plan.path
+    turned = float(np.abs(np.diff(path.bank_at(np.array([start, end]))))[0])
     if kit.HAS_EXACT_CURVES:
         curved = max(int((end - start) / path.radius / TRACK_CURVE_STEP_RAD), 3) + 1
+        curved = max(curved, int(np.ceil(turned / EXACT_TWIST_STEP_RAD)) + 1)
         return np.linspace(start, end, 2 if start >= path.end else curved)
     step = path.radius * 2.0 * np.pi / plan.segments
     first = np.ceil(float(path.angle(start)) / (2.0 * np.pi / plan.segments))
@@ -119,7 +123,6 @@ def steps(plan: BowlPlan, kit: ModuleType, start: float, end: float) -> Floats:
     if not any(low < 0.5 * (start + end) < high for low, high, _ in path.leans):
         return unique
     # the free edge goes round an arc of the track's width, which may be seen too flat by the chord
-    turned = float(np.abs(np.diff(path.bank_at(np.array([start, end]))))[0])
     edge = int(np.ceil(turned * np.sqrt(plan.width / (8.0 * plan.chord))))
     count = max(TWISTED, int(np.ceil(edge / max(len(unique) - 1, 1))))
     places = np.arange(count * (len(unique) - 1) + 1) / count
@@ -163,12 +166,12 @@ def _sections(plan: BowlPlan, s: Floats, heights: Floats, strips: int) -> Floats
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
     plate, bank, r = plan.material.plate, plan.path.bank_at(s), fillet(plan)
     inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]
-    slope, turned = np.tan(np.minimum(bank, STEEP_BANK_RAD)), _gusset_share(bank)
+    square = float(stands_on_edge(plan))  # the plate is as thick square to its surface, else upright
+    slope, turned = np.tan(np.minimum(bank, STEEP_BANK_RAD)), square * _gusset_share(bank)
     past = SECTION_WALL_M if plan.is_section else TRACK_PIECE_OVERLAP_M  # no edge lies on the wall
     along = (
         turned * np.cos(bank) + 1.0 - turned
     )  # of what goes on into the wall: level, or along a steep plate
-    square = float(stands_on_edge(plan))  # the plate is as thick square to its surface, else upright
     ends = np.column_stack([past * along, -past * along * np.tan(bank)])
     surface = np.stack([-inward, inward * np.tan(bank)[:, None]], axis=-1)
     surface[:, 0] = ends
@@ -217,7 +220,8 @@ def stands_on_edge(plan: BowlPlan) -> bool:
 
 def _gusset_share(bank: Floats) -> Floats:
     """How far (M,) [1] the fillet below the plate has become a gusset at a bank (M,) [rad]."""
-    share = np.clip((bank - STEEP_BANK_RAD) / (UPRIGHT_BANK_RAD - STEEP_BANK_RAD), 0.0, 1.0)
+    first, last = GUSSET_BANKS_RAD
+    share = np.clip((bank - first) / (last - first), 0.0, 1.0)
     return share * share * (3.0 - 2.0 * share)
 
 

@@ -351,7 +351,7 @@ def test_the_track_twists_in_the_trial_as_it_is_drawn(kinds):
 
 
 @pytest.mark.needs("OCP")
-@pytest.mark.parametrize("seed", [0, 1, 2, 4, 6, 18])  # with grooves that end in banks, twists, every ledge
+@pytest.mark.parametrize("seed", [0, 1, 2, 4, 5, 6, 18])  # grooves that end in banks, twists, every ledge
 def test_rays_meet_the_step_file_where_they_meet_the_print(seed):
     *_, tooled = drawn(seed, 0.15)
     exact, flat = exact_file.exact_section(tooled), printed.section_body(tooled, facets)
@@ -362,13 +362,15 @@ def test_rays_meet_the_step_file_where_they_meet_the_print(seed):
         one, other = facets.below(flat, above), exact_body.below(exact, above / MM)
         met += one is not None
         assert (one is None) == (other is None)
-        assert one is None or abs(one - other * MM) <= NEAR
+        square = np.cos(float(tooled.bank_at(s)))  # rays come down on the track askew where it is twisted
+        assert one is None or abs(one - other * MM) * square <= NEAR
     assert met > 20
 
 
 @pytest.mark.needs("OCP")
-def test_the_exact_bowl_has_the_volume_of_its_facets():
-    _, every, _, tooled = drawn(4, 0.15)
+@pytest.mark.parametrize("seed", [4, CHAINS])
+def test_the_exact_bowl_has_the_volume_of_its_facets(seed):
+    _, every, _, tooled = drawn(seed, 0.15)
     planned, _ = bowl_of(tooled, every)
     exact, flat = (pieces(planned, kit)[0] for kit in (exact_body, facets))
     assert exact_body.volume(exact) == pytest.approx(flat.volume(), rel=1e-3)

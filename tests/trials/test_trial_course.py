@@ -9,7 +9,21 @@ import pytest
 import shapely
 import shapes
 import trimesh
-from block_rides import ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
+from block_rides import (
+    ASPECTS,
+    BOWL,
+    EVERY,
+    FLAT,
+    LENGTH,
+    PART,
+    SOLID,
+    aspects_of,
+    laid,
+    lying,
+    ridden,
+    sent,
+    still,
+)
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.kernel import body
@@ -22,6 +36,8 @@ from feederscrew.motion import conveying as answer
 from feederscrew.output.trial import tables
 from feederscrew.output.trial.rides import deciding_station
 from feederscrew.part import load
+from feederscrew.sorting import fates
+from feederscrew.sorting.on_side import find_on_side
 from feederscrew.sorting.orientations import add_travel
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import course, looks, part_poses, runs, shape, staging
@@ -69,6 +85,42 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
     assert (seen.depths < 2.5e-4).all() and (seen.gains < 1e-6).all()
     if passes:
         assert (seen.orientations[-1] == seen.entry_rows).all() and (seen.end_stations == 2).all()
+
+
+@pytest.mark.parametrize("angle", [65.0, 80.0])
+def test_a_twisted_track_stands_parts_on_the_side_that_was_at_the_wall(bowl, angle):
+    """At the default drive; the rule is that of statics, and so is the name of what leaves."""
+    one = bowl(f"twisted track: {{angle: {angle} deg, length: 120 mm}}", own=())
+    for name, own in (("key_a_d12x20", ("A@0", "B@0")), ("lbracket_30x20x15", ("A@2", "B@114", "E@90"))):
+        part = load(f"parts/{name}.stl")
+        every = add_travel(lying(part, one), one)
+        flow = fates.course(one.devices, every)
+        rows = [k for k, orientation in enumerate(every) if orientation.name in own]
+        leaving = course.leaves_by_rule(flow.leaving)
+        seen = sent(
+            part, one, rows, len(rows), one.devices, every=every, poses=flow.states, may_leave=leaving
+        )
+        assert len(rows) == len(own) and (flow.margins[rows, 1] > 1e-4).all()
+        assert (seen.fates == course.PASSED).all(), (name, seen.orientations[-1])
+        assert (seen.orientations[-1] != seen.entry_rows).all() and (seen.depths < 2.5e-4).all()
+        # the face below, as the queue tells it
+        below = looks.AspectsBelow(part, aspects_of(part), one.track.radius / seen.length)
+        aspects = [aspects_of(part).names[k] for k in below.find_aspects(seen.rides[-1].states)]
+        assert aspects == [flow.states[k].aspect for k in seen.orientations[-1]]
+
+
+def test_what_tips_out_of_a_twisted_track_leaves_in_another_way(bowl):
+    one = bowl("twisted track: {angle: 80 deg, length: 120 mm}", own=())
+    part = load("parts/lbracket_30x20x15.stl")
+    every = add_travel(lying(part, one), one)
+    flow = fates.course(one.devices, every)
+    rows = [k for k, orientation in enumerate(every) if orientation.name == "D@1"]
+    seen = sent(part, one, rows, 2, one.devices, every=every, poses=flow.states)
+    x, y, z = every[rows[0]].axes
+    upright = find_on_side(every, np.array([x, -z, y]))  # as it would stand on its side
+    assert flow.margins[rows[0], 1] < 0.0
+    names = [flow.states[k].name if k >= 0 else "other" for k in seen.orientations[-1]]
+    assert upright is None or upright.name not in names
 
 
 def test_a_cap_that_stays_before_a_straight_blade_leaves_along_a_curved_one(bowl):
