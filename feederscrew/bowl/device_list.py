@@ -90,7 +90,7 @@ def unfit(chain: Sequence[Device]) -> list[ConfigError]:
     twisted = False
     for device in chain:
         if twisted and device.action.has_place and device.action is not Action.CLIMB:
-            mend = "list the twist last"
+            mend = "list the twist last, and leave it out of a file that is designed"
             faults.append(ConfigError(device.where, f"{device.kind} stands on a track that is twisted", mend))
         twisted = twisted or device.action is Action.TWIST
     return faults

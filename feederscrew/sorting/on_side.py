@@ -6,7 +6,7 @@ inner side, the wall lies down as the floor, and the part goes on on the side th
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import cast
 
@@ -15,18 +15,40 @@ import shapely
 
 from feederscrew.base.arrays import Floats, Points
 from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.polygons import turned
 from feederscrew.motion import sameness
 from feederscrew.motion.track_balance import seat
+from feederscrew.part.hull import convex_hull
 from feederscrew.resting.posture import Posture
 from feederscrew.sorting.orientations import Orientation
 
 HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
 REACH_DIRECTIONS, REACH_TOLERANCE = 160, 0.05  # reaches that are compared; of the part's size, how alike
 HEIGHT_SHARE = 0.3  # of the part's size: an aspect whose reach upwards or downwards is off by more is another
+SIDE_COSINE = np.cos(
+    np.radians(6.0)
+)  # a flat side of the hull that is turned from the wall by less lies at it
+SIDE_EDGE_M = 1e-8  # [m] within an end of it, where that is met
+SIDE_DEPTH_SHARE = 1e-4  # of the part's size: corners that near to its plane are of it
 SIDE_HEADINGS = np.radians(np.arange(360.0))  # at which a part may lie on its side
 
 
-def side_levers(orientation: Orientation, angle: float) -> tuple[float, float]:
+@dataclass(frozen=True)
+class SideLevers:
+    """Levers of the weight of a part on both faces of a twisted track [m]; negative: it turns."""
+
+    out: float  # against tipping away from the floor that has become a wall
+    back: float  # against turning into the corner
+    along: float  # against tipping ahead or back over an end of the side at the wall
+    height: float  # of the centre of mass over the wall that has become the floor
+
+    @property
+    def least(self) -> float:
+        """Return the least of the three [m]."""
+        return min(self.out, self.back, self.along)
+
+
+def side_levers(orientation: Orientation, angle: float) -> SideLevers:
     """Return by how much its weight keeps a part on both faces of a track that is twisted by an angle.
 
     Floor and wall stand square to each other, and the floor rises by the angle from the wall's foot. Faces
@@ -44,26 +66,50 @@ def side_levers(orientation: Orientation, angle: float) -> tuple[float, float]:
 
     Returns
     -------
-    out, back : float [m]
-        ``out`` is negative where the part tips away from the floor that has become a wall, ``back`` where it
-        turns into the corner. NaN of a part whose place at the wall is not known.
+    SideLevers
+        NaN of a part whose place at the wall is not known.
 
     References
     ----------
     Statics of a rigid body on two faces without friction; docs/tooling.md, "4. Turning parts over".
     """
     if orientation.touching is None:
-        return math.nan, math.nan
-    lying = orientation.posture, orientation.heading, orientation.touching
-    ends = [seat(*lying, lean) for lean in (1.0, -1.0)]  # of the side at the wall, the upper one first
-    rear, ahead = ends[0].walls[:, 0]
-    share = min(max(-rear / (ahead - rear), 0.0), 1.0) if ahead > rear else 0.5  # below the centre of mass
-    top, bottom = (float(end.walls[0, 2] + share * np.diff(end.walls[:, 2])[0]) for end in ends)
-    across = shapely.LineString([(0.0, -1.0), (0.0, 1.0)])
-    below = shapely.get_coordinates(shapely.MultiPoint(ends[0].contact).convex_hull.intersection(across))
-    near, far = (float(below[:, 1].min()), float(below[:, 1].max())) if len(below) else (0.0, 0.0)
+        return SideLevers(math.nan, math.nan, math.nan, orientation.distance)
+    side, foot = _side_at_wall(orientation), turned(orientation.posture.contact, orientation.heading)
+    (bottom, top), (near, far), (rear, ahead) = _across(side), _across(foot), _across(side[:, ::-1])
     c, s = math.cos(angle), math.sin(angle)
-    return s * top - c * near, c * far - s * bottom
+    return SideLevers(s * top - c * near, c * far - s * bottom, s * min(ahead, -rear), orientation.distance)
+
+
+def _side_at_wall(orientation: Orientation) -> Points:
+    """Corners (K, 2) [m] of the side at the wall, ahead of the centre of mass and over it.
+
+    The wall is bent, and touches two edges of a flat side only. The part comes to lie on all of that side.
+    """
+    solid = orientation.solid
+    hull = convex_hull(cast(Points, solid.vertices), solid.centre_of_mass, solid.source)
+    points, normals = (vectors.product(rows, orientation.axes.T) for rows in (hull.vertices, hull.normals))
+    nearest = normals[int(np.argmin(np.round(normals[:, 1], 9)))]
+    if -nearest[1] > SIDE_COSINE:
+        beyond = vectors.product(points, nearest)
+        flat = points[beyond > beyond.max() - SIDE_DEPTH_SHARE * np.ptp(points, axis=0).max()]
+        return flat[:, [0, 2]]
+    lying = orientation.posture, orientation.heading, cast(Points, orientation.touching)
+    return np.concatenate([seat(*lying, lean).walls[:, [0, 2]] for lean in (1.0, -1.0)])
+
+
+def _across(corners: Points) -> tuple[float, float]:
+    """From and to [m] along the second axis, of the hull of some corners (K, 2) [m], where the first is 0.
+
+    Of a hull beside that axis, where it comes nearest to it.
+    """
+    hull, first = shapely.MultiPoint(corners).convex_hull, corners[:, 0]
+    place = min(max(0.0, float(first.min()) + SIDE_EDGE_M), float(first.max()) - SIDE_EDGE_M)
+    met = hull.intersection(shapely.LineString([(place, -1.0), (place, 1.0)]))
+    if met.is_empty:  # it is a line along the second axis
+        met = hull
+    _, low, _, high = met.bounds
+    return float(low), float(high)
 
 
 def find_on_side(orientations: Sequence[Orientation], axes: Floats) -> Orientation | None:

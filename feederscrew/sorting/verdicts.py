@@ -798,18 +798,21 @@ class DeviceEncounter:
         Returns
         -------
         Verdict
-            Its margin is the lesser lever of the weight at that angle. Not sure where the part turns into the
-            corner, or lies on none of its aspects: then it counts as it came.
+            Its margin is the least lever of the weight at that angle. Not sure where the track's friction may
+            tip it ahead or back; nor where it turns into the corner, or lies on none of its aspects: then it
+            counts as it came.
         """
-        out, back = on_side.side_levers(self.orientation, angle)
-        (x, y, z), solid = self.orientation.axes, self.orientation.solid
-        axes, margin = np.array([x, -z, y]), min(out, back)
-        if out < 0.0:  # it tips once more, away from the floor that has become a wall
+        own, levers = self.orientation, on_side.side_levers(self.orientation, angle)
+        (x, y, z), solid = own.axes, own.solid
+        axes, margin = np.array([x, -z, y]), levers.least
+        if levers.out < 0.0:  # it tips once more, away from the floor that has become a wall
             hull = convex_hull(cast(Points, solid.vertices), solid.centre_of_mass, solid.source)
             side, rear, down = _tip_over(hull, (z, x, -y), False)[2]
             axes = np.array([rear, -side, -down])
+        elif levers.along < self.grip * levers.height:  # friction may tip it over an end of its side
+            margin = -UNSURE
         lies = on_side.find_on_side(self.orientations, axes)
-        if lies is None or not back >= 0.0:
+        if lies is None or not min(levers.back, levers.along) >= 0.0:
             return Verdict(1.0, -UNSURE, onto=((self.place, 1.0),))
         place = next((k for k, other in enumerate(self.orientations) if other is lies), -1)
         if place < 0:

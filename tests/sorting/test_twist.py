@@ -42,7 +42,8 @@ def test_a_lever_is_the_rise_of_the_weight_for_a_turn_on_both_faces(ring, angle)
     for one in lying(shapes.prism(ring, 30.0)):
         if not np.isclose(one.length, 0.03, rtol=1e-3):
             continue
-        for lever, turn in zip(side_levers(one, angle * DEG), (1e-7, -1e-7)):
+        levers = side_levers(one, angle * DEG)
+        for lever, turn in ((levers.out, 1e-7), (levers.back, -1e-7)):
             rise = (lift(one, angle * DEG, turn) - lift(one, angle * DEG, 0.0)) / abs(turn)
             assert lever == pytest.approx(rise, abs=2e-7)
         seen += 1
@@ -66,12 +67,19 @@ def test_a_block_goes_on_on_the_side_that_was_at_the_wall_by_half_its_sides():
 
 
 def test_what_has_its_weight_beyond_the_top_of_its_side_tips_out_and_that_is_not_decided():
-    """The foot of the bracket at the wall, 5 mm thick, its web over the track's middle."""
-    every = coming(load("lbracket_30x20x15"))
-    tall = named(every, "D@1")
-    out, back = side_levers(tall, 80.0 * DEG)
-    outcome = verdict(twist(), tall, every)
-    assert out < 0.0 < back and outcome.margin == pytest.approx(out, abs=1e-4) and not outcome.decided
+    """A foot of 14 x 3 mm at the wall, a web over its far end: out from atan(9.65 / 2.91) = 73.2 deg on."""
+    every = lying(shapes.prism(FLANGED, 30.0))
+    standing = [one for one in every if abs(one.length - 0.030) < 1e-4 and abs(one.height - 0.015) < 1e-5]
+    low = max(standing, key=lambda one: one.distance)
+    centre = (42 * 7 + 60 * 2.5) / 102, (42 * 1.5 + 60 * 9) / 102  # [mm] of the section
+    for degrees in (65.0, 73.0, 73.5, 80.0):
+        c, s = math.cos(degrees * DEG), math.sin(degrees * DEG)
+        levers = side_levers(low, degrees * DEG)
+        wanted = 1e-3 * (s * (3.0 - centre[1]) + c * (14.0 - centre[0]))
+        assert levers.out == pytest.approx(wanted, abs=1e-5)
+        assert (levers.out < 0.0) == (degrees > 73.2) and min(levers.back, levers.along) > 0.0
+        outcome = verdict(twist(degrees), low, every)
+        assert not outcome.decided and outcome.margin <= -UNSURE
 
 
 def test_it_is_named_by_its_aspect_and_heading_also_where_no_level_track_has_it_so():
@@ -99,6 +107,16 @@ def test_the_wall_of_the_twist_holds_what_the_drive_turns_over_on_the_level():
     edges = [replace(one, turns_over=one.height > 2e-3) for one in every]
     row = every.index(flat)
     assert course((twist(),), edges).leaving[row].sum() == 1.0
+
+
+def test_friction_may_tip_ahead_what_stands_short_on_its_side():
+    """Blocks on a side of length a, w / 2 below the centre of mass: none tips if a >= mu w."""
+    for length, sure in ((20.0, True), (14.0, True), (6.0, False)):
+        every = lying(block(length, 20, 5))
+        across = next(one for one in every if np.allclose([one.width, one.height], [0.020, 0.005], rtol=1e-3))
+        levers, outcome = side_levers(across, 80.0 * DEG), verdict(twist(), across, every)
+        assert levers.along == pytest.approx(0.5e-3 * length * math.sin(80.0 * DEG), abs=1e-5)
+        assert levers.height == pytest.approx(0.010, rel=0.01) and outcome.sure == sure
 
 
 def test_what_lies_on_none_of_its_aspects_then_is_not_sure():
