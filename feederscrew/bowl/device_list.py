@@ -83,9 +83,16 @@ def unfit(chain: Sequence[Device]) -> list[ConfigError]:
     grooved = False
     for device in chain:
         grooved = device.action is Action.GROOVE or (grooved and device.action is not Action.BANK)
-        if grooved and device.action.has_place and not device.action.leans:
+        if grooved and device.action.has_place and (not device.action.leans or device.on_side):
             mend = "list 'banked track: 6 deg' before it, which ends the groove"
             faults.append(ConfigError(device.where, f"{device.kind} stands in a groove", mend))
+    # at a twist, behind which parts are on their side
+    twisted = False
+    for device in chain:
+        if twisted and device.action.has_place and device.action is not Action.CLIMB:
+            mend = "list the twist last, and leave it out of a file that is designed"
+            faults.append(ConfigError(device.where, f"{device.kind} stands on a track that is twisted", mend))
+        twisted = twisted or device.action is Action.TWIST
     return faults
 
 

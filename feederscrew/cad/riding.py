@@ -19,7 +19,8 @@ def place_rider(plan: BowlPlan, orientation: Orientation, vertices: Points, s: f
     """Return a part on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
     A bent track and a leaning wall move the part from where it lies on a straight one. So it is moved off the
-    wall and onto the track in turn, until it is nearer than ``RIDER_CONTACT_M`` to both.
+    wall and onto the track in turn, until it is nearer than ``RIDER_CONTACT_M`` to both. On a track that
+    stands on edge it stays where it lies on a straight one.
 
     Parameters
     ----------
@@ -38,10 +39,10 @@ def place_rider(plan: BowlPlan, orientation: Orientation, vertices: Points, s: f
     """
     path, points, distance = plan.path, product(vertices, orientation.axes.T), orientation.distance
     points[:, 2] += orientation.posture.height
-    hangs = points[:, 2].min() < -BELOW
+    as_on_straight = points[:, 2].min() < -BELOW or path.bank_at(s) > track.STEEP_BANK_RAD
     for step in range(MAX_SETTLING_STEPS + 1):
         placed = path.places(s, distance) + product(points, np.stack(frame(plan, s, distance)))
-        if hangs or step == MAX_SETTLING_STEPS:
+        if as_on_straight or step == MAX_SETTLING_STEPS:
             break
         # the farthest beyond the wall, which may lean: it is met at each point's height
         x, y, z = placed.T

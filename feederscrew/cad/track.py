@@ -24,7 +24,11 @@ MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes l
 LEDGE_SINK_M = 1e-5  # [m] by which a ledge lies lower than the plate before it: no face on a face
 PLATE_OVERLAP_M = 3e-5  # [m] by which the side of the outlet reaches into the plate: no face on a face
 TWISTED = 4  # facets where the bank changes in place of one
+STEEP_BANK_RAD = np.radians(60.5)  # [rad] steeper than any groove: the track stands on edge
+# [rad] of bank, on the way there, from which on the fillet below the plate becomes a gusset, to where
+GUSSET_BANKS_RAD = np.radians(8.0), np.radians(40.0)
 TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led through
+EXACT_TWIST_STEP_RAD = np.radians(4.0)  # [rad] of bank between two such places
 
 
 def fillet(plan: BowlPlan) -> float:
@@ -89,7 +93,8 @@ def steps(plan: BowlPlan, kit: ModuleType, start: float, end: float) -> Floats:
     """Return the lengths along the wall at which a piece of track has its sections.
 
     Facets have them where the wall's own facets meet, and at both ends; a twisted piece has ``TWISTED`` times
-    as many. Exact faces have the places that a curve is led through, or the two ends of a straight piece.
+    as many, or as its free edge needs. Exact faces have the places that a curve is led through, or the two
+    ends of a straight piece.
 
     Parameters
     ----------
@@ -105,8 +110,10 @@ def steps(plan: BowlPlan, kit: ModuleType, start: float, end: float) -> Floats:
         Ascending.
     """
     path = plan.path
+    turned = float(np.abs(np.diff(path.bank_at(np.array([start, end]))))[0])
     if kit.HAS_EXACT_CURVES:
         curved = max(int((end - start) / path.radius / TRACK_CURVE_STEP_RAD), 3) + 1
+        curved = max(curved, int(np.ceil(turned / EXACT_TWIST_STEP_RAD)) + 1)
         return np.linspace(start, end, 2 if start >= path.end else curved)
     step = path.radius * 2.0 * np.pi / plan.segments
     first = np.ceil(float(path.angle(start)) / (2.0 * np.pi / plan.segments))
@@ -115,7 +122,10 @@ def steps(plan: BowlPlan, kit: ModuleType, start: float, end: float) -> Floats:
     unique = np.unique(np.concatenate([[start], inner, [path.end] if start < path.end < end else [], [end]]))
     if not any(low < 0.5 * (start + end) < high for low, high, _ in path.leans):
         return unique
-    places = np.arange(TWISTED * (len(unique) - 1) + 1) / TWISTED
+    # the free edge goes round an arc of the track's width, which may be seen too flat by the chord
+    edge = int(np.ceil(turned * np.sqrt(plan.width / (8.0 * plan.chord))))
+    count = max(TWISTED, int(np.ceil(edge / max(len(unique) - 1, 1))))
+    places = np.arange(count * (len(unique) - 1) + 1) / count
     return np.interp(places, np.arange(len(unique)), unique)
 
 
@@ -155,22 +165,34 @@ def _strips(plan: BowlPlan, kit: ModuleType) -> int:
 def _sections(plan: BowlPlan, s: Floats, heights: Floats, strips: int) -> Floats:
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
     plate, bank, r = plan.material.plate, plan.path.bank_at(s), fillet(plan)
-    level = np.ones((len(s), 1))
     inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]
-    edge = inward[:, -1:].copy()
+    square = float(stands_on_edge(plan))  # the plate is as thick square to its surface, else upright
+    slope, turned = np.tan(np.minimum(bank, STEEP_BANK_RAD)), square * _gusset_share(bank)
+    past = SECTION_WALL_M if plan.is_section else TRACK_PIECE_OVERLAP_M  # no edge lies on the wall
+    along = (
+        turned * np.cos(bank) + 1.0 - turned
+    )  # of what goes on into the wall: level, or along a steep plate
+    ends = np.column_stack([past * along, -past * along * np.tan(bank)])
+    surface = np.stack([-inward, inward * np.tan(bank)[:, None]], axis=-1)
+    surface[:, 0] = ends
+    deep = plate * np.column_stack([square * np.sin(bank), 1.0 + square * (np.cos(bank) - 1.0)])
+    edge = surface[:, -1:] - deep[:, None]
     if plan.is_section:
-        inward[:, 0] = -SECTION_WALL_M
-        out = np.hstack([-inward, -edge, SECTION_WALL_M * level])
-        below = np.hstack([0.0 * inward, -plate * level, -plate * level])
-        return np.stack([out, below - out * np.tan(bank)[:, None] + heights[:, None]], axis=-1)
-    inward[:, 0] = -TRACK_PIECE_OVERLAP_M  # no edge lies on the wall
-    turn, own = 0.5 * np.pi * np.arange(ARC + 1) / ARC, YOKE_RADIUS_RATIO * r  # the arc goes on into the wall
-    arc = np.column_stack([-r + own * np.sin(turn), -plate - own + own * np.cos(turn)])
-    arc = arc if plan.material.supported else arc[[0, -1]]
-    out = np.hstack([-inward, -edge, arc[:, 0] * level, TRACK_PIECE_OVERLAP_M * level])
-    below = np.hstack([0.0 * inward, -plate * level, arc[:, 1] * level, (-plate - own) * level])
-    slanted = np.hstack([out[:, :-1], 0.0 * level])  # all but the corner deep in the wall
-    sections = np.stack([out, below - slanted * np.tan(bank)[:, None]], axis=-1)
+        below = ends[:, None] - deep[:, None]
+        sections = np.concatenate([surface, edge, below], axis=1)
+    else:
+        turn, own = 0.5 * np.pi * np.arange(ARC + 1) / ARC, YOKE_RADIUS_RATIO * r  # on into the wall
+        arc = np.column_stack([-r + own * np.sin(turn), -plate - own + own * np.cos(turn)])
+        arc = arc if plan.material.supported else arc[[0, -1]]
+        level = np.ones((len(s), 1))
+        curved = np.stack([arc[:, 0] * level, arc[:, 1] - arc[:, 0] * slope[:, None]], axis=-1)
+        deepest = np.array([TRACK_PIECE_OVERLAP_M, -plate - own]) * np.ones((len(s), 1, 1))
+        # below a plate on edge a straight gusset from its inner face to the wall
+        share = np.linspace(0.0, 1.0, len(arc))[:, None]
+        inner = r * np.column_stack([-np.cos(bank), np.sin(bank)]) - deep
+        gusset = (1.0 - share) * inner[:, None] + share * [0.0, -plate - own]
+        curved = curved + turned[:, None, None] * (gusset - curved)
+        sections = np.concatenate([surface, edge, curved, deepest], axis=1)
     if plan.stairs is not None and plan.stairs.shape == CONICAL:
         # what is below the track is kept within the wall, which leans in below it; no device changes its bank
         under = sections[0, strips + 1 :]
@@ -180,6 +202,27 @@ def _sections(plan: BowlPlan, s: Floats, heights: Floats, strips: int) -> Floats
         sections[:, -1, 0] = most[last]
     sections[..., 1] += heights[:, None]
     return sections
+
+
+def stands_on_edge(plan: BowlPlan) -> bool:
+    """Tell whether the track is twisted until it stands on edge.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+
+    Returns
+    -------
+    bool
+    """
+    return any(bank > STEEP_BANK_RAD for _, _, bank in plan.path.leans)
+
+
+def _gusset_share(bank: Floats) -> Floats:
+    """How far (M,) [1] the fillet below the plate has become a gusset at a bank (M,) [rad]."""
+    first, last = GUSSET_BANKS_RAD
+    share = np.clip((bank - first) / (last - first), 0.0, 1.0)
+    return share * share * (3.0 - 2.0 * share)
 
 
 def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
@@ -249,9 +292,11 @@ def sides(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     Returns
     -------
     list of Body [mm]
-        Without the former where a groove is open to the end.
+        Without the former where a groove is open to the end; none where the track stands on edge there.
     """
     path, wall, height = plan.path, plan.material.wall, plan.outlet_height
+    if stands_on_edge(plan):
+        return []
     end = path.end + plan.outlet
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
     lift = plan.width * np.sin(path.bank_at(path.end))

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
+from typing import cast
 
 import numpy as np
 import shapely
@@ -89,6 +90,8 @@ def worst_passage(device: Device, orientation: Orientation, orientations: Sequen
     worst = int(np.argmin(within))
     if outcome.onto:  # most parts go on so
         after = device.onward(orientations[max(outcome.onto, key=lambda place: place[1])[0]])
+    elif outcome.lands is not None:
+        after = device.onward(cast(Orientation, outcome.lands))
     elif outcome.hangs:
         after = hang(orientation, device.span)
     else:

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from feederscrew.sorting import footprints
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.orientations import Hanging, Orientation, hang, may_hang
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
+
+SAME_HEADING_RAD = np.radians(5.0)  # [rad] poses on one aspect that are turned by less are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,8 +200,10 @@ def course(
                     states.append(down)
                 place = states.index(down) if outcome.hangs else k
                 hangs_as[k] = states.index(down)
+            if outcome and outcome.lands is not None:
+                place = _find_state(cast(Orientation, outcome.lands), states, len(orientations))
             if outcome and outcome.onto:
-                onward.append([row for row in outcome.onto if not states[row[0]].returned])
+                onward.append([row for row in outcome.onto if not device.onward(states[row[0]]).returned])
             else:
                 onward.append([(place, outcome.passes)] if outcome else [])
         transitions.append(onward)
@@ -226,6 +231,16 @@ def course(
     )
 
 
+def _find_state(pose: Orientation, states: list[Orientation], lying: int) -> int:
+    """Return the place of a pose behind those that lie; it is added where there is none alike."""
+    for place, other in enumerate(states[lying:], start=lying):
+        away = np.angle(np.exp(1j * (other.heading - pose.heading)))
+        if other.aspect == pose.aspect and abs(away) < SAME_HEADING_RAD:
+            return place
+    states.append(pose)
+    return len(states) - 1
+
+
 def at_entry(orientations: Sequence[Orientation], devices: Sequence[Device]) -> tuple[Orientation, ...]:
     """Return orientations as they come: where devices that lean the track come first, they begin there.
 
@@ -247,7 +262,7 @@ def at_entry(orientations: Sequence[Orientation], devices: Sequence[Device]) -> 
 def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
     """Return the devices that come first and lean the track from its entry on.
 
-    Of banks and grooves the first one does: a second one begins at its own place.
+    Of banks and grooves the first one does: a second one begins at its own place, and so does a twist.
 
     Parameters
     ----------
@@ -261,7 +276,7 @@ def leading_devices(devices: Sequence[Device]) -> tuple[Device, ...]:
     first_devices, is_banked = [], False
     for device in devices:
         banks = device.action in (Action.BANK, Action.GROOVE)
-        if not device.action.leans or (is_banked and banks):
+        if not device.action.leans or device.on_side or (is_banked and banks):
             break
         first_devices.append(device)
         is_banked = is_banked or banks

@@ -464,7 +464,7 @@ def _twists(
                 # by how much the free edge rises or falls
                 edge = track.extent * abs(np.sin(new_bank) - np.sin(bank))
                 least = shortest if new_wall == wall else max(shortest, opens)
-                length = float(max(least, edge / np.tan(MAX_EDGE_SLOPE_RAD)))
+                length = slope.length or float(max(least, edge / np.tan(MAX_EDGE_SLOPE_RAD)))
                 changed = new_bank if new_bank != bank else None, new_wall if new_wall != wall else None
                 here.append(_Twist(slope.begin, length, *changed))
             bank, wall = new_bank, new_wall

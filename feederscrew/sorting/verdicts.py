@@ -26,7 +26,7 @@ from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.resting import half_edges as tumbling
 from feederscrew.resting import walks
 from feederscrew.resting.posture import Posture
-from feederscrew.sorting import falling, footprints, sensor_views
+from feederscrew.sorting import falling, footprints, on_side, sensor_views
 from feederscrew.sorting.orientations import Hanging, Orientation, head_first, neck, shoulder_margin
 
 BARRIER_OVERSHOOT_RAD = 1e-7  # [rad] past the barrier a part rolls down by itself
@@ -43,8 +43,6 @@ FIRST_STEP_RAD = np.radians(6.0)
 LAST_STEP_RAD = np.radians(0.02)
 STEP_AXES = 24
 YAW_RAD = np.radians(5.0)  # [rad] askew to either side, as it comes to a groove
-HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
-REACH_DIRECTIONS, REACH_TOLERANCE = 160, 0.05  # reaches that are compared; of the part's size, how alike
 
 
 def verdict(
@@ -436,10 +434,10 @@ def becomes_in_groove(
     for turn in (-YAW_RAD, YAW_RAD):
         reach = _reach_in_groove(orientation.posture, orientation.heading + turn, angle)
         off = [
-            float(np.abs(_reaches(other.posture, other.heading) - reach).max(axis=1).min())
+            float(np.abs(on_side.reaches(other.posture, other.heading) - reach).max(axis=1).min())
             for other in orientations
         ]
-        size = REACH_TOLERANCE * float(reach.max())
+        size = on_side.REACH_TOLERANCE * float(reach.max())
         best = own if off[own] < size else int(np.argmin(off))
         place = best if off[best] < size else -1
         shares[place] = shares.get(place, 0.0) + 0.5
@@ -518,26 +516,7 @@ def _turns(step: float) -> Floats:
 @functools.lru_cache(maxsize=2048)
 def _reach_in_groove(posture: Posture, heading: float, angle: float) -> Floats:
     """Return how far a part that comes at a heading reaches (REACH_DIRECTIONS,) [m], lying in a groove."""
-    return _reach(settled_in_groove(_corners_from_centre(posture, heading), angle))
-
-
-@functools.lru_cache(maxsize=2048)
-def _reaches(posture: Posture, heading: float) -> Floats:
-    """Return how far an orientation reaches (N, REACH_DIRECTIONS) [m], turned a little."""
-    return np.array([_reach(_corners_from_centre(posture, heading + by)) for by in HEADING_OFFSETS])
-
-
-def _corners_from_centre(posture: Posture, heading: float) -> Floats:
-    """A part (V, 3) [m] from its centre of mass as it lies on the track at a heading [rad]."""
-    c, s = np.cos(heading), np.sin(heading)
-    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return vectors.product(cast(Points, posture.corners) - [0.0, 0.0, posture.height], turn)
-
-
-def _reach(points: Points) -> Floats:
-    sample = sameness.directions()
-    sample = sample[:: len(sample) // REACH_DIRECTIONS][:REACH_DIRECTIONS]
-    return vectors.product(points, sample.T).max(axis=-2)
+    return on_side.reach_of(settled_in_groove(on_side.corners_from_centre(posture, heading), angle))
 
 
 # -- what a device asks, and how it says what becomes of an orientation
@@ -807,6 +786,38 @@ class DeviceEncounter:
         if landed == ((here, 1.0),):
             return self.passing()
         return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in landed))
+
+    def stood_on_side(self, angle: float) -> Verdict:
+        """Return the verdict of a track that twists with its wall.
+
+        Parameters
+        ----------
+        angle : float [rad]
+            By which it is twisted at its end, where the levers are least.
+
+        Returns
+        -------
+        Verdict
+            Its margin is the least lever of the weight at that angle. Not sure where the track's friction may
+            tip it ahead or back; nor where it turns into the corner, or lies on none of its aspects: then it
+            counts as it came.
+        """
+        own, levers = self.orientation, on_side.side_levers(self.orientation, angle)
+        (x, y, z), solid = own.axes, own.solid
+        axes, margin = np.array([x, -z, y]), levers.least
+        if levers.out < 0.0:  # it tips once more, away from the floor that has become a wall
+            hull = convex_hull(cast(Points, solid.vertices), solid.centre_of_mass, solid.source)
+            side, rear, down = _tip_over(hull, (z, x, -y), False)[2]
+            axes = np.array([rear, -side, -down])
+        elif levers.along < self.grip * levers.height:  # friction may tip it over an end of its side
+            margin = -UNSURE
+        lies = on_side.find_on_side(self.orientations, axes)
+        if lies is None or not min(levers.back, levers.along) >= 0.0:
+            return Verdict(1.0, -UNSURE, onto=((self.place, 1.0),))
+        place = next((k for k, other in enumerate(self.orientations) if other is lies), -1)
+        if place < 0:
+            return Verdict(1.0, margin, lands=lies)
+        return Verdict(1.0, margin, onto=((place, 1.0),))
 
 
 def opening_margin(opening: shapely.Geometry, orientation: Orientation) -> float:

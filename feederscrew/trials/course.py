@@ -156,10 +156,13 @@ def course(
     else:
         entries = np.resize(np.asarray(sent.rows, int), sent.parts)
         states, times = part_poses.lay_down(bowl, orientations, entries, solid, principal, length, run.seed)
-    looks = Looks(orientations if poses is None else poses, solid, length, principal, bowl.track.radius)
+    known = orientations if poses is None else poses
+    looks = Looks(known, solid, length, principal, bowl.track.radius)
+    on_side = chain[-1].on_side
+    looks_on_side = Looks(known, solid, length, principal, bowl.track.radius, on_side) if on_side else looks
     may_leave = np.eye(len(orientations), len(looks.reaches), dtype=bool) if may_leave is None else may_leave
     # whatever hangs between rails has come there as it should, also where the static rule did not say so
-    hanging = [isinstance(pose, Hanging) for pose in (orientations if poses is None else poses)]
+    hanging = [isinstance(pose, Hanging) for pose in known]
     may_leave = may_leave | np.resize(np.array(hanging, bool), may_leave.shape)
     limits = [limits_at(bowl, station, orientations) for station in chain]
     follows = [runs.make_follower(part_in_bowl, *pair) for pair in zip(chain, limits)]
@@ -207,7 +210,8 @@ def course(
         ends[rows] = part_poses.ways_along_wall(ride.states, looks.radius) * bowl.track.radius / looks.radius
         lost = [fate_at(station, *row, looks, unit) for row in zip(ride.outcomes, ride.states)]
         fates[rows] = np.where(passed, PASSED, lost)
-        oriented[place + 1][rows[passed]] = looks.find_orientations(ride.states[passed])
+        own_looks = looks_on_side if station.on_side else looks
+        oriented[place + 1][rows[passed]] = own_looks.find_orientations(ride.states[passed])
     # What leaves as it should has passed, what else leaves was turned.
     right = (oriented[-1] >= 0) & may_leave[entries, np.maximum(oriented[-1], 0)]
     fates[(fates == PASSED) & ~right] = TURNED
@@ -509,6 +513,8 @@ def landing(
         own: Any = {"poses": poses, "may_leave": may_leave, "run": replace(run, before=None)}
         rode = course(part, bowl, orientations, sent, bowl.devices, **own)
         left, out = np.isin(rode.fates, (PASSED, TURNED)), np.full(len(rode.fates), OTHER)
+        if rode.stations[-1].on_side:
+            below = AspectsBelow(part, aspects, part_in_bowl.radius)
         out[rode.riders[-1]] = below.find_aspects(rode.rides[-1].states)
         becomes = np.where(left, np.where(out == rode.entry_rows, PASSED, TURNED), rode.fates)
         np.add.at(fates, (rode.entry_rows, becomes), 1)

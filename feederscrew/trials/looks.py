@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew.arrivals.kernel.one_drop import UNSETTLED, face_below
 from feederscrew.arrivals.rounded_hull import shape_of_part
+from feederscrew.base import check
 from feederscrew.base.arrays import Floats, Ints
 from feederscrew.base.geometry import vectors
 from feederscrew.part.hull import convex_hull
@@ -15,8 +16,8 @@ from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, require_ground
 from feederscrew.resting.half_edges import Edges, half_edges
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
+from feederscrew.sorting.on_side import HEADING_OFFSETS
 from feederscrew.sorting.orientations import Hanging, Orientation
-from feederscrew.sorting.verdicts import HEADING_OFFSETS
 from feederscrew.trials import part_poses
 from feederscrew.trials.kernel.workspace import TrueSolid
 from feederscrew.trials.part_poses import State
@@ -26,6 +27,9 @@ OUTLINE_DIRECTIONS = 160
 ALL_HEADINGS = np.radians(np.arange(0.0, 360.0, 2.0))  # the same where any heading of its aspect will do
 HANGING_COSINE = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
 OTHER = -1  # orientation: none of the known
+# (3, 3) [1] axes of a twisted track from those of the track before it, both ahead, inwards and up: its floor
+# stands as the wall at the inner side, its wall lies as the floor
+ON_SIDE = check.frozen(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
 
 
 class Looks:
@@ -50,6 +54,8 @@ class Looks:
     principal : (3, 3) float [1]
     radius : float [m]
         Of the wall.
+    on_side : float [rad], optional
+        By which the track is twisted where they are looked at, its wall with it; 0 where it is not.
     """
 
     def __init__(
@@ -59,6 +65,7 @@ class Looks:
         length: float,
         principal: Floats,
         radius: float,
+        on_side: float = 0.0,
     ) -> None:
         self.directions, self.corners = vectors.spiral(OUTLINE_DIRECTIONS), solid.corners[solid.outer]
         postures: list[Any] = [orientation.posture for orientation in orientations]
@@ -69,7 +76,10 @@ class Looks:
         # Gravity along the wall, inwards and up, on a track that climbs and is banked.
         track = orientations[0].track
         c, s = np.cos(track.climb), np.sin(track.climb)
-        self.gravity = np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
+        bank = on_side or track.bank
+        self.gravity = np.array([-s, -c * np.sin(bank), -c * np.cos(bank)])
+        self.turned = ON_SIDE if on_side else np.eye(3)
+        self.gravity = vectors.product(self.turned, self.gravity)
 
         def reaches(orientation: Orientation, angles: Iterable[float]) -> Floats:
             """Return how far it reaches in each direction, lying at angles from its heading."""
@@ -135,9 +145,8 @@ class Looks:
     def _attitude(self, state: State) -> Floats:
         """The attitude of a part, as it were at the place 0 along the wall."""
         place = np.arctan2(state[0], self.radius - state[1])
-        return part_poses.matrix(
-            part_poses.move_along_wall(state[None], -place * self.radius, self.radius)[0]
-        )
+        back = part_poses.move_along_wall(state[None], -place * self.radius, self.radius)[0]
+        return vectors.product(self.turned, part_poses.matrix(back))
 
     def _reach(self, turn: Floats) -> Floats:
         """Return how far a part reaches in each direction."""
@@ -182,9 +191,12 @@ class AspectsBelow:
     part : Part
     aspects : Aspects
         Of that part.
+    twisted_radius : float [L], optional
+        Of the wall, where they are looked at on a twisted track; 0 on one that is not.
     """
 
-    def __init__(self, part: Part, aspects: Aspects) -> None:
+    def __init__(self, part: Part, aspects: Aspects, twisted_radius: float = 0.0) -> None:
+        self.twisted_radius = twisted_radius
         faces = require_ground(part, aspects)
         self.shape, _ = shape_of_part(part, faces)
         self.rows = faces.rows
@@ -202,7 +214,13 @@ class AspectsBelow:
             Rows of the aspects; OTHER where it would come to lie on none.
         """
         rows = []
-        for turn in map(part_poses.matrix, states):
+        for state in states:
+            turn = part_poses.matrix(state)
+            if self.twisted_radius:
+                theta = np.arctan2(state[0], self.twisted_radius - state[1])
+                c, s = np.cos(theta), np.sin(theta)
+                at_start = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+                turn = vectors.product(ON_SIDE, vectors.product(at_start, turn))
             lowest = int(np.argmin(vectors.product(self.shape.solid.vertices, turn[2])))
             face = face_below(self.shape, turn.ravel(), lowest)
             rows.append(OTHER if face == UNSETTLED else self.rows[face])

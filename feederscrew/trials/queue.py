@@ -111,6 +111,7 @@ def lay_out_track(
         air=replace(blown, slopes=(*staging.slopes_before(first), *blown.slopes)),
         size=size,
         width=track.extent,
+        on_side=staging.on_side(devices),
     )
     windows = [(item.start, item.end) for item in tooled.devices]
     spans = check.frozen(np.reshape(windows, (-1, 2)).astype(float))
@@ -387,8 +388,10 @@ class PartsQueue:
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
         self.stretches = self.windows.tolist()
         self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
-        self.looks = Looks(poses, solid, length, principal, bowl.track.radius)
-        self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
+        on_side = self.track.stage.on_side
+        self.looks = Looks(poses, solid, length, principal, bowl.track.radius, on_side)
+        self.below = AspectsBelow(part, aspects, self.part_in_bowl.radius if on_side else 0.0)
+        self.hanging = [isinstance(pose, Hanging) for pose in poses]
         self.supply = PartSupply(
             self.part_in_bowl, self.orientations, shares, principal, plan, spacing / length, seed
         )

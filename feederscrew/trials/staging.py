@@ -168,6 +168,7 @@ class Stage:
     air: Air = STILL_AIR  # what blows there, and how the track leans
     size: float = 0.0  # [m] of the part, the greatest length of its orientations
     width: float = np.inf  # [m] of the track
+    on_side: float = 0.0  # [rad] by which parts that leave are on their side, as the track is twisted
 
 
 def stage_device(
@@ -251,7 +252,23 @@ def stage_placed(
         air=blows,
         size=size,
         width=track.extent,
+        on_side=on_side([item.device for item in tooled.devices[: number + 1]]),
     )
+
+
+def on_side(devices: Sequence[Device]) -> float:
+    """Return the angle by which parts are on their side behind some devices.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+
+    Returns
+    -------
+    float [rad]
+        0 where none of them twists the track.
+    """
+    return max((device.on_side for device in devices), default=0.0)
 
 
 def place_all(tooled: TooledTrack, end: float, size: float) -> list[Placement]:

@@ -217,6 +217,7 @@ def draw(kind, rng):
         "curved deflector": lambda: {"limit": length(), "begin": number(0.1, 0.4), "end": number(0.5, 1.2)},
         "profile gate": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),
         "V groove": lambda: {"angle": number(0.2, 1.0)},
+        "twisted track": lambda: {"angle": number(1.14, 1.39), "length": number(0.02, 1.0)},
         "banked track": lambda: {"angle": number(0.0, 0.7)},
         "spacing section": lambda: {"angle": number(-0.7, 0.7)},
         "measured yield": lambda: {"shares": tuple((name, float(rng.random())) for name in ANY_NAMES[:3])},

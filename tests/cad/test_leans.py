@@ -68,6 +68,35 @@ def test_a_bank_further_on_twists_the_track(shape, rng):
     assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
 
 
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_twisted_track_stands_on_edge_with_its_wall_as_its_floor(shape, rng):
+    """Floor and wall by rays along their normals: square to each other, and as thick as anywhere."""
+    own, asked = SHAPES[shape]
+    twist = replace(slanted("twisted track", 80.0, "{{angle: {} deg, length: 120 mm}}"), length=0.12)
+    solid = body(planned((GAP, twist), own, asked))
+    assert list(is_one_body(solid)) == ["gap "]
+    plan, whole = solid.plan, facets.unplaced(solid)
+    ((start, end, angle),) = plan.path.leans
+    assert angle == np.radians(80.0) and end - start == pytest.approx(0.12)
+    assert not track.sides(plan, facets)  # the track itself is the outlet's side
+    for s in (*rng.uniform(start + 0.5 * (end - start), end, 10), *rng.uniform(end, plan.path.end, 5)):
+        bank = float(plan.path.bank_at(s))
+        outwards = np.array([*outward(plan.path.angle(s))[:2], 0.0])
+        foot, up = plan.path.places(s, 0.0), np.array([0.0, 0.0, 1.0])
+        inwards = np.sin(bank) * up - np.cos(bank) * outwards  # along the floor that stands as a wall
+        normal = np.sin(bank) * outwards + np.cos(bank) * up  # along the wall that lies as the floor
+        off, thick = rng.uniform(4e-3, 15e-3), plan.material.plate
+        over, above = foot + off * inwards, foot + off * normal
+        near, far = facets.first_met(whole, over + 2e-3 * normal, over - 0.01 * normal)
+        assert near == pytest.approx(2e-3, abs=NEAR) and far - near == pytest.approx(thick, abs=NEAR)
+        near, far = facets.first_met(whole, above + 2e-3 * inwards, above - 0.01 * inwards)
+        assert near == pytest.approx(2e-3, abs=NEAR)
+        assert far - near == pytest.approx(plan.material.wall, abs=NEAR)
+    one = rider(distance=4e-3, height=2e-3)
+    assert np.isfinite(riding.place_rider(plan, one, np.eye(3) * 1e-3, plan.path.end - 5e-3)).all()
+    assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=10.0 * NEAR)
+
+
 @pytest.mark.parametrize("sweep", [30.0, 55.0])
 def test_a_blade_that_reaches_ahead_keeps_its_clearance_all_along_a_banked_track(sweep):
     """A straight edge lay x^2 sin(bank) / 8 R nearer to the track between its ends: 0.25 mm at 30 deg."""

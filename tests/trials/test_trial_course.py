@@ -9,7 +9,21 @@ import pytest
 import shapely
 import shapes
 import trimesh
-from block_rides import ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
+from block_rides import (
+    ASPECTS,
+    BOWL,
+    EVERY,
+    FLAT,
+    LENGTH,
+    PART,
+    SOLID,
+    aspects_of,
+    laid,
+    lying,
+    ridden,
+    sent,
+    still,
+)
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.kernel import body
@@ -22,6 +36,7 @@ from feederscrew.motion import conveying as answer
 from feederscrew.output.trial import tables
 from feederscrew.output.trial.rides import deciding_station
 from feederscrew.part import load
+from feederscrew.sorting import fates
 from feederscrew.sorting.orientations import add_travel
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import course, looks, part_poses, runs, shape, staging
@@ -69,6 +84,51 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
     assert (seen.depths < 2.5e-4).all() and (seen.gains < 1e-6).all()
     if passes:
         assert (seen.orientations[-1] == seen.entry_rows).all() and (seen.end_stations == 2).all()
+
+
+TWIST = "twisted track: {{angle: {} deg, length: 120 mm}}"
+
+
+@pytest.mark.parametrize("angle", [65.0, 80.0])
+def test_a_twisted_track_stands_parts_on_the_side_that_was_at_the_wall(bowl, angle):
+    """At the default drive; the rule is that of statics, and so is the name of what leaves."""
+    one = bowl(TWIST.format(angle), own=())
+    for name, own in (
+        ("key_a_d12x20", ("A@0", "B@0")),
+        ("lbracket_30x20x15", ("A@2", "B@114", "E@90", "D@1")),
+    ):
+        part = load(f"parts/{name}.stl")
+        every = add_travel(lying(part, one), one)
+        flow = fates.course(one.devices, every)
+        rows = [k for k, orientation in enumerate(every) if orientation.name in own]
+        leaving = course.leaves_by_rule(flow.leaving)
+        seen = sent(
+            part, one, rows, len(rows), one.devices, every=every, poses=flow.states, may_leave=leaving
+        )
+        assert len(rows) == len(own) and (flow.margins[rows, 1] > 1e-4).all()
+        assert (seen.fates == course.PASSED).all(), (name, seen.orientations[-1])
+        assert (seen.orientations[-1] != seen.entry_rows).all() and (seen.depths < 2.5e-4).all()
+        # the face below, as the queue tells it
+        below = looks.AspectsBelow(part, aspects_of(part), one.track.radius / seen.length)
+        aspects = [aspects_of(part).names[k] for k in below.find_aspects(seen.rides[-1].states)]
+        assert aspects == [flow.states[k].aspect for k in seen.orientations[-1]]
+
+
+@pytest.mark.parametrize(("angle", "tips"), [(66.0, False), (80.0, True)])
+def test_a_low_foot_at_the_wall_lets_a_part_tip_out_of_a_twist_from_73_deg_on(bowl, angle, tips):
+    """The angle is that of statics, tests/sorting/test_twist.py."""
+    ring = [(0, 0), (14, 0), (14, 3), (5, 3), (5, 15), (0, 15)]
+    part, one = shapes.part(shapes.prism(ring, 30.0)), bowl(TWIST.format(angle), own=())
+    every = lying(part, one)
+    standing = [k for k, own in enumerate(every) if own.length > 0.0299 and abs(own.height - 0.015) < 1e-5]
+    low = max(standing, key=lambda k: every[k].distance)
+    seen = sent(part, one, [low], 2, one.devices, every=every)
+    for state in seen.rides[-1].states:
+        radius = one.track.radius / seen.length
+        place = np.arctan2(state[0], radius - state[1])
+        inwards = np.array([-np.sin(place), np.cos(place), 0.0])
+        up = np.einsum("i,ij,kj->k", inwards, part_poses.matrix(state), seen.principal)
+        assert (up @ every[low].axes[1] > 0.95) != tips  # what was inwards is up
 
 
 def test_a_cap_that_stays_before_a_straight_blade_leaves_along_a_curved_one(bowl):

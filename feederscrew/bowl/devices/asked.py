@@ -194,6 +194,9 @@ class Encounter(Protocol):
     def laid_in_groove(self, angle: float) -> "Verdict":
         """Return the verdict of a groove whose faces rise at an angle [rad]."""
 
+    def stood_on_side(self, angle: float) -> "Verdict":
+        """Return the verdict of a track that twists by an angle [rad], with its wall."""
+
     def share(self, margin: float) -> float:
         """Return the share that passes at a margin [m]."""
 

@@ -74,11 +74,12 @@ class Verdict:
     shift: float = 0.0  # [rad] of the device from the foot's radial line where the margin is least
     hangs: bool = False  # whether it goes on hanging by the head
     onto: tuple[tuple[int, float], ...] = ()  # orientations it goes on in, with their shares; () as it is
+    lands: LyingPart | None = None  # how it goes on where that is none of the orientations of a level track
 
     @property
     def decided(self) -> bool:
         """Tell whether statics tells what becomes of it: where a device turns, momentum may."""
-        return not self.onto or self.margin >= 0.0
+        return self.margin >= 0.0 or not (self.onto or self.lands)
 
     @property
     def sure(self) -> bool:
@@ -325,6 +326,21 @@ class Device:
         """
         return None
 
+    @classmethod
+    def changes(cls, often: Sequence[Encounter]) -> list[float]:
+        """Return the values at which a device that turns parts over changes what it does with some of them.
+
+        Parameters
+        ----------
+        often : sequence of Encounter
+
+        Returns
+        -------
+        list of float [m]
+            Ascending, each once; none of a kind that a design does not try.
+        """
+        return []
+
     # -- as it stands on the track
 
     def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
@@ -434,6 +450,11 @@ class Device:
         -------
         float [m]
         """
+        return 0.0
+
+    @property
+    def on_side(self) -> float:
+        """Return the angle [rad] by which parts are on their side behind it; 0 where they lie as before."""
         return 0.0
 
     def acts(self, track: "Track") -> bool:

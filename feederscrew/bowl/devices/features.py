@@ -328,6 +328,7 @@ class Slope:
     climb: float | None = None  # [rad] rise along the track; None is as before
     bank: float | None = None  # [rad] by which the free edge is higher than the wall; None is as before
     wall: float | None = None  # [rad] by which the wall leans back from upright; None is as before
+    length: float = 0.0  # [m] along the wall, over which it comes to lean so; 0: as far as that needs
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from feederscrew.bowl.devices.base import Device
 from feederscrew.bowl.devices.leans import Lean
 from feederscrew.bowl.devices.trade import Action
 
-# class by kind, in the order of the modules; rails, which end a chain, and what has no place last
+# class by kind, in the order of the modules; twist and rails, which end a chain, and what has no place last
 KINDS: dict[str, type[Device]] = {}
 _BY_SPELLING: dict[str, type[Device]] = {}  # the same by every name, as ``_spelling`` writes it
 _ADDED = re.compile(r"\s*\([^()]*\)\s*$")  # what a full name says more: '(camera from above)'
@@ -51,7 +51,8 @@ def register_kinds() -> dict[str, type[Device]]:
             own = isinstance(value, type) and value.__module__ == module.__name__
             if own and issubclass(value, Device) and value is not Device and "kind" in vars(value):
                 classes.append(value)
-    for value in sorted(classes, key=lambda value: (not value.action.has_place, value.action is Action.HANG)):
+    ends = Action.TWIST, Action.HANG
+    for value in sorted(classes, key=lambda value: (not value.action.has_place, value.action in ends)):
         KINDS.setdefault(value.kind, value)
         for name in filter(None, (value.kind, value.trade.old_name)):
             _BY_SPELLING.setdefault(_spelling(name), value)

@@ -1,4 +1,4 @@
-"""Stretches of the track that lean otherwise: bank, spacing on a steeper way, and the V of a groove."""
+"""Stretches of the track that lean otherwise: bank, spacing on a steeper way, V of a groove, and twist."""
 
 import math
 from collections.abc import Sequence
@@ -11,10 +11,13 @@ from feederscrew.base.documents import Entry
 from feederscrew.bowl.devices import values
 from feederscrew.bowl.devices.asked import Encounter, Lying, LyingPart
 from feederscrew.bowl.devices.base import (
+    MM,
     Device,
     Verdict,
     angle_text,
     degrees_words,
+    length_text,
+    length_words,
     mapping_text,
     room_of,
 )
@@ -36,6 +39,8 @@ HOLDS = 30.0  # [deg] of a groove's faces
 # [deg] that a design tries beside that: the steepest first, in which what turns has farther to fall
 ANGLES = (55.0, 45.0, 30.0, 15.0)
 GROOVE_ROOMS = 3.0  # rooms of a part in which what comes across turns along it
+TWIST_SETTLES = 1.0  # of the part's size: how far behind a twist parts go on until they are looked at
+MIN_TWIST_M, MAX_TWIST_M = 0.02, 1.0  # [m] of a twist along the wall
 
 
 @dataclass(frozen=True)
@@ -174,6 +179,58 @@ class VGroove(Lean):
         slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
         length = GROOVE_ROOMS * room_of(orientations)
         return Features(length, slopes=(slope,))
+
+
+@dataclass(frozen=True)
+class TwistedTrack(Lean):
+    """A twist at the end of the track: its floor stands up as a wall, and its wall lies down as the floor."""
+
+    length: float = 0.0  # [m] along the wall
+
+    kind = "twisted track"
+    trade = Trade(
+        "{angle: 80 deg, length: 120 mm}",
+        "the track twists by so much over that length, with its wall, and stays so to the outlet: the floor "
+        "stands up as a wall at the inner side, the wall lies down as the floor, and parts go on on the side "
+        "that was at the wall; listed last",
+        forms.mapping(angle=forms.ANGLE_FORM, length=forms.LENGTH_FORM),
+        serves="stands parts on the side that was at the wall",
+    )
+    action = Action.TWIST
+    key, limits = "angle", (math.radians(65.0), math.radians(80.0))
+
+    @classmethod
+    def read(cls, entry: Entry) -> DeviceFields:
+        arguments = values.mapping(entry, ("angle", "length"), f"write {cls.trade.example}")
+        return {
+            "angle": values.within(arguments, "angle", "angle", *cls.limits),
+            "length": values.within(arguments, "length", "length", MIN_TWIST_M, MAX_TWIST_M),
+        }
+
+    def value_text(self) -> str:
+        return mapping_text((("angle", angle_text(self.angle)), ("length", length_text(self.length))))
+
+    def document_values(self) -> Document:
+        return super().document_values() | {"length_mm": self.length / MM}
+
+    @property
+    def value_words(self) -> str:
+        return f"by {degrees_words(self.angle)} over {length_words(self.length)}"
+
+    @property
+    def on_side(self) -> float:
+        return self.angle
+
+    def onward(self, orientation: Lying) -> Lying:
+        # the wall that the floor has become holds it: what would tip on the level does not
+        return orientation.on_track(orientation.track, falls_off=False, turns_over=False, may_tip=False)
+
+    def judged(self, encounter: Encounter) -> Verdict:
+        return encounter.stood_on_side(self.angle)
+
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
+        slope = Slope(0.0, bank=self.angle, wall=self.angle, length=self.length)
+        return Features(self.length, slopes=(slope,), settles=TWIST_SETTLES)
 
 
 @dataclass(frozen=True)

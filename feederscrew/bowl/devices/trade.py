@@ -24,6 +24,7 @@ class Action(enum.StrEnum):
     CLIMB = "climb"  # lets the track climb otherwise
     BANK = "bank"  # leans the track towards its wall, which stands upright: a groove before it ends
     GROOVE = "groove"  # leans the track and its wall to a V, until a bank
+    TWIST = "twist"  # leans the track and its wall together, to its end: parts go on on the side at the wall
 
     @property
     def has_place(self) -> bool:
@@ -33,12 +34,12 @@ class Action(enum.StrEnum):
     @property
     def leans(self) -> bool:
         """Tell whether the track leans otherwise from such a device on."""
-        return self in (Action.CLIMB, Action.BANK, Action.GROOVE)
+        return self in (Action.CLIMB, Action.BANK, Action.GROOVE, Action.TWIST)
 
     @property
     def turns(self) -> bool:
         """Tell whether it turns parts over instead of returning them."""
-        return self in (Action.PITCH, Action.ROLL)
+        return self in (Action.PITCH, Action.ROLL, Action.TWIST)
 
     @property
     def carries(self) -> bool:

@@ -1,0 +1,216 @@
+"""A part that a twisted track stands on its side: whether it stays on both faces, and how it then lies.
+
+A twisted track turns floor and wall together about the wall's foot. The floor stands up as a wall at the
+inner side, the wall lies down as the floor, and the part goes on on the side that was at the wall.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import cast
+
+import numpy as np
+import shapely
+
+from feederscrew.base.arrays import Floats, Points
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.polygons import turned
+from feederscrew.motion import sameness
+from feederscrew.motion.track_balance import seat
+from feederscrew.part.hull import convex_hull
+from feederscrew.resting.posture import Posture
+from feederscrew.sorting.orientations import Orientation
+
+HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
+REACH_DIRECTIONS, REACH_TOLERANCE = 160, 0.05  # reaches that are compared; of the part's size, how alike
+HEIGHT_SHARE = 0.3  # of the part's size: an aspect whose reach upwards or downwards is off by more is another
+SIDE_COSINE = np.cos(
+    np.radians(6.0)
+)  # a flat side of the hull that is turned from the wall by less lies at it
+SIDE_EDGE_M = 1e-8  # [m] within an end of it, where that is met
+SIDE_DEPTH_SHARE = 1e-4  # of the part's size: corners that near to its plane are of it
+SIDE_HEADINGS = np.radians(np.arange(360.0))  # at which a part may lie on its side
+
+
+@dataclass(frozen=True)
+class SideLevers:
+    """Levers of the weight of a part on both faces of a twisted track [m]; negative: it turns."""
+
+    out: float  # against tipping away from the floor that has become a wall
+    back: float  # against turning into the corner
+    along: float  # against tipping ahead or back over an end of the side at the wall
+    height: float  # of the centre of mass over the wall that has become the floor
+
+    @property
+    def least(self) -> float:
+        """Return the least of the three [m]."""
+        return min(self.out, self.back, self.along)
+
+
+def side_levers(orientation: Orientation, angle: float) -> SideLevers:
+    """Return by how much its weight keeps a part on both faces of a track that is twisted by an angle.
+
+    Floor and wall stand square to each other, and the floor rises by the angle from the wall's foot. Faces
+    hold nothing along themselves on a vibrating track. So the floor presses at a distance y of the foot and
+    the wall at a height z of the side there, both from the centre of mass, and moments about the track are in
+    balance where y cos(angle) = z sin(angle). Beyond the ends of foot and side there is no balance: the
+    levers are those of the weight about the points square over these ends, the outer and the inner one.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        As it lies against the wall.
+    angle : float [rad]
+        Of the floor from level.
+
+    Returns
+    -------
+    SideLevers
+        NaN of a part whose place at the wall is not known.
+
+    References
+    ----------
+    Statics of a rigid body on two faces without friction; docs/tooling.md, "4. Turning parts over".
+    """
+    if orientation.touching is None:
+        return SideLevers(math.nan, math.nan, math.nan, orientation.distance)
+    side, foot = _side_at_wall(orientation), turned(orientation.posture.contact, orientation.heading)
+    (bottom, top), (near, far), (rear, ahead) = _across(side), _across(foot), _across(side[:, ::-1])
+    c, s = math.cos(angle), math.sin(angle)
+    return SideLevers(s * top - c * near, c * far - s * bottom, s * min(ahead, -rear), orientation.distance)
+
+
+def _side_at_wall(orientation: Orientation) -> Points:
+    """Corners (K, 2) [m] of the side at the wall, ahead of the centre of mass and over it.
+
+    The wall is bent, and touches two edges of a flat side only. The part comes to lie on all of that side.
+    """
+    solid = orientation.solid
+    hull = convex_hull(cast(Points, solid.vertices), solid.centre_of_mass, solid.source)
+    points, normals = (vectors.product(rows, orientation.axes.T) for rows in (hull.vertices, hull.normals))
+    nearest = normals[int(np.argmin(np.round(normals[:, 1], 9)))]
+    if -nearest[1] > SIDE_COSINE:
+        beyond = vectors.product(points, nearest)
+        flat = points[beyond > beyond.max() - SIDE_DEPTH_SHARE * np.ptp(points, axis=0).max()]
+        return flat[:, [0, 2]]
+    lying = orientation.posture, orientation.heading, cast(Points, orientation.touching)
+    return np.concatenate([seat(*lying, lean).walls[:, [0, 2]] for lean in (1.0, -1.0)])
+
+
+def _across(corners: Points) -> tuple[float, float]:
+    """From and to [m] along the second axis, of the hull of some corners (K, 2) [m], where the first is 0.
+
+    Of a hull beside that axis, where it comes nearest to it.
+    """
+    hull, first = shapely.MultiPoint(corners).convex_hull, corners[:, 0]
+    place = min(max(0.0, float(first.min()) + SIDE_EDGE_M), float(first.max()) - SIDE_EDGE_M)
+    met = hull.intersection(shapely.LineString([(place, -1.0), (place, 1.0)]))
+    if met.is_empty:  # it is a line along the second axis
+        met = hull
+    _, low, _, high = met.bounds
+    return float(low), float(high)
+
+
+def find_on_side(orientations: Sequence[Orientation], axes: Floats) -> Orientation | None:
+    """Return the orientation of a part that has turned over, by how far it reaches in many directions.
+
+    It may lie at a heading at which it would not lie against the bowl's own wall, as the wall of a twisted
+    track is at its other side. Then it is an orientation of its own, to a whole degree.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+        All of the part.
+    axes : (3, 3) float [1]
+        The track's axes as rows, ahead, inwards and up, in the file's axes.
+
+    Returns
+    -------
+    Orientation or None
+        One of the given, one of its own, or None where it lies on no aspect of the part.
+    """
+    return _find_on_side(tuple(orientations), tuple(np.ravel(axes).tolist()))
+
+
+@lru_cache(maxsize=512)
+def _find_on_side(orientations: tuple[Orientation, ...], axes: tuple[float, ...]) -> Orientation | None:
+    first = orientations[0]
+    corners = cast(Points, first.posture.corners) - [0.0, 0.0, first.posture.height]
+    in_file = vectors.product(corners, cast(Floats, first.posture.axes))
+    reach = reach_of(vectors.product(in_file, np.reshape(axes, (3, 3)).T))
+    tolerance = REACH_TOLERANCE * float(reach.max())
+    off = [np.abs(reaches(one.posture, one.heading) - reach).max(axis=1).min() for one in orientations]
+    best = int(np.argmin(np.round(off, 9)))
+    if off[best] < tolerance:
+        return orientations[best]
+    beside = [(*_nearest_heading(one.posture, reach), one) for one in _one_of_each_aspect(orientations)]
+    miss, heading, alike = min(beside, key=lambda row: round(row[0], 9))
+    if miss >= tolerance:
+        return None
+    c, s = math.cos(heading), math.sin(heading)
+    plan = vectors.product(cast(Points, alike.posture.corners)[:, :2], np.array([[c, s], [-s, c]]))
+    (length, width), inwards = np.ptp(plan, axis=0), float(plan[:, 1].max())
+    return replace(
+        alike,
+        heading=heading,
+        heading_share=0.0,
+        chances=dict.fromkeys(alike.chances, 0.0),
+        length=float(length),
+        width=float(width),
+        distance=inwards,  # from the wall that is at the inner side
+        mirror="",
+        touching=None,
+        falls_off=False,
+        turns_over=False,
+        may_tip=False,
+        may_yaw=False,
+    )
+
+
+def _one_of_each_aspect(orientations: Sequence[Orientation]) -> Iterator[Orientation]:
+    names = set[str]()
+    for one in orientations:
+        if one.aspect not in names:
+            names.add(one.aspect)
+            yield one
+
+
+def _nearest_heading(posture: Posture, reach: Floats) -> tuple[float, float]:
+    """By how much [m] an aspect at its nearest heading is off a reach (REACH_DIRECTIONS,) [m]; that [rad].
+
+    Infinite where it is of another height.
+    """
+    corners = cast(Points, posture.corners) - [0.0, 0.0, posture.height]
+    upright = _directions()[:, 2]
+    for k in (int(np.argmax(upright)), int(np.argmin(upright))):  # all but straight up, and down
+        own = float(vectors.product(corners, _directions()[k]).max())
+        if abs(own - reach[k]) > HEIGHT_SHARE * reach.max():
+            return math.inf, 0.0
+    off = [float(np.abs(reach_of(corners_from_centre(posture, by)) - reach).max()) for by in SIDE_HEADINGS]
+    best = int(np.argmin(np.round(off, 9)))
+    return off[best], float(SIDE_HEADINGS[best])
+
+
+@lru_cache(maxsize=2048)
+def reaches(posture: Posture, heading: float) -> Floats:
+    """Return how far an orientation reaches (N, REACH_DIRECTIONS) [m], turned a little either way."""
+    return np.array([reach_of(corners_from_centre(posture, heading + by)) for by in HEADING_OFFSETS])
+
+
+def corners_from_centre(posture: Posture, heading: float) -> Floats:
+    """Return the corners of a part (V, 3) [m] from its centre of mass, on the track at a heading [rad]."""
+    c, s = np.cos(heading), np.sin(heading)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return vectors.product(cast(Points, posture.corners) - [0.0, 0.0, posture.height], turn)
+
+
+def reach_of(points: Points) -> Floats:
+    """Return how far points (V, 3) [m] reach (REACH_DIRECTIONS,) [m] in directions spread over the sphere."""
+    return vectors.product(points, _directions().T).max(axis=-2)
+
+
+@lru_cache(maxsize=1)
+def _directions() -> Floats:
+    sample = sameness.directions()
+    return sample[:: len(sample) // REACH_DIRECTIONS][:REACH_DIRECTIONS]
