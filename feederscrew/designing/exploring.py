@@ -162,7 +162,8 @@ def _has_no_steady_air(search: Search) -> bool:
 def _assisted(search: Search) -> Iterator[Candidate]:
     """Candidates with air along a blade's face, for what came to stand there; the most promising first.
 
-    Those that are not clean are kept for what stands at their rails.
+    Where air changes nothing no other pressure is tried. Where none is clean the best gets a jet before its
+    rails as well.
     """
     state, policy = search.state, search.policy
     if _has_no_steady_air(search):
@@ -171,7 +172,7 @@ def _assisted(search: Search) -> Iterator[Candidate]:
         state.stood_at_blade, key=lambda item: -assisting.score(item[0].trial, item[0].proposal)
     )
     for candidate, stands in by_promise[: policy.assisted]:
-        lying = candidate.orientations.lying
+        lying, best = candidate.orientations.lying, candidate
         for changed in assisting.assist(candidate.proposal, candidate.trial, stands, lying):
             if chain_key(candidate.bowl.track, changed, lying) in state.chains:
                 continue
@@ -180,12 +181,18 @@ def _assisted(search: Search) -> Iterator[Candidate]:
                 return
             tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))
             if tried.attempt.clean:
+                best = tried
                 state.clean.append(tried)
                 if tried.attempt.rate >= search.request.target:
                     yield tried
                 break
             state.failures.append(tried)
-            note_standing(search, tried, _rows_that_stay(tried))
+            if hanging.score(tried.trial) > hanging.score(best.trial):
+                best = tried
+            elif best is candidate:
+                break
+        if best is not candidate and not best.attempt.clean:
+            yield from _try_jet_before(search, best, _rows_that_stay(best))
 
 
 def _rows_that_stay(candidate: Candidate) -> list[int]:
@@ -199,22 +206,27 @@ def _blown_off(search: Search) -> Iterator[Candidate]:
     if _has_no_steady_air(search):
         return
     for candidate, stands in reversed(state.stood[-search.policy.air_trials :]):
-        changed = hanging.blow_off(candidate.proposal, candidate.trial, stands, candidate.orientations.lying)
-        if (
-            changed is None
-            or chain_key(candidate.bowl.track, changed, candidate.orientations.lying) in state.chains
-        ):
-            continue
-        state.reach += 1  # no other chain is left out for it
         if search.is_spent:
             return
-        tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))
-        if not tried.attempt.clean:
-            state.failures.append(tried)
-            continue
-        state.clean.append(tried)
-        if tried.attempt.rate >= search.request.target:
-            yield tried
+        yield from _try_jet_before(search, candidate, stands)
+
+
+def _try_jet_before(search: Search, candidate: Candidate, stands: Sequence[int]) -> Iterator[Candidate]:
+    """The candidate with a jet before its rails for what stands at them, where that is clean and fast."""
+    state, lying = search.state, candidate.orientations.lying
+    changed = hanging.blow_off(candidate.proposal, candidate.trial, stands, lying)
+    if changed is None or chain_key(candidate.bowl.track, changed, lying) in state.chains:
+        return
+    state.reach += 1  # no other chain is left out for it
+    if search.is_spent:
+        return
+    tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))
+    if not tried.attempt.clean:
+        state.failures.append(tried)
+        return
+    state.clean.append(tried)
+    if tried.attempt.rate >= search.request.target:
+        yield tried
 
 
 def note_standing(search: Search, candidate: Candidate, rows: Iterable[int]) -> None:

@@ -120,15 +120,14 @@ def test_what_stands_at_the_blade_alone_does_not_count_against_a_chain(chain):
     assert at_rails == pytest.approx(trial.efficiency - 3.0 * share * len(chain.stands))
 
 
-@pytest.mark.parametrize("clean", [True, False])
-def test_the_class_of_air_tries_the_most_promising_chains_first(monkeypatch, chain, clean):
-    """Once each until one is clean; what is not clean is kept for a jet before its rails."""
+@pytest.mark.parametrize("shows", ["clean", "better", "the same"])
+def test_the_class_of_air_tries_the_most_promising_chains_first(monkeypatch, chain, shows):
+    """Until one is clean; one pressure where that changes nothing; a jet as well where air is not enough."""
     search = Search.begin(shapes.part(shapes.box(20, 12, 5)), DesignRequest(1.0, budget=24), BOWL)
-    tried = []
+    tried, blown, clean = [], [], shows == "clean"
 
-    def candidate_of(proposal, efficiency):
-        right = chain.trial.right.copy()
-        trial = replace(chain.trial, right=right, ends=chain.trial.ends)
+    def candidate_of(proposal, efficiency=0.3, held=True):
+        trial = chain.trial if held else replace(chain.trial, held=np.zeros_like(chain.trial.held))
         attempt = SimpleNamespace(efficiency=efficiency, clean=clean, rate=2.0, faults=())
         ways = SimpleNamespace(lying=chain.lying)
         return SimpleNamespace(proposal=proposal, trial=trial, attempt=attempt, orientations=ways, bowl=BOWL)
@@ -136,26 +135,31 @@ def test_the_class_of_air_tries_the_most_promising_chains_first(monkeypatch, cha
     def try_again(search, candidate, proposal, bowl):
         tried.append(proposal)
         search.state.chains.add(exploring.chain_key(bowl.track, proposal, chain.lying))
-        return candidate_of(proposal, 0.3)
+        return candidate_of(proposal, held=shows == "the same")
+
+    def blow_off(proposal, trial, stands, lying):
+        blown.append((proposal, stands))
 
     monkeypatch.setattr(exploring, "try_again", try_again)
     monkeypatch.setattr(exploring, "_screen", lambda search, candidate: candidate)
     monkeypatch.setattr(exploring, "_rows_that_stay", lambda candidate: chain.stands)
     monkeypatch.setattr(exploring, "_tracks", lambda search: [])
-    monkeypatch.setattr(exploring, "_blown_off", lambda search: iter(()))
+    monkeypatch.setattr(exploring.hanging, "blow_off", blow_off)
     gap = make_device("gap", "test", limit=2e-3)
     others = [replace(chain.proposal, before=(gap.valued(1e-3 * k),)) for k in range(1, 5)]
     scores = dict(zip((one.chain for one in others), (0.1, 0.4, 0.2, 0.3)))
     monkeypatch.setattr(assisting, "score", lambda trial, proposal: scores[proposal.chain])
-    for number, one in enumerate(others):
+    for number, one in enumerate(others):  # the fourth lets nothing leave
         exploring.note_standing(search, candidate_of(one, 0.3 * (number != 3)), chain.stands)
+    exploring.note_standing(search, candidate_of(others[1]), chain.trial.wanted)  # only what hangs
     left_out = replace(search, request=replace(search.request, without=("air jet",)))
-    assert not list(exploring.candidates(left_out, 2)) and not tried
+    assert not list(exploring.candidates(left_out, 2)) and not tried and not blown
     found = list(exploring.candidates(search, 2))
-    # of the second, then of the third: the fourth let nothing leave
-    count = 1 if clean else len(assisting.PUSHES)
+    count = {"clean": 1, "better": len(assisting.PUSHES), "the same": 1}[shows]
     assert len(tried) == SearchPolicy().assisted * count and len(found) == clean * len(tried)
     assert [one.before[0].limit for one in tried] == [2e-3] * count + [3e-3] * count
     assert len(search.state.failures) == (not clean) * len(tried)
-    # a jet before the rails may follow where it is not clean
-    assert len(search.state.stood) == 3 + (not clean) * len(tried)
+    # then a jet before the rails of each of steel; where air alone was not enough, of the best with it
+    with_air = [proposal for proposal, _ in blown if assisting.blade_of(proposal).air is not None]
+    assert with_air == ([tried[0], tried[count]] if shows == "better" else [])
+    assert len(blown) == len(with_air) + SearchPolicy().air_trials
