@@ -199,6 +199,7 @@ VERIFIED_FIGURE_COLUMNS: tuple[Column[Verified], ...] = (
 
 
 LATER_KEYS = ("second_harmonic_angle",)  # since version 0.2.0
+LATER_FIELDS = ("air",)  # of devices, since version 0.2.0
 
 
 def fingerprint(bowl: Bowl) -> str:
@@ -224,7 +225,10 @@ def fingerprint(bowl: Bowl) -> str:
         flat = [end for pair in device.corners for end in pair]
         also = [end for other in device.also for end in other]
         numbers = " ".join(f"{end:.5g}" for end in (*device.span, *flat, *device.like[1:], *also[1::2]))
-        own = " ".join(_own(getattr(device, e.name)) for e in fields(device) if e.name not in SHARED)
+        given = {e.name: getattr(device, e.name) for e in fields(device) if e.name not in SHARED}
+        own = " ".join(
+            _own(value) for key, value in given.items() if value is not None or key not in LATER_FIELDS
+        )
         name = device.trade.old_name or device.kind  # as in the fingerprints of files that were tried before
         listed.append(f"{name} {limit} {(*device.like[:1], *also[::2])} {numbers} {own}")
     return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]

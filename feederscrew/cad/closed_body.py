@@ -1,6 +1,7 @@
 """The bowl as one body: made of swept, turned and extruded pieces."""
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from types import ModuleType
@@ -296,8 +297,8 @@ def tooled_bodies(
     deep = 2.0 * (plan.material.wall + PIECE_OVERLAP_M)
     for placed, bore in [(item, bore) for item in chain for bore in item.features.bores]:
         s = plan.first + placed.begin + bore.place
-        begin, outwards = plan.path.bore(s, bore.height, PIECE_OVERLAP_M)
-        cuts.append(kit.bore(begin, outwards, bore.diameter, deep))
+        begin, outwards = plan.path.bore(s, bore.height, PIECE_OVERLAP_M, bore.angle)
+        cuts.append(kit.bore(begin, outwards, bore.diameter, deep / math.sin(bore.angle)))
     slab = kit.without(track.slab(plan, kit), track.holes(plan, kit, hang=False))
     plates = [_plate(plan, kit, *blade) for blade in blades]
     return [kit.without(wall, cuts), slab, *plates, *track.ledges(plan, kit), *leaning]

@@ -334,7 +334,7 @@ class TrackPath:
         off = (self.wall_radius(s) - np.hypot(x, y)) / np.cos(self.bank_at(s))
         return (self.height(s, off) - z) * axes[2, 1]
 
-    def bore(self, s: float, z: float, before: float) -> tuple[Vector, Vector]:
+    def bore(self, s: float, z: float, before: float, angle: float = 0.5 * np.pi) -> tuple[Vector, Vector]:
         """Return where a bore for a nozzle begins, and its direction, outwards along the track's surface.
 
         Parameters
@@ -345,6 +345,8 @@ class TrackPath:
             Height of its axis over the track, square to it.
         before : float [m]
             By how much it begins before the wall.
+        angle : float [rad], optional
+            Of its way into the bowl to the direction of travel; square to the wall without it.
 
         Returns
         -------
@@ -353,8 +355,12 @@ class TrackPath:
         """
         inwards = self.places(s, 1e-3) - self.places(s, 0.0)
         inwards = inwards / np.sqrt((inwards**2).sum())
-        bank = float(self.bank_at(s))
-        return self.places(s, 0.0) + z * self.normal(s) + (before + z * np.tan(bank)) * inwards, -inwards
+        if angle != 0.5 * np.pi:
+            ahead = self.places(s + 5e-4, 0.0) - self.places(s - 5e-4, 0.0)
+            ahead = ahead / np.sqrt((ahead**2).sum())
+            inwards = np.cos(angle) * ahead + np.sin(angle) * inwards
+        way = (before + z * np.tan(float(self.bank_at(s)))) / np.sin(angle)
+        return self.places(s, 0.0) + z * self.normal(s) + way * inwards, -inwards
 
     def places(self, s: Values, y: Values) -> Floats:
         """Return points of the track's surface.

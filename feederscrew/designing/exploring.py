@@ -20,7 +20,7 @@ from feederscrew.bowl.devices.kinds import cost_class as cost_class_of
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.cad import solid as solidbowl
-from feederscrew.designing import calm_drive, hanging, proposals, short_trials, texts
+from feederscrew.designing import assisting, calm_drive, hanging, proposals, short_trials, texts
 from feederscrew.designing.findings import Cause, End, Fault, FaultKind, Move, MoveKind
 from feederscrew.designing.policy import SearchPolicy
 from feederscrew.designing.proposals import Proposal
@@ -91,6 +91,7 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
             if bare is not None and not _was_tried(search, track, bare) and not search.is_spent:
                 yield from _try_and_mend(search, track, bare)
         if number == proposals.AIR:
+            yield from _assisted(search)
             yield from _blown_off(search)
         yield from _chains(search, tracks, number)
 
@@ -153,6 +154,52 @@ def _chains(search: Search, tracks: list[TrackAtBank], cost_class: int) -> Itera
         yield from _rails_by_trials(search, idea, cost_class)
 
 
+def _has_no_steady_air(search: Search) -> bool:
+    """Tell whether the user leaves out what blows all the time."""
+    return any(kind.action is Action.BLOW for name, kind in KINDS.items() if name in search.request.without)
+
+
+def _assisted(search: Search) -> Iterator[Candidate]:
+    """Candidates with air along a blade's face, for what came to stand there; the most promising first.
+
+    Where air changes nothing no other pressure is tried. Where none is clean the best gets a jet before its
+    rails as well.
+    """
+    state, policy = search.state, search.policy
+    if _has_no_steady_air(search):
+        return
+    by_promise = sorted(
+        state.stood_at_blade, key=lambda item: -assisting.score(item[0].trial, item[0].proposal)
+    )
+    for candidate, stands in by_promise[: policy.assisted]:
+        lying, best = candidate.orientations.lying, candidate
+        for changed in assisting.assist(candidate.proposal, candidate.trial, stands, lying):
+            if chain_key(candidate.bowl.track, changed, lying) in state.chains:
+                continue
+            state.reach += 1  # no other chain is left out for it
+            if search.is_spent:
+                return
+            tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))
+            if tried.attempt.clean:
+                best = tried
+                state.clean.append(tried)
+                if tried.attempt.rate >= search.request.target:
+                    yield tried
+                break
+            state.failures.append(tried)
+            if hanging.score(tried.trial) > hanging.score(best.trial):
+                best = tried
+            elif best is candidate:
+                break
+        if best is not candidate and not best.attempt.clean:
+            yield from _try_jet_before(search, best, _rows_that_stay(best))
+
+
+def _rows_that_stay(candidate: Candidate) -> list[int]:
+    """Rows of which its trial or its draws show that parts stay at a device."""
+    return [fault.row for fault in candidate.attempt.faults if fault.kind is FaultKind.STAYS]
+
+
 def _blown_off(search: Search) -> Iterator[Candidate]:
     """Yield candidates with a steady air jet before their rails, which blows off what stood at the rails.
 
@@ -160,29 +207,34 @@ def _blown_off(search: Search) -> Iterator[Candidate]:
     ``air_trials`` of them. Each has a short trial of its own; a chain that was tried already is left out.
     """
     state = search.state
-    if set(search.request.without) & {kind.kind for kind in KINDS.values() if kind.action is Action.BLOW}:
+    if _has_no_steady_air(search):
         return
     for candidate, stands in reversed(state.stood[-search.policy.air_trials :]):
-        changed = hanging.blow_off(candidate.proposal, candidate.trial, stands, candidate.orientations.lying)
-        if (
-            changed is None
-            or chain_key(candidate.bowl.track, changed, candidate.orientations.lying) in state.chains
-        ):
-            continue
-        state.reach += 1  # no other chain is left out for it
         if search.is_spent:
             return
-        tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))
-        if not tried.attempt.clean:
-            state.failures.append(tried)
-            continue
-        state.clean.append(tried)
-        if tried.attempt.rate >= search.request.target:
-            yield tried
+        yield from _try_jet_before(search, candidate, stands)
+
+
+def _try_jet_before(search: Search, candidate: Candidate, stands: Sequence[int]) -> Iterator[Candidate]:
+    """The candidate with a jet before its rails for what stands at them, where that is clean and fast."""
+    state, lying = search.state, candidate.orientations.lying
+    changed = hanging.blow_off(candidate.proposal, candidate.trial, stands, lying)
+    if changed is None or chain_key(candidate.bowl.track, changed, lying) in state.chains:
+        return
+    state.reach += 1  # no other chain is left out for it
+    if search.is_spent:
+        return
+    tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))
+    if not tried.attempt.clean:
+        state.failures.append(tried)
+        return
+    state.clean.append(tried)
+    if tried.attempt.rate >= search.request.target:
+        yield tried
 
 
 def note_standing(search: Search, candidate: Candidate, rows: Iterable[int]) -> None:
-    """Keep which orientations came to stand at a chain with rails: a dearer class may take them off.
+    """Keep which orientations came to stand at a chain with rails or a blade: dearer ones take them off.
 
     Parameters
     ----------
@@ -193,8 +245,13 @@ def note_standing(search: Search, candidate: Candidate, rows: Iterable[int]) -> 
     """
     stood = tuple(dict.fromkeys(rows))
     stands = tuple(row for row in stood if row not in candidate.trial.wanted)
-    if stood and candidate.proposal.hangs and candidate.attempt.efficiency > 0.0:
+    if not stood or not candidate.attempt.efficiency > 0.0:
+        return
+    if candidate.proposal.hangs:
         search.state.stood.append((candidate, stands))
+    blade = assisting.blade_of(candidate.proposal)
+    if stands and blade is not None and blade.air is None:
+        search.state.stood_at_blade.append((candidate, stands))
 
 
 def _rails_by_trials(search: Search, idea: _Idea, cost_class: int) -> Iterator[Candidate]:
@@ -609,6 +666,7 @@ def _try_and_mend(search: Search, track: TrackAtBank, proposal: Proposal) -> Ite
     if chosen is not None:
         yield chosen
         return
+    note_standing(search, candidate, _rows_that_stay(candidate))
     # at which devices what is wanted was lost; rails are the only way to hang
     place, trial = (plain_bowl.bowl.track.bank, proposal.row), candidate.trial
     lost_at = {cut.device.kind for cut in proposal.cuts if cut.device.action is not Action.HANG}
@@ -676,7 +734,7 @@ def _try_rails(search: Search, track: TrackAtBank, rails: hanging.RailsSearch) -
     if chosen is not None:
         yield chosen
         return
-    note_standing(search, best, (fault.row for fault in best.attempt.faults if fault.kind is FaultKind.STAYS))
+    note_standing(search, best, _rows_that_stay(best))
 
 
 def mends_of_jams(search: Search, candidate: Candidate, jammed: Sequence[JammedParts]) -> Iterator[Proposal]:
@@ -696,6 +754,14 @@ def mends_of_jams(search: Search, candidate: Candidate, jammed: Sequence[JammedP
     if not jammed:
         return
     proposal = candidate.proposal
+    blade = assisting.blade_of(proposal)
+    kept = {candidate.orientations.lying[row].name for row in candidate.trial.wanted}
+    placed = [device for device in proposal.devices if device.action.has_place]
+    if any(
+        placed[stood.place - 1] == blade and stood.name not in kept for stood in jammed if stood.place > 0
+    ):
+        more = assisting.stronger(proposal)
+        yield from (changed for changed in (more,) if changed is not None)
     if not proposal.hangs:
         poses = ((LeavingPose(PoseKind.ORIENTATION, name=stood.name), stood.parts) for stood in jammed)
         wanted = {candidate.orientations.lying[row].name for row in candidate.trial.wanted}
@@ -707,7 +773,8 @@ def mends_of_jams(search: Search, candidate: Candidate, jammed: Sequence[JammedP
     before, cost_class = search.plain.devices, proposal.cost_class
     lying = search.through(start).lying
     rails = hanging.RailsSearch(lying, candidate.weights, proposal.row, before, search.request, cost_class)
-    yield from rails.mends_of_jams(proposal, candidate.trial, jammed)
+    mends = rails.mends_of_jams(proposal, candidate.trial, jammed)
+    yield from (assisting.keep_air(proposal, changed) for changed in mends)
 
 
 def devices_to(end: End, proposal: Proposal) -> int:

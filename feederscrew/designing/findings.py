@@ -125,6 +125,7 @@ class MoveKind(enum.Enum):
     CUTS_BEFORE = enum.auto()  # cuts before the rails, by what a trial has shown to hang
     OTHER_CUTS = enum.auto()  # cuts of another kind before the rails, which return the same
     JET_BEFORE = enum.auto()  # one device more: a steady jet before the rails, for what stands behind it
+    AIR_ASSIST = enum.auto()  # air along the face of a blade, for what stands at it
     BLADE_HEIGHT = enum.auto()  # it stands higher, by a value [m], or lower
     RAILS = enum.auto()  # rails for a head, before any trial
     LONGER_PULSE = enum.auto()
@@ -141,7 +142,7 @@ class Move:
     """A step of the search: what is tried, and the value that is new in it."""
 
     kind: MoveKind
-    value: float = 0.0  # margin, slot or stroke peak to peak [m], sweep [rad] or pulse [s]
+    value: float = 0.0  # margin, slot or stroke peak to peak [m], sweep [rad], pulse [s] or pressure [Pa]
     device: str = ""  # kind of the device that is changed or added
     device_text: str = ""  # its value as a bowl file writes it
 

@@ -78,6 +78,8 @@ class SearchState:
     waiting: list["Candidate"] = field(default_factory=list)  # clean, of a dearer class than is searched
     # chains with rails, and the rows that came to stand at them, in a trial or a queue
     stood: list[tuple["Candidate", tuple[int, ...]]] = field(default_factory=list)
+    # chains with a swept blade, and the rows that came to stand at them
+    stood_at_blade: list[tuple["Candidate", tuple[int, ...]]] = field(default_factory=list)
     proposals_left: float = np.inf  # chains that may still be looked for
     denied: float = 0.0  # [s] bowl time of the queues of designs that did not hold
     nearest_limit: int | None = None  # trials at most, where the nearest that holds is looked for

@@ -184,6 +184,8 @@ def move_text(move: Move) -> str:
             return "other cuts before the rails, for those at which parts stand"
         case MoveKind.JET_BEFORE:
             return f"{move.device} of {move.device_text} before the rails, for what stands at them"
+        case MoveKind.AIR_ASSIST:
+            return f"air of {move.device_text} along the face of {move.device}, for what stands at it"
         case MoveKind.LONGER_PULSE:
             return f"pulse of {1e3 * move.value:.0f} ms"
         case MoveKind.DROP_BEFORE:

@@ -356,7 +356,7 @@ def machine_facts(study: DesignStudy) -> Document | None:
         "cameras": len(sensing),
         "cameras_see": [device.sees for device in sensing],
         "valves": len(sensing),  # one for the pulses of each
-        "air": any(hasattr(device, "jet") for device in study.devices),
+        "air": any(device.takes_air for device in study.devices),
     }
 
 

@@ -24,6 +24,7 @@ from feederscrew.sorting.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.sorting.tooled_track import PlacedDevice, TooledTrack, bend_ring
 
 VIEW_GAP_MM = 20.0  # [mm] between the views
+SQUARE_RAD = 0.5 * np.pi  # [rad] of a bore to the wall
 DRAWN_WALL_M = 2e-3  # [m] thickness the wall is drawn with
 LETTER_ROOM_MM = 1.9  # [mm] of a digit of a dimension, along its line
 EDGES = f"edges broken at most {CUT_BORDER_RADIUS_M / MM:.3g} mm"  # as they are tried
@@ -217,7 +218,7 @@ def dimension_devices(drawing: Drawing, devices: Sequence[PlacedDevice], view: V
     for number, placed in enumerate(devices, start=1):
         # the lengths along the wall [m] that a device is made by, from the datum
         features, origin = placed.features, placed.begin
-        lengths = [origin + jet.at[0] for jet in features.jets[:1]]
+        lengths = [origin + jet.place for jet in features.jets[:1]]
         if features.sensor is not None:
             lengths.insert(0, origin + features.sensor.at)
         cuts = [(opening, ring) for opening in placed.openings for ring in opening.on_track(width)]
@@ -375,6 +376,8 @@ def bore_texts(devices: Sequence[PlacedDevice]) -> list[str]:
         radius, bore = column[0]
         thread = f"{bore.thread}, " if bore.thread else ""
         hole = f"{bore.what}: {len(column)} x {thread}Ø{2.0 * radius / MM:.4g} through the wall"
+        if bore.angle != SQUARE_RAD:
+            hole += f", {np.degrees(bore.angle):.3g} deg to its face towards the outlet,"
         texts.append(f"{hole} at {s / MM:.5g} from D, heights over the track")
     return texts
 
@@ -513,10 +516,7 @@ def edges(placed: PlacedDevice, width: float) -> list[tuple[str, Floats]]:
     if features.sensor is not None:
         return [*drawn, ("SENSOR", box_ring(placed.start, placed.end, 0.0, width))]
     for jet in features.jets:
-        middle, near = begin + jet.at[0], jet.radius
-        far = near + jet.spread * width
-        corners = [(middle - near, 0.0), (middle + near, 0.0), (middle + far, width), (middle - far, width)]
-        drawn.append(("NOZZLE", np.array(corners)))
+        drawn.append(("NOZZLE", jet.outline(width) + [begin, 0.0]))
     return drawn
 
 

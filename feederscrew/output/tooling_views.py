@@ -352,7 +352,8 @@ def _draw_air(
     for jet in features.jets:
         s, off, up = jet.at
         long = min(jet.reach, reach)
-        mouth, end = project(s, off, up), project(s, off + long, up)
+        c, across, rise = np.asarray(jet.towards) / np.sqrt((np.asarray(jet.towards) ** 2).sum())
+        mouth, end = project(s, off, up), project(s + c * long, off + across * long, up + rise * long)
         ring = [project(s + jet.radius * np.cos(a), off, up + jet.radius * np.sin(a)) for a in CIRCLE]
         axes.add_patch(Polygon(ring, fc=SENSOR_COLOUR, ec="white", lw=0.6, zorder=4))
         if blows:

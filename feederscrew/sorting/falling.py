@@ -43,6 +43,7 @@ PLACES, PIECES = 200, 8  # along a hole at which a part is tried; of a side of i
 PERIODS, SETTLED = 60, 20  # of the drive, in all and until the motion along a blade is taken
 CLEARING_STEPS = 240  # of one period
 RESTS = 4.0  # of what gravity gives in a step: what comes down more slowly rests on the track
+AIR_DECIMALS = 4  # of what air gives [m/s2]: speeds along a blade are kept
 REST_SPEED = 1e-6  # [m/s] what slides more slowly does not leave
 
 Supports = list[tuple[Vector, Vector]]  # two edges: a point [m], and the normal into the part [1]
@@ -159,7 +160,8 @@ def clearing_limit(friction: float) -> float:
 def clearing_time(device: Device, orientation: Orientation, bowl: Bowl) -> float:
     """Return how long an orientation that a device returns blocks the track.
 
-    It is the way from the weight to the free edge over the velocity along the blade.
+    It is the way from the weight to the free edge over the velocity along the blade. Air along the blade
+    adds its force where that is least; no part is gone sooner than one that starts from rest with that alone.
 
     Parameters
     ----------
@@ -184,13 +186,20 @@ def clearing_time(device: Device, orientation: Orientation, bowl: Bowl) -> float
     if device.face is None:
         return 0.0
     sweep, friction = device.face
-    speed = along_blade(bowl, sweep, bowl.friction.static if friction is None else friction)
+    along, off = device.force_along_face(orientation)
+    if along or off:  # over the mass
+        along, off = along / orientation.posture.mass, off / orientation.posture.mass
+    grip = bowl.friction.static if friction is None else friction
+    speed = along_blade(bowl, sweep, grip, (round(along, AIR_DECIMALS), round(off, AIR_DECIMALS)))
     distance = max(orientation.track.width - orientation.distance, 0.0)
-    return distance / speed if speed > REST_SPEED else math.inf
+    if not speed > REST_SPEED:
+        return math.inf
+    inwards = along * math.sin(sweep) + off * math.cos(sweep)
+    return max(distance / speed, math.sqrt(2.0 * distance / inwards) if inwards > 0.0 else 0.0)
 
 
 @functools.lru_cache(maxsize=64)
-def along_blade(bowl: Bowl, sweep: float, friction: float) -> float:
+def along_blade(bowl: Bowl, sweep: float, friction: float, air: tuple[float, float] = (0.0, 0.0)) -> float:
     """Return the mean velocity [m/s] towards the free edge of a point mass before a swept face.
 
     The point flies where the drive throws it, and comes down with the restitution of the bowl. Nothing pushes
@@ -204,6 +213,8 @@ def along_blade(bowl: Bowl, sweep: float, friction: float) -> float:
         Of the face to the direction of travel.
     friction : float [1]
         Of the face.
+    air : (float, float) [m/s2], optional
+        Of its force along the face and off it, over the mass.
 
     Returns
     -------
@@ -223,7 +234,7 @@ def along_blade(bowl: Bowl, sweep: float, friction: float) -> float:
     Beside 1,181 trials of 23 parts at four drives and four blades (`benchmarks/blades.py`): the medians
     below 45 deg are 0.7 to 1.12 of it; docs/method/tooling.md, "Swept blades".
     """
-    if sweep >= clearing_limit(friction):
+    if sweep >= clearing_limit(friction) and not any(air):
         return 0.0
     drive, grip, g = bowl.drive, bowl.friction, bowl.gravity
     w, dt = 2.0 * math.pi * drive.frequency, 1.0 / drive.frequency / CLEARING_STEPS
@@ -232,6 +243,7 @@ def along_blade(bowl: Bowl, sweep: float, friction: float) -> float:
     pull = -g * math.sin(bowl.track.climb), -g * math.sin(bowl.track.bank)
     normal = g * math.cos(bowl.track.climb) * math.cos(bowl.track.bank)
     c, s = math.cos(sweep), math.sin(sweep)
+    pull = pull[0] + air[0] * c - air[1] * s, pull[1] + air[0] * s + air[1] * c
     x = y = u = v = start = 0.0
     above = rise = 0.0  # [m], [m/s] of the point over the track, relative to it
     for step in range(PERIODS * CLEARING_STEPS):

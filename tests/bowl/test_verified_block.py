@@ -14,6 +14,7 @@ from feederscrew.base import documents
 from feederscrew.base.errors import FeederError
 from feederscrew.bowl import device_list as devices
 from feederscrew.bowl.device_list import value_text
+from feederscrew.bowl.devices.air_assist import AirAssist
 from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.bowl.devices.pneumatics import SENSOR_VIEWS
 from feederscrew.bowl.reading import settings_of_text
@@ -202,11 +203,12 @@ def draw(kind, rng):
     (x, y, wide, high), first = (length() for _ in range(4)), length()
     hole = ((x, y), (x + wide, y), (x + wide, y + high), (x, y + high))
     jet = {"nozzle": length(1e-4), "pressure": number(1e3, 1e6), "height": length()}
+    air = some(air=AirAssist(**jet))
     span = (first, first + length())
     contour = ((0.0, 2e-2), (length(), 1.5e-2), (3e-2, length()))
     values = {
-        "wiper": lambda: {"limit": length(), **some(sweep=number(0.1, 1.5), friction=number(0.0, 2.0),
-                                                    contour=contour)},
+        "wiper": lambda: {"limit": length(), **some(friction=number(0.0, 2.0), contour=contour),
+                          **pick(({}, {"sweep": number(0.1, 1.5)}, {"sweep": number(0.1, 1.5), **air}))},
         "slot": lambda: {"span": span},
         "rails": lambda: {"span": span,
                           **some(lead=(span[0] - 5e-4, span[1] + length(), length(), length()))},
@@ -214,7 +216,8 @@ def draw(kind, rng):
         "dish-out": lambda: {"limit": length(), "radius": length(1e-3)},
         "cap selector": lambda: {"limit": first, "length": length(3e-2, 4e-2), "tongue": length(),
                                  "reach": first + length()},
-        "curved deflector": lambda: {"limit": length(), "begin": number(0.1, 0.4), "end": number(0.5, 1.2)},
+        "curved deflector": lambda: {"limit": length(), "begin": number(0.1, 0.4), "end": number(0.5, 1.2),
+                                     **air},
         "profile gate": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),
         "V groove": lambda: {"angle": number(0.2, 1.0)},
         "twisted track": lambda: {"angle": number(1.14, 1.39), "length": number(0.02, 1.0)},

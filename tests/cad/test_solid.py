@@ -32,6 +32,7 @@ from solids import (
 )
 
 from feederscrew.base.errors import FeederError
+from feederscrew.bowl.devices.air_assist import AirAssist
 from feederscrew.cad import facets, riding, segments
 from feederscrew.cad.closed_body import body
 from feederscrew.cad.measuring import measures, track_heights, track_width, ways_down
@@ -149,6 +150,28 @@ def test_a_nozzle_is_a_hole_through_the_wall(asked):
             beside = off * (np.cos(turn) * ahead + [0.0, 0.0, np.sin(turn)])
             start = plan.path.places(s, 2e-3) + [0.0, 0.0, 8e-3 / np.cos(plan.path.climb)] + beside
             assert len(facets.first_met(whole, start, start + 0.02 * out)) == walls
+
+
+def test_a_nozzle_at_a_blade_is_drilled_askew_along_its_face():
+    """From the bowl along the jet's axis nothing is met to beyond the wall; beside it the wall is."""
+    air = AirAssist(2e-3, 3e4, 9e-3)
+    plan = planned((device("wiper", limit=6e-3, sweep=np.radians(30.0), air=air),))
+    (placed,) = plan.stretch.devices
+    (jet,) = placed.features.jets
+    whole, s = facets.unplaced(body(plan)), plan.first + placed.begin + jet.place
+    assert np.degrees(jet.angle) == pytest.approx(41.0)
+    height = 9e-3 * np.sin(plan.path.climb)  # square to the track: on a climb it lies further back
+    theta = float(plan.path.angle(s - height))
+    rise = [0.0, 0.0, np.tan(plan.path.climb)]
+    ahead, inwards = (outward(theta + 0.5 * np.pi) + rise) * np.cos(plan.path.climb), -outward(theta)
+    into = np.cos(jet.angle) * ahead + np.sin(jet.angle) * inwards
+    across = np.cross(into, [0.0, 0.0, 1.0])
+    mouth = plan.path.places(s - height, 0.0) + [0.0, 0.0, 9e-3 / np.cos(plan.path.climb)]
+    for off, walls in ((0.85e-3, 0), (1.15e-3, 2)):
+        for turn in np.linspace(0.1, 2.0 * np.pi, 12):
+            beside = off * (np.cos(turn) * across + [0.0, 0.0, np.sin(turn)])
+            start = mouth + 1.5e-3 * into + beside
+            assert len(facets.first_met(whole, start, start - 0.02 * into)) == walls
 
 
 def test_a_part_on_the_track_has_its_foot_on_it_and_its_side_on_the_wall(rng):

@@ -109,7 +109,7 @@ def test_what_stood_at_rails_of_steel_is_blown_off_in_the_class_of_air(monkeypat
     trials.clean |= dict.fromkeys(SHARES, (2.0, 2))
 
     def stood_at(number, efficiency=0.3, hangs=True):
-        proposal = SimpleNamespace(hangs=hangs, name=number)
+        proposal = SimpleNamespace(hangs=hangs, name=number, cuts=())
         seen = SimpleNamespace(wanted=[0])
         ways = search.state.tracks[0].orientations
         attempt = SimpleNamespace(efficiency=efficiency)

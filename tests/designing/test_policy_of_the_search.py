@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 import shapes
+from design_counts import lost
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import exploring, policy, proposals
@@ -59,7 +60,9 @@ def test_a_proposal_is_mended_as_often_as_the_policy_says(monkeypatch, block, me
         return failing(proposal, len(made))
 
     def failing(proposal, number):
-        attempt = SimpleNamespace(clean=False, efficiency=0.1 * number, faults=(number,), stopped=0.0)
+        attempt = SimpleNamespace(
+            clean=False, efficiency=0.1 * number, faults=(lost(f"A@{number}"),), stopped=0.0
+        )
         return SimpleNamespace(
             proposal=proposal, orientations=block.ways, attempt=attempt, worst=None, bowl=search.plain,
             trial=SimpleNamespace(rows=(), efficiency=0.1), robust=RobustRun(0, 0),

@@ -171,7 +171,8 @@ def _bores(placed):
     for bore in placed.features.bores:
         for turn, off in itertools.product(np.radians([10.0, 100.0, 190.0, 280.0]), (ASIDE, -ASIDE)):
             r = 0.5 * bore.diameter + off
-            s = placed.begin + bore.place + r * np.cos(turn)
+            askew = -IN_WALL / np.tan(bore.angle) + r * np.cos(turn) / np.sin(bore.angle)
+            s = placed.begin + bore.place + askew
             yield "bore", s, -IN_WALL, placed.level, bore.height + r * np.sin(turn), off > 0.0
 
 

@@ -362,7 +362,7 @@ def test_every_feature_has_its_numbers_in_the_drawings(case, name):
     known = []  # every place along the track of which a number may be
     for placed in tooled.devices:
         own, cuts = placed.features, on_track(placed, tooled.width)
-        places = [*(slope.begin for slope in own.slopes), *(jet.at[0] for jet in own.jets[:1])]
+        places = [*(slope.begin for slope in own.slopes), *(jet.place for jet in own.jets[:1])]
         places += [] if own.sensor is None else [own.sensor.at]
         places += [] if placed.drop is None else [0.0]
         wanted = [*(placed.begin + place for place in places), *plate_begins(placed)]

@@ -11,6 +11,7 @@ import shapes
 import track_views as views
 from shapely import affinity
 
+from feederscrew.bowl.devices.air_assist import AirAssist
 from feederscrew.bowl.devices.kinds import KINDS, make_device
 from feederscrew.bowl.devices.trade import Action
 from feederscrew.bowl.reading import effective, record
@@ -42,6 +43,12 @@ def part():
     return shapes.part(shapes.box(*SIZE))
 
 
+def air_over(clearance):
+    """Air along the face of every other blade, its nozzle over the blade's edge."""
+    odd = round(clearance / (0.01 * MM)) % 2
+    return AirAssist(2e-3, 2e4, round(clearance + 2e-3, 5)) if odd else None
+
+
 def draw_device(kind, rng, every):
     """A device of a kind with values at random; lengths in whole hundredths of a millimetre."""
 
@@ -71,7 +78,8 @@ def draw_device(kind, rng, every):
         return made(limit=land, length=length, tongue=mm(3.0, 8.0), reach=land + mm(3.0, 9.0))
     if kind == "curved deflector":
         begin, end = np.radians(rng.uniform(10.0, 20.0)), np.radians(rng.uniform(35.0, 60.0))
-        return made(limit=mm(4.0, 6.0), begin=begin, end=end)
+        limit = mm(4.0, 6.0)
+        return made(limit=limit, begin=begin, end=end, air=air_over(limit))
     if kind == "air jet":
         return made(nozzle=mm(1.5, 3.0), pressure=2e4, height=mm(2.0, 7.0))
     if kind == "slot":
@@ -85,7 +93,7 @@ def draw_device(kind, rng, every):
         fall = mm(4.0, 6.0)
         contour = ((0.0, fall), (mm(6.0, 12.0), fall), (mm(13.0, 18.0), fall - mm(1.0, 3.0)))
         own = {"contour": contour} if rng.random() < 0.5 else {}
-        return made(limit=fall, sweep=np.radians(rng.uniform(25.0, 80.0)), **own)
+        return made(limit=fall, sweep=np.radians(rng.uniform(25.0, 80.0)), air=air_over(fall), **own)
     if kind == "spacing section":
         return made(angle=np.radians(rng.uniform(-3.0, 5.0)))
     if whole.action is Action.TWIST:

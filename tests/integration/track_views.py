@@ -72,7 +72,7 @@ def trial(stage, start, track, bank):
         return laid(areas)
 
     jets = stage.air.jets
-    theta = [np.arctan2(j["mouth_x"], track.radius - j["mouth_y"]) for j in jets]
+    theta = [_out_of_wall(j, track.radius) for j in jets]
     bores = [(track.radius * t - start, j["mouth_z"], 2.0 * j["radius"]) for t, j in zip(theta, jets)]
     faces = []
     for origin, axes, _, area in blades:
@@ -82,6 +82,15 @@ def trial(stage, start, track, bank):
     return View(
         floor, lambda height: laid([_slab(one, height) for one in blades]), in_order(bores), faces, ramp
     )
+
+
+def _out_of_wall(jet, radius):
+    """Angle [rad] at which the axis of a jet comes out of the wall."""
+    x, y = jet["mouth_x"], jet["mouth_y"] - radius  # from the bowl's axis
+    a, b = jet["towards_x"], jet["towards_y"]
+    ahead = a * x + b * y
+    way = -ahead - np.sqrt(max(ahead**2 - (a * a + b * b) * (x * x + y * y - radius**2), 0.0))
+    return np.arctan2(x + way * a, -(y + way * b))
 
 
 def crowded(stage, placed, track, bank):
@@ -141,11 +150,14 @@ def unrolled_section(tooled):
 def _round_holes(flat, placed, start, bank):
     """Middles and diameters of round holes in an unrolled wall, beside a device; upright it leans over it."""
     bores = []
-    for height in sorted({float(bore.height) for bore in placed.features.bores}):
-        face = facets.cut_face(flat, 1, height * np.tan(bank) - WALL_DEPTH)
+    for height, angle in sorted({(float(bore.height), bore.angle) for bore in placed.features.bores}):
+        beside = height * np.tan(bank) - WALL_DEPTH
+        back = beside / np.tan(angle)  # of the middle of one askew, behind where it comes out
+        face = facets.cut_face(flat, 1, beside)
         for ring in (ring for part in shapely.get_parts(face) for ring in part.interiors):
             hole = shapely.Polygon(ring)
-            s, z = hole.centroid.x - start, hole.centroid.y
+            s, z = hole.centroid.x - start - back, hole.centroid.y
+            hole = affinity.scale(hole, np.sin(angle), 1.0)
             is_round = 4.0 * np.pi * hole.area / hole.length**2 > 0.95
             if is_round and placed.start < s < placed.end and abs(z - height) < 1e-4:
                 bores.append((s - placed.begin, z, np.sqrt(4.0 * hole.area / np.pi)))

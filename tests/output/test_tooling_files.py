@@ -18,6 +18,7 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
+from feederscrew.bowl.devices.air_assist import AirAssist
 from feederscrew.bowl.devices.base import UNSURE, Verdict
 from feederscrew.bowl.devices.features import Bore, Features, ShopWork
 from feederscrew.bowl.devices.kinds import make_device
@@ -336,6 +337,26 @@ def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(ly
     assert len(passes.patches) == len(jets) > 0  # mouths; nothing blows at what is kept
     assert len(rejected.patches) == 2 * len(jets)
     assert [[text.get_text() for text in axes.texts] for axes in (passes, rejected)] == [["sensor"]] * 2
+
+
+def test_air_at_a_blade_is_drawn_along_its_face_and_its_bore_has_its_angle(lying):
+    """The side of the drawn jet lies on the face; the list says how to drill the bore, and the regulator."""
+    bowl, every = lying
+    wiper = make_device("wiper", "here", limit=4e-3, sweep=np.radians(30.0), air=AirAssist(2e-3, 3e4, 7e-3))
+    strip = lay_out(bowl.track, [wiper.rewritten()], every)
+    (placed,) = strip.devices
+    (jet,) = placed.features.jets
+    (text,) = tooling_drawing.bore_texts(strip.devices)
+    assert "nozzle: 1 x Ø2 through the wall, 41 deg to its face towards the outlet, at" in text
+    outline = jet.outline(bowl.track.width) - [placed.features.blades[0].foot[0], 0.0]
+    off = outline[:, 1] * np.cos(np.radians(30.0)) - outline[:, 0] * np.sin(np.radians(30.0))
+    assert np.sort(off)[:2] == pytest.approx([0.0, 0.0], abs=0.3e-3)
+    assert np.ptp(outline[2:, 0]) > np.ptp(outline[:2, 0])  # it widens
+    rows = tooling_drawing.device_rows(strip.devices, bowl.track.width, np.degrees)
+    assert any("regulator 0.3 bar" in cell for row in rows for cell in row)
+    # seen at the blade: a mouth and its air
+    passes, rejected = tooling_views.figure([wiper.rewritten()], every, np.full(len(every), 0.2), 0).axes
+    assert all(len(axes.patches) >= 2 for axes in (passes, rejected))
 
 
 def test_what_is_written_of_two_columns_of_nozzles_stands_in_lines_of_its_own():

@@ -30,7 +30,9 @@ from feederscrew.arrivals.kernel import body
 from feederscrew.arrivals.launch_conditions import named
 from feederscrew.base.geometry import vectors
 from feederscrew.base.running import RunSettings
+from feederscrew.bowl.devices.air_assist import ASIDE_RAD, AirAssist
 from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.bowl.devices.pneumatics import pressure_for
 from feederscrew.feeding import stream
 from feederscrew.motion import conveying as answer
 from feederscrew.output.trial import tables
@@ -143,6 +145,22 @@ def test_a_cap_that_stays_before_a_straight_blade_leaves_along_a_curved_one(bowl
         rows = [k for k, own in enumerate(every) if own.kind == "rolling" and abs(own.heading - np.pi) < 0.2]
         gone.append(np.mean(sent(cap, one, rows, 8, one.devices).fates == course.RETURNED))
     assert gone[0] < 0.5 and gone[1] >= 0.75
+
+
+@pytest.mark.parametrize(("times", "gone"), [(0.0, False), (0.25, False), (1.1, True), (2.0, True)])
+def test_air_takes_a_block_off_a_steep_face_as_the_closed_form_says(times, gone):
+    """At 70 deg friction of 0.6 holds it. By hand, twice what just moves it along the face is 0.059 N:
+    T sin(aim) (sin a + 2 mu cos a) = 2 mu W (mu sin a - cos a), the aim 11 deg beyond a. A quarter of
+    that is half of what moves it: it stays."""
+    part, own = shapes.part(shapes.box(20, 12, 16)), ["track.width=16 mm", "track.bank=0 deg"]
+    one, a, grip = bowls.read(None, own), np.radians(70.0), 0.6
+    every = lying(part, one)
+    (row,) = [k for k, own in enumerate(every) if 15e-3 < own.height < 17e-3 and own.length > 19e-3]
+    weight, turned = part.mass * one.gravity, np.sin(a) + 2.0 * grip * np.cos(a)
+    enough = 2.0 * grip * weight * (grip * np.sin(a) - np.cos(a)) / (np.sin(a + ASIDE_RAD) * turned)
+    air = AirAssist(2e-3, pressure_for(2e-3, times * enough), 10e-3) if times else None
+    seen = sent(part, one, [row], 3, [make_device("wiper", "w", limit=8e-3, sweep=a, air=air)], seed=3)
+    assert (seen.fates == (course.RETURNED if gone else course.STOPPED)).all()
 
 
 def test_a_cap_on_its_bottom_rides_over_a_selector_and_one_on_its_mouth_falls(bowl):

@@ -141,6 +141,10 @@ class LyingPart(Protocol):
         """Friction of the wall [1]."""
 
     @property
+    def gravity(self) -> float:
+        """Gravity where it travels [m/s2]."""
+
+    @property
     def rolls_along(self) -> bool:
         """Whether the axis about which it rolls lies more along the track than across it."""
 

@@ -371,6 +371,30 @@ class Device:
         """Return sweep [rad] and friction [1] or None of a blade's face that may clear itself; else None."""
         return None
 
+    @property
+    def cost_class(self) -> int:
+        """Return what it takes, with its values: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
+        return self.trade.cost_class
+
+    @property
+    def takes_air(self) -> bool:
+        """Tell whether it needs compressed air, steady or in pulses."""
+        return self.cost_class > 1
+
+    def force_along_face(self, orientation: LyingPart) -> tuple[float, float]:
+        """Return the force of its air on an orientation that stands at its face.
+
+        Parameters
+        ----------
+        orientation : LyingPart
+
+        Returns
+        -------
+        along, off : float [N]
+            Along the face towards the free edge, and square to it off the face; 0 without air.
+        """
+        return 0.0, 0.0
+
     # -- what it does with parts
 
     def judged(self, encounter: Encounter) -> Verdict:

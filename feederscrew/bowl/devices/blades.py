@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
@@ -11,8 +11,10 @@ import shapely
 
 from feederscrew.base import value_forms as forms
 from feederscrew.base.columns import Document
+from feederscrew.base.documents import Entry
 from feederscrew.base.errors import ConfigError
-from feederscrew.bowl.devices import orientation_names, values
+from feederscrew.bowl.devices import air_assist, orientation_names, values
+from feederscrew.bowl.devices.air_assist import AirAssist
 from feederscrew.bowl.devices.asked import Encounter, LyingPart
 from feederscrew.bowl.devices.base import (
     RETURNED,
@@ -28,9 +30,9 @@ from feederscrew.bowl.devices.base import (
     room_of,
     tall_of,
 )
-from feederscrew.bowl.devices.features import Blade, Features
+from feederscrew.bowl.devices.features import Blade, Features, Jet
 from feederscrew.bowl.devices.trade import IS_ANGLE, Action, Bound, ProposedBy, Trade, ValueSearch
-from feederscrew.bowl.devices.values import Corner
+from feederscrew.bowl.devices.values import Corner, DeviceFields
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Track
@@ -40,12 +42,14 @@ PROPOSED_SWEEP_RAD = math.radians(30.0)  # [rad] that a design tries: 20 to 35 d
 BEYOND_TRACK_M = 10.0  # [m] beyond any track
 MAX_OPENING_HEIGHT_M = 1.0  # [m] no opening is higher
 SWEPT = forms.mapping(
-    ("sweep", "friction", "contour"),
+    ("sweep", "friction", "contour", "air"),
     clearance=forms.LENGTH_FORM,
     sweep=forms.ANGLE_FORM,
     friction=forms.quantity("number", "0", "5"),
     contour=forms.POLYGON | {"minItems": 1},
+    air=air_assist.FORM,
 )
+STEADY_AIR = 2  # cost class of a blade with air along its face
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,79 @@ class Overhead(Device):
 
 
 @dataclass(frozen=True)
-class Wiper(Overhead):
+class SweptBlade(Overhead):
+    """A blade whose face leads off the free edge, with or without air along it."""
+
+    air: AirAssist | None = None  # a steady nozzle at its foot
+
+    def chord(self, track: "Track") -> float:
+        """Return the angle to the direction of travel of the straight way from its foot to its end.
+
+        Parameters
+        ----------
+        track : Track
+
+        Returns
+        -------
+        float [rad]
+        """
+        raise NotImplementedError
+
+    @property
+    def lowest(self) -> float:
+        """Return the least height of its edge over the track [m]."""
+        return self.limit
+
+    @property
+    def cost_class(self) -> int:
+        return super().cost_class if self.air is None else max(super().cost_class, STEADY_AIR)
+
+    def with_air(self, air: AirAssist | None) -> Self:
+        """Return the same blade with other air along its face, or without.
+
+        Parameters
+        ----------
+        air : AirAssist or None
+
+        Returns
+        -------
+        SweptBlade
+        """
+        return replace(self, air=air).rewritten()
+
+    def force_along_face(self, orientation: LyingPart) -> tuple[float, float]:
+        if self.air is None:
+            return 0.0, 0.0
+        least = self.air.least_at_face(orientation, self.chord(orientation.track), self.lowest)
+        return least.along, least.off
+
+    def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
+        return self._with_air_on(encounter, super().judged(encounter, sweep))
+
+    def _with_air_on(self, encounter: Encounter, verdict: Verdict) -> Verdict:
+        """The verdict on a part with the air on it, where it passes below the blade."""
+        if self.air is None or verdict.margin < 0.0:
+            return verdict
+        heading = self.chord(encounter.orientation.track)
+        return encounter.verdict(self.air.passing_margin(encounter, heading, verdict.margin))
+
+    def _jets(self, foot: float, track: "Track") -> tuple[Jet, ...]:
+        return () if self.air is None else (self.air.jet(foot, self.chord(track)),)
+
+    @property
+    def _air_words(self) -> str:
+        return "" if self.air is None else f", {self.air.words}"
+
+    @property
+    def shop_words(self) -> tuple[str, ...]:
+        return () if self.air is None else (self.air.shop_words,)
+
+    def document_values(self) -> Document:
+        return super().document_values() | ({} if self.air is None else self.air.document_values())
+
+
+@dataclass(frozen=True)
+class Wiper(SweptBlade):
     """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
 
     sweep: float = field(
@@ -83,13 +159,24 @@ class Wiper(Overhead):
         "6 mm",
         "blade at a clearance over the track that holds up orientations that stand higher; straight across "
         "it stops them, {clearance: 6 mm, sweep: 30 deg, friction: 0.2} sweeps them off the free edge: below "
-        "90 deg - atan(friction); contour: [[0 mm, 6 mm], [9 mm, 4 mm]] gives it a lower edge of its own",
+        "90 deg - atan(friction); contour: [[0 mm, 6 mm], [9 mm, 4 mm]] gives it a lower edge of its own; "
+        "air: {nozzle: 2 mm, pressure: 0.3 bar, height: 8 mm} blows steadily along a swept face and takes "
+        "off what stands at it",
         forms.either(forms.LENGTH_FORM, SWEPT),
         measures="height",
     )
     search = ValueSearch(ProposedBy.VALUE, Bound.UPPER, "height", rank=5)
 
-    read = staticmethod(values.blade)
+    @staticmethod
+    def read(entry: Entry) -> DeviceFields:
+        fields = values.blade(entry, ("air",))
+        air = next((item for item in entry.value.entries if item.key == "air"), None)
+        if air is None:
+            return fields
+        if not fields.get("sweep", SQUARE_FACE_RAD) < SQUARE_FACE_RAD:
+            what = "the air of wiper has no face to blow along"
+            raise ConfigError(air.where, what, "give the wiper a sweep, as sweep: 30 deg")
+        return fields | {"air": air_assist.read(air)}
 
     def misfits(self, width: float) -> list[ConfigError]:
         heights = [height for _, height in self.contour]
@@ -111,6 +198,7 @@ class Wiper(Overhead):
                 ("sweep", angle_text(self.sweep) if self.face else ""),
                 ("friction", "" if self.friction is None else f"{self.friction:.9g}"),
                 ("contour", corners_text(self.contour) if self.contour else ""),
+                ("air", "" if self.air is None else self.air.text),
             )
         )
 
@@ -118,7 +206,14 @@ class Wiper(Overhead):
     def value_words(self) -> str:
         sweep = f", swept back {degrees_words(self.sweep)}" if self.face else ""
         edge = "edge of its own" if self.contour else f"{length_words(self.limit)} over the track"
-        return edge + sweep
+        return edge + sweep + self._air_words
+
+    @property
+    def lowest(self) -> float:
+        return min((height for _, height in self.contour), default=self.limit)
+
+    def chord(self, track: "Track") -> float:
+        return self.sweep
 
     @property
     def face(self) -> tuple[float, float | None] | None:
@@ -141,14 +236,19 @@ class Wiper(Overhead):
         return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
 
     def fate(self, encounter: Encounter) -> str:
-        clears = self.clear_of(encounter.grip) and not encounter.hanging  # rails hold what hangs
+        if encounter.hanging:  # rails hold what hangs
+            return super().fate(encounter)
+        clears = self.clear_of(encounter.grip)
+        if not clears and self.air is not None:
+            friction = encounter.grip if self.friction is None else self.friction
+            clears = self.air.clears(encounter, self.sweep, friction, self.lowest)
         return RETURNED if clears else super().fate(encounter)
 
     def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
         if not self.contour:
             return super().judged(encounter, self.sweep if self.face else 0.0)
         free = shapely.Polygon([(0.0, 0.0), *self._edge(BEYOND_TRACK_M), (BEYOND_TRACK_M, 0.0)])
-        return encounter.verdict(encounter.through(free))
+        return self._with_air_on(encounter, encounter.verdict(encounter.through(free)))
 
     def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         room, lean = room_of(orientations), math.sin(self.sweep)
@@ -157,7 +257,7 @@ class Wiper(Overhead):
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
         ahead = 0.0 if self.face is None else track.extent / math.tan(self.sweep)
-        return Features(0.5 * room + ahead, blades=(blade,))
+        return Features(0.5 * room + ahead, blades=(blade,), jets=self._jets(0.5 * room, track))
 
     def document_values(self) -> Document:
         own = {"sweep_deg": math.degrees(self.sweep)}

@@ -335,7 +335,7 @@ class Slope:
 class Jet:
     """A round jet of air that pushes what of a part is in it."""
 
-    at: tuple[float, float, float]  # [m] x, y, z of its mouth
+    at: tuple[float, float, float]  # [m] x, y, z of its mouth; y below 0 of one askew, within the wall
     towards: tuple[float, float, float]  # [1] along the wall, inwards, up
     radius: float  # [m]
     spread: float  # [1] growth of the radius along its way
@@ -343,16 +343,48 @@ class Jet:
     reach: float  # [m] from the mouth
     seconds: float = np.inf  # [s] of a pulse that a sensor sets off; infinite of a steady one
 
+    @property
+    def angle(self) -> float:
+        """Angle [rad] of its axis to the direction of travel, seen from above."""
+        return math.atan2(self.towards[1], self.towards[0])
+
+    @property
+    def place(self) -> float:
+        """Place [m] along the wall at which its axis comes out of it."""
+        return self.at[0] - self.at[1] * math.cos(self.angle) / math.sin(self.angle)
+
+    def outline(self, width: float) -> Points:
+        """Return the jet seen from above, up to a width of track.
+
+        Parameters
+        ----------
+        width : float [m]
+
+        Returns
+        -------
+        (4, 2) float [m]
+            Corners: along the wall, and from it.
+        """
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        ahead, left = np.array([c, s]), np.array([-s, c])
+        mouth = np.array([self.place, 0.0])
+        end = mouth + ahead * width / s
+        near, far = self.radius * left, (self.radius + self.spread * width / s) * left
+        return np.array([mouth + near, mouth - near, end - far, end + far])
+
 
 @dataclass(frozen=True, eq=False)
 class Bore:
-    """A round hole through the wall, square to it: of a nozzle, for a bracket's screw or for a fibre."""
+    """A round hole through the wall: of a nozzle, for a bracket's screw or for a fibre."""
 
     what: str  # that it is for: 'nozzle'
     place: float  # [m] x
     height: float  # [m] z
     diameter: float  # [m] to drill
     thread: str = ""  # 'M4'; '' of a plain hole
+    angle: float = (
+        0.5 * np.pi
+    )  # [rad] of its way into the bowl to the direction of travel; square to the wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -383,7 +415,9 @@ class Features:
     @property
     def bores(self) -> tuple[Bore, ...]:
         """Return every hole through the wall: of its nozzles, and those for what is mounted there."""
-        nozzles = (Bore("nozzle", jet.at[0], jet.at[2], 2.0 * jet.radius) for jet in self.jets)
+        nozzles = (
+            Bore("nozzle", jet.place, jet.at[2], 2.0 * jet.radius, angle=jet.angle) for jet in self.jets
+        )
         return (*nozzles, *self.mounts)
 
     @property

@@ -136,7 +136,7 @@ def cost_class(devices: Sequence[Device]) -> int:
     int
         1 steel alone, 2 steady air, 3 a sensor with a valve.
     """
-    return max((device.trade.cost_class for device in devices), default=1)
+    return max((device.cost_class for device in devices), default=1)
 
 
 def dearer(cost: int) -> tuple[str, ...]:

@@ -85,6 +85,7 @@ SURE_FORCE_RATIO, FORCE_RESERVE = 2.0, 1.1
 JET_POSITIONS = 9  # along a part at which a jet meets it
 NOZZLE_HEIGHTS = 6  # that a design tries, evenly up to the tallest orientation
 MAX_JET_PRESSURE_PA, REGULATOR_STEP_PA = 4e5, 5e3  # of a usual compressed-air net, and of a regulator
+NOZZLE_KEYS = ("nozzle", "pressure", "height")  # of a jet that blows all the time
 JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
 
 
@@ -231,13 +232,33 @@ def _heights(nozzles: Nozzles, orientations: Sequence[LyingPart]) -> tuple[float
 
 def _share(orientation: LyingPart, diameter: float, height: float, ahead: float = 0.0) -> tuple[float, float]:
     """Return the share of a jet's thrust that an orientation takes [1]: outwards from the wall, and down."""
-    return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
+    place = ahead, orientation.distance
+    return shares_taken(orientation.posture, orientation.heading, place, diameter, height)[:2]
 
 
 @functools.lru_cache(maxsize=4096)
-def _taken(
+def shares_taken(
     posture: "Posture", heading: float, place: tuple[float, float], diameter: float, height: float
-) -> tuple[float, float]:
+) -> tuple[float, float, float]:
+    """Return the shares of a jet's thrust that a part takes, in axes in which the jet blows along y.
+
+    Parameters
+    ----------
+    posture : Posture
+    heading : float [rad]
+        Of the part, about its weight.
+    place : (float, float) [m]
+        Of its weight from the mouth: to the right of the jet, and ahead along it.
+    diameter : float [m]
+        Of the mouth.
+    height : float [m]
+        Of the mouth over the track.
+
+    Returns
+    -------
+    out, down, right : float [1]
+        Along the jet, onto the track, and to the jet's right.
+    """
     points, faces = posture.surface, posture.facets
     plan = turned(points[:, :2], heading) + place
     corners = np.column_stack([plan, points[:, 2]])[faces]
@@ -248,7 +269,7 @@ def _taken(
     within = ((x_and_z.min(axis=1) <= wide) & (x_and_z.max(axis=1) >= -wide)).all(axis=1)
     corners, sides = (of[within & (sides[:, 1] < 0.0)] for of in (corners, sides))
     if not len(sides):
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     turn, off = GOLDEN * np.arange(RAYS), np.sqrt((np.arange(RAYS) + 0.5) / RAYS)
     places = off[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
     directions = np.column_stack([SPREAD * places[:, 0], np.ones(RAYS), SPREAD * places[:, 1]])
@@ -266,17 +287,37 @@ def _taken(
         inside &= (vectors.cross(along, to) * sides[facet]).sum(axis=1) >= 0.0
     ways = np.full(far.shape, np.inf)
     ways[ray[inside], facet[inside]] = far[ray[inside], facet[inside]]
-    out = down = 0.0
+    out = down = right = 0.0
     for direction, way in zip(directions, ways):
         if np.isfinite(way.min()):
             side = sides[way.argmin()]  # of the one it meets first
             size = np.sqrt((side**2).sum())
             into = (side * direction).sum() / (size * np.sqrt((direction**2).sum()))
             out, down = out + into * side[1] / size, down - into * side[2] / size
-    return float(out) / RAYS, float(down) / RAYS
+            right += into * side[0] / size
+    return float(out) / RAYS, float(down) / RAYS, float(right) / RAYS
 
 
-def _pressure(diameter: float, force: float) -> float:
+def pressure_for(diameter: float, force: float) -> float:
+    """Return the pressure at which a nozzle has a thrust.
+
+    Parameters
+    ----------
+    diameter : float [m]
+        Of the mouth.
+    force : float [N]
+        At most that of ``MAX_JET_PRESSURE_PA``.
+
+    Returns
+    -------
+    float [Pa]
+        Above the ambient.
+
+    Raises
+    ------
+    ValueError
+        If no such pressure has that thrust.
+    """
     return float(optimize.brentq(lambda bar: thrust(diameter, bar) - force, 0.0, MAX_JET_PRESSURE_PA))
 
 
@@ -530,7 +571,7 @@ class AirJet(Device):
     action = Action.BLOW
     search = ValueSearch(ProposedBy.VALUE)
 
-    read = staticmethod(functools.partial(values.nozzle, needed=("nozzle", "pressure", "height")))
+    read = staticmethod(functools.partial(values.nozzle, needed=NOZZLE_KEYS))
 
     @classmethod
     def proposals(
@@ -567,7 +608,7 @@ class AirJet(Device):
             thrusts = [ratio * own / max(jet.factor(encounter), 1e-12) for encounter in competitors]
             enough = max((force for force in thrusts if force <= limit), default=None)
             if enough is not None:
-                steps = math.ceil(_pressure(bore, enough) / REGULATOR_STEP_PA - 1e-6)
+                steps = math.ceil(pressure_for(bore, enough) / REGULATOR_STEP_PA - 1e-6)
                 jets.append(replace(jet, pressure=steps * REGULATOR_STEP_PA).rewritten())
         return jets
 

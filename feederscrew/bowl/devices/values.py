@@ -59,12 +59,14 @@ def length(entry: Entry) -> DeviceFields:
     return {"limit": limit}
 
 
-def blade(entry: Entry) -> DeviceFields:
+def blade(entry: Entry, more: Sequence[str] = ()) -> DeviceFields:
     """Read a clearance, or {clearance: 6 mm, sweep: 30 deg, friction: 0.2, contour: [[0 mm, 6 mm], ...]}.
 
     Parameters
     ----------
     entry : Entry
+    more : sequence of str, optional
+        Further keys, which the caller reads.
 
     Returns
     -------
@@ -77,8 +79,8 @@ def blade(entry: Entry) -> DeviceFields:
     """
     if entry.value.kind != "mapping":
         return length(entry)
-    mend, more = "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour")
-    arguments = mapping(entry, ("clearance", *more), mend, more)
+    mend, optional = "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour", *more)
+    arguments = mapping(entry, ("clearance", *optional), mend, optional)
     fields: DeviceFields = {
         name: within(arguments, key, dimension, low, high)
         for key, (name, dimension, low, high) in BLADE.items()
