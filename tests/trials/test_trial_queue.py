@@ -31,6 +31,8 @@ from feederscrew.bowl.record import Friction
 from feederscrew.feeding import stream
 from feederscrew.motion import conveying as answer
 from feederscrew.resting import profiles
+from feederscrew.sorting import fates
+from feederscrew.sorting.orientations import add_travel
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import part_poses, queue, result, runs
 from feederscrew.trials.kernel.steps import BEHIND, BELOW
@@ -404,3 +406,19 @@ def test_frames_of_a_queue_are_the_same_whether_it_is_followed_at_once_or_in_bit
     assert [one[0] for one in rows[0].moments] == [one[0] for one in rows[1].moments]
     assert len(rows[0].moments) == 8
     np.testing.assert_array_equal(rows[0].poses, rows[1].poses)
+
+
+def test_blocks_that_lie_leave_a_twisted_track_on_their_edge():
+    """The pose and the aspect in which they leave are those of statics, one behind the other as well."""
+    twist = make_device("twisted track", "t", angle=1.3, length=0.06)
+    bowl = replace(bowls.read(None, ["track.width=24 mm"]), devices=(twist,))
+    every = add_travel(lying(PART, bowl), bowl)
+    flow = fates.course(bowl.devices, every)
+    shares = np.array([one.height < 6e-3 and one.length > 0.0199 for one in every], float)
+    (row,) = np.flatnonzero(shares)
+    edge = int(flow.leaving[row].argmax())
+    assert flow.leaving[row, edge] == 1.0 and flow.states[edge].height == pytest.approx(0.012)
+    run, plan = RunSettings(1), QueuePlan(3, 10.0, 0.1)
+    found = queue.queue_of(PART, bowl, ASPECTS, every, flow.states, shares, plan, run)
+    assert found.leaving_counts[edge] == found.leaving_counts.sum() >= 2 and found.returned == found.jams == 0
+    assert found.aspects[ASPECTS.names.index(flow.states[edge].aspect)] == found.leaving_counts.sum()
