@@ -11,6 +11,7 @@ import feederscrew as fs
 from feederscrew.base.errors import ArgumentError
 from feederscrew.bowl.verified import Status
 from feederscrew.designing import exploring, loop, queues
+from feederscrew.designing.policy import USUAL_POLICY
 from feederscrew.designing.quick import QUICK_TRIALS
 from feederscrew.designing.record import QuickAnswer
 from feederscrew.output import design_pages, designs, tables
@@ -41,6 +42,23 @@ def test_a_quick_look_ends_with_a_clean_chain_and_runs_no_draw_and_no_queue(monk
     quick = study.quick
     assert quick.rate_at_most == pytest.approx(quick.share * quick.fastest / pitch, rel=0.05)
     assert quick.short_trial < quick.rate_at_most and quick.clean
+
+
+def test_a_quick_look_gives_no_head_all_of_its_trials(monkeypatch):
+    """Of a bushing all eight went to rails; of a bolt six, two of them at livelier drives, and none was clean."""
+    asked, classes = [], []
+
+    def candidates(search, cost_class):
+        asked.append((search.request.budget, search.policy))
+        classes.append(cost_class)
+        return iter(())
+
+    monkeypatch.setattr(exploring, "candidates", candidates)
+    fs.design(PART, "30/min", search=fs.DesignSearch(quick=True, rule="csa"))
+    assert classes == [1, 2, 3] and {budget for budget, _ in asked} == {QUICK_TRIALS}
+    policy = asked[0][1]
+    assert (policy.rails_trials, policy.rails_given_up, policy.livelier_trials) == (2, 2, 0)
+    assert policy.tries_before_others == 1 and policy.mends == USUAL_POLICY.mends
 
 
 def test_every_output_says_that_it_is_not_proved():
