@@ -107,9 +107,8 @@ def _drops(placed, width):
     far = begin + (drop.length if is_ledge else 4e-3)
     ways = np.linspace(begin + 1e-3, far - 1e-3, 3)
     across = drop.aside + np.array(SHARES) * (width - drop.aside)
-    if not is_ledge:  # behind its face, close by the wall too
-        for y in (3e-4, *across):
-            yield "edge", begin - ASIDE, y, placed.level - 0.5 * drop.height, 0.0, True
+    if not is_ledge:  # behind its face, close by the wall
+        yield "edge", begin - ASIDE, 3e-4, placed.level - 0.97 * drop.height, 0.0, True
     for s in ways if is_ledge else ():  # all of it, down to the lower track
         for y, share in itertools.product(np.array(SHARES) * drop.aside, (0.5, 0.9)):
             yield "ledge", s, y, placed.level - share * drop.height, 0.0, True
@@ -138,7 +137,8 @@ def _ramps(placed):
             surface = placed.level - slope * (placed.radius - y)
             if surface - UNDER < placed.level - drop.height:  # it is down to the lower track there
                 continue
-            yield "ramp", s, y, surface + OVER_RAMP, 0.0, False
+            over = OVER_RAMP if share < 0.9 else UNDER_RAMP  # exact faces bend a little at their end
+            yield "ramp", s, y, surface + over, 0.0, False
             yield "ramp as tried", s, y, surface + ON_RAMP, 0.0, False
             yield "ramp", s, y, surface - UNDER_RAMP, 0.0, True
             yield "ramp as tried", s, y, surface - ON_RAMP, 0.0, True

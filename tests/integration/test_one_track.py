@@ -333,6 +333,11 @@ def test_the_track_twists_in_the_trial_as_it_is_drawn(kinds):
     for made in (strip, plan_of(tooled)):
         own = made.path.bank_at(made.first + s)
         assert np.abs(np.sin(own) - np.sin(tooled.bank_at(s))).max() * track.width < NEAR
+        lean = np.zeros(len(s))
+        for span in groove_spans(made):
+            along = made.first + s
+            lean += np.where((span.begin <= along) & (along <= span.closed), span.lean_at(along), 0.0)
+        assert np.abs(np.sin(lean - tooled.wall_lean_at(s))).max() * every[0].height < NEAR
     tried = {k: np.interp(s, rows[:, 0], rows[:, k]) for k in range(1, 8)}
     bank = strip.path.bank_at(strip.first + s)
     for k, own in ((4, np.sin(bank)), (5, np.cos(bank))):
