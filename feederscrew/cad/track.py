@@ -245,7 +245,7 @@ def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
     for ledge in () if plan.stretch is None else plan.stretch.ledges:
         at, end = plan.first + ledge.begin, plan.first + ledge.end
         lower, aside = ledge.drop.height, ledge.drop.aside
-        ends, legs = [at - half, plan.first + ledge.sunk(0.4 * half)], []
+        ends, legs = [at - half, plan.first + ledge.sunk(0.2 * half)], []
         for leg in _legs(plan, kit, ends, (at, end)):
             s = steps(plan, kit, *leg)
             low = path.height(s) - lower * (s < at)
@@ -253,7 +253,8 @@ def ledges(plan: BowlPlan, kit: ModuleType) -> list[Body]:
             inward[:, 0] = -TRACK_PIECE_OVERLAP_M
             rise = inward * np.tan(path.bank_at(s))[:, None]
             down = ledge.level_at(s[:, None] - plan.first, inward / np.cos(path.bank_at(s))[:, None])
-            high = low[:, None] + lower + np.maximum(down, -lower - 0.8 * half) - LEDGE_SINK_M
+            # held within the plate; a curve through a place that is held there would swing about the ramp
+            high = low[:, None] + lower + np.maximum(down, -lower - 0.95 * half) - LEDGE_SINK_M
             top = np.stack([-inward, high + rise], axis=-1)
             under = np.stack([-inward, low[:, None] - half + rise], axis=-1)[:, [-1, 0]]
             legs.append((np.concatenate([top, under], axis=1), frames(plan, s)))

@@ -143,13 +143,14 @@ def page(study: DesignStudy, build: Built | None = None, papers: Sequence[offer.
     chapters = [Chapter(tuple(_answer(study, d)), tiles, study.warnings, "answer", "The answer")]
     if build is not None and study.delivers:
         chapters += _to_build(study, build, offer.by_name(papers))
-    loop: list[Block] = [
-        Text(
-            "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. "
-            "What goes wrong in it is changed in the next. The velocity is the mean of its parts; that of "
-            "the machine is computed for a point. design_trials.csv has the dimensions of each device."
-        )
-    ]
+    loop_words = (
+        "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. "
+        "What goes wrong in it is changed in the next. The velocity is the mean of its parts; that of "
+        "the machine is computed for a point."
+    )
+    if not study.request.quick:  # which writes no such table
+        loop_words += " design_trials.csv has the dimensions of each device."
+    loop: list[Block] = [Text(loop_words)]
     if study.attempts:
         drawn, alt = png(designs.history_figure(study)), "Each short trial of the loop"
         loop += [Table(designs.short_attempts(study)), Picture("design_history.png", drawn, alt)]

@@ -189,11 +189,11 @@ def limits(study: ToolingStudy, words: str) -> Figure:
         _draw_rule(page, top)
         # share and limits at the left of the row
         write_text(page, 16, top + 24, orientation.name, size=12, weight="bold")
-        balcony = f"{orientation.balcony / MM:.2f} mm" if np.isfinite(orientation.balcony) else "none"
+        narrowed = f"{orientation.balcony / MM:.2f} mm" if np.isfinite(orientation.balcony) else "none"
         for line, (name, value) in enumerate(
             (
                 ("of the parts", f"{100.0 * shares[k]:.3g} %"),
-                ("track at least", balcony),
+                ("narrowed to", narrowed),
                 ("canyon up to", f"{orientation.canyon / MM:.2f} mm"),
                 ("gap up to", f"{orientation.gap / MM:.2f} mm"),
                 ("height", f"{orientation.height / MM:.2f} mm"),

@@ -217,6 +217,7 @@ ORIENTATION_SIZE_COLUMNS: tuple[Column[Orientation], ...] = (
         "balcony_mm",
         lambda orientation: float(orientation.balcony) if np.isfinite(orientation.balcony) else None,
         "mm",
+        heading="narrowed track",  # files keep the word of the theory
     ),
     Column("canyon_mm", lambda orientation: orientation.canyon, "mm"),
     Column("gap_mm", lambda orientation: orientation.gap, "mm"),

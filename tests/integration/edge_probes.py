@@ -49,6 +49,7 @@ def _of_device(tooled, placed):
         Probe(f"{kind} {what}", float(s), float(y), float(level), float(z), solid)
         for what, s, y, level, z, solid in (
             *_openings(placed, width),
+            *_surface(tooled, placed, width),
             *_drops(placed, width),
             *_ramps(placed),
             *_blades(tooled, placed),
@@ -85,6 +86,18 @@ def _area(ring):
     return 0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum()
 
 
+def _surface(tooled, placed, width):
+    """Over and below the surface of the bare track before a device, up to where its features begin."""
+    clear = [ledge.foot for ledge in tooled.ledges if ledge.begin < placed.begin - ASIDE]
+    begin, end = max([placed.start, *clear]), placed.begin
+    holes = shapely.union_all([shapely.Polygon(opening.ring) for _, opening in tooled.openings])
+    for s in (*np.linspace(begin, end, 4)[1:3], end - 6e-4, end - ASIDE):
+        for y in np.array(SHARES) * width:
+            if not holes.contains(shapely.Point(s, y)):
+                for z, solid in ((ASIDE, False), (-ASIDE, True)):
+                    yield "surface", s, y, placed.level, z, solid
+
+
 def _drops(placed, width):
     """To either side of the edge of a step or a ledge, and of the surface below it."""
     drop, begin = placed.drop, placed.begin
@@ -94,6 +107,11 @@ def _drops(placed, width):
     far = begin + (drop.length if is_ledge else 4e-3)
     ways = np.linspace(begin + 1e-3, far - 1e-3, 3)
     across = drop.aside + np.array(SHARES) * (width - drop.aside)
+    if not is_ledge:  # behind its face, close by the wall
+        yield "edge", begin - ASIDE, 3e-4, placed.level - 0.97 * drop.height, 0.0, True
+    for s in ways if is_ledge else ():  # all of it, down to the lower track
+        for y, share in itertools.product(np.array(SHARES) * drop.aside, (0.5, 0.9)):
+            yield "ledge", s, y, placed.level - share * drop.height, 0.0, True
     for y in across:
         yield "edge", begin - ASIDE, y, placed.level, -UNDER, True
         yield "edge", begin + ASIDE, y, placed.level, -UNDER, False
@@ -112,12 +130,15 @@ def _ramps(placed):
         return
     inner = placed.radius - drop.aside
     turn = np.arcsin(drop.height / np.tan(drop.ramp) / inner)
-    for share in (0.2, 0.5, 0.8):
+    for share in (0.2, 0.5, 0.8, 0.95):
         s = placed.begin + drop.length + placed.radius * share * turn
         slope = np.tan(drop.ramp) * np.sin(share * turn)  # of its height over the distance from the axis
         for y in np.array(SHARES) * drop.aside:
             surface = placed.level - slope * (placed.radius - y)
-            yield "ramp", s, y, surface + OVER_RAMP, 0.0, False
+            if surface - UNDER < placed.level - drop.height:  # it is down to the lower track there
+                continue
+            over = OVER_RAMP if share < 0.9 else UNDER_RAMP  # exact faces bend a little at their end
+            yield "ramp", s, y, surface + over, 0.0, False
             yield "ramp as tried", s, y, surface + ON_RAMP, 0.0, False
             yield "ramp", s, y, surface - UNDER_RAMP, 0.0, True
             yield "ramp as tried", s, y, surface - ON_RAMP, 0.0, True
@@ -198,12 +219,12 @@ def gate_in_notch(placed, play, wall):
             for (edge, way), off in itertools.product(edges, (ASIDE, -ASIDE)):
                 s = placed.begin + blade.foot[0] + edge + way * off
                 is_open = (off < 0.0) == (own is bowl)
-                own.append(Probe("notch", s, -0.7 * wall, placed.level, 0.1 * blade.top, not is_open))
+                own.append(Probe("notch", s, -0.9 * wall, placed.level, 0.04 * blade.top, not is_open))
         for own, edge in ((bowl, -play), (gate, 0.0)):
             for off in (ASIDE, -ASIDE):
                 is_open = (off > 0.0) == (own is bowl)
                 s = placed.begin + blade.foot[0] + middle
-                own.append(Probe("notch", s, -0.7 * wall, placed.level, edge + off, not is_open))
+                own.append(Probe("notch", s, -0.9 * wall, placed.level, edge + off, not is_open))
     return bowl, gate
 
 

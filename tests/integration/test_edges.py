@@ -101,7 +101,14 @@ def of_stage(stage):
     return is_solid
 
 
-TRIED = ("opening", "edge", "lower track", "ledge", "blade")  # plates; walls and bores are numbers there
+TRIED = (
+    "opening",
+    "surface",
+    "edge",
+    "lower track",
+    "ledge",
+    "blade",
+)  # plates; walls and bores are numbers there
 MADE = (*TRIED, "ramp", "bore", "wall")
 
 
@@ -190,8 +197,13 @@ def test_ramps_on_a_slope_in_the_trial_and_in_its_queue():
             found += [("queue", probe)] * (crowd(lies) != probe.solid)
             lies = edges.on_ramp(tooled, placed, probe, 0.0, edges.in_trial)
             found += [("alone", probe)] * (alone[number](lies) != probe.solid)
+        for off in (4e-4, -4e-4) if placed.drop is not None else ():  # its side, where it begins to come down
+            s, y = placed.begin + placed.drop.length + 1e-3, placed.drop.aside + off
+            probe = edges.Probe("ramp beside", s, y, placed.level - 1e-3, 0.0, off < 0.0)
+            lies = edges.on_ramp(tooled, placed, probe, placed.begin, edges.in_queue)
+            found += [("queue", probe)] * (crowd(lies) != probe.solid)
     assert not found
-    assert seen == 36
+    assert seen > 40
 
 
 def test_jets_of_any_direction_and_slopes_at_any_place():

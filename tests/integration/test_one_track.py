@@ -138,11 +138,16 @@ def drawn(seed, radius):
     return track, every, chain, lay_out(track, chain, every)
 
 
-def bowl_of(tooled, every):
-    """The bowl of a tooled track and its unrolled stretch."""
+def plan_of(tooled):
+    """The measures of the bowl of a tooled track."""
     size = SimpleNamespace(diameter=2.0 * tooled.track.radius, depth=0.07)
     options, extents = SolidOptions(chord=1e-5), np.array(SIZE) * MM
-    made = body(plan(size, tooled.track, material("steel", RULES), tooled, options, extents=extents))
+    return plan(size, tooled.track, material("steel", RULES), tooled, options, extents=extents)
+
+
+def bowl_of(tooled, every):
+    """The bowl of a tooled track and its unrolled stretch."""
+    made = body(plan_of(tooled))
     return made.plan, views.unrolled(made)
 
 
@@ -342,6 +347,14 @@ def test_the_track_twists_in_the_trial_as_it_is_drawn(kinds):
     stage = queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1).stage
     rows = staging.tabulate_leans(stage.air.slopes, track.climb, track.bank, stage.size, 1.0)
     strip, s = printed.section_plan(tooled), np.linspace(0.0, tooled.length, 400)
+    for made in (strip, plan_of(tooled)):
+        own = made.path.bank_at(made.first + s)
+        assert np.abs(np.sin(own) - np.sin(tooled.bank_at(s))).max() * track.width < NEAR
+        lean = np.zeros(len(s))
+        for span in groove_spans(made):
+            along = made.first + s
+            lean += np.where((span.begin <= along) & (along <= span.closed), span.lean_at(along), 0.0)
+        assert np.abs(np.sin(lean - tooled.wall_lean_at(s))).max() * every[0].height < NEAR
     tried = {k: np.interp(s, rows[:, 0], rows[:, k]) for k in range(1, 8)}
     bank = strip.path.bank_at(strip.first + s)
     for k, own in ((4, np.sin(bank)), (5, np.cos(bank))):
