@@ -249,9 +249,18 @@ def note_standing(search: Search, candidate: Candidate, rows: Iterable[int]) -> 
         return
     if candidate.proposal.hangs:
         search.state.stood.append((candidate, stands))
+    _note_at_blade(search, candidate, stands)
+
+
+def _note_at_blade(search: Search, candidate: Candidate, stands: Sequence[int]) -> None:
+    """Keep a chain with a blade that has a face and no air, and all that stood at it, on whatever drive."""
     blade = assisting.blade_of(candidate.proposal)
-    if stands and blade is not None and blade.air is None:
-        search.state.stood_at_blade.append((candidate, stands))
+    if not stands or blade is None or blade.air is not None or not candidate.attempt.efficiency > 0.0:
+        return
+    kept, chain = search.state.stood_at_blade, candidate.proposal.chain
+    before = [row for other, rows in kept if other.proposal.chain == chain for row in rows]
+    kept[:] = [item for item in kept if item[0].proposal.chain != chain]
+    kept.append((candidate, tuple(dict.fromkeys((*before, *stands)))))
 
 
 def _rails_by_trials(search: Search, idea: _Idea, cost_class: int) -> Iterator[Candidate]:
@@ -720,6 +729,7 @@ def _try_rails(search: Search, track: TrackAtBank, rails: hanging.RailsSearch) -
                 return
         else:
             state.failures.append(candidate)
+            _note_at_blade(search, candidate, _rows_that_stay(candidate))
         if best is None or hanging.score(candidate.trial) > hanging.score(best.trial):
             state.reach += best is not None  # what gets better leaves no other chain out
             best, drive = candidate, own_drive

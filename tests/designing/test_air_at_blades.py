@@ -152,6 +152,7 @@ def test_the_class_of_air_tries_the_most_promising_chains_first(monkeypatch, cha
     for number, one in enumerate(others):  # the fourth lets nothing leave
         exploring.note_standing(search, candidate_of(one, 0.3 * (number != 3)), chain.stands)
     exploring.note_standing(search, candidate_of(others[1]), chain.trial.wanted)  # only what hangs
+    exploring.note_standing(search, candidate_of(others[1]), chain.stands[:1])  # once more, in a queue
     left_out = replace(search, request=replace(search.request, without=("air jet",)))
     assert not list(exploring.candidates(left_out, 2)) and not tried and not blown
     found = list(exploring.candidates(search, 2))
@@ -159,6 +160,7 @@ def test_the_class_of_air_tries_the_most_promising_chains_first(monkeypatch, cha
     assert len(tried) == SearchPolicy().assisted * count and len(found) == clean * len(tried)
     assert [one.before[0].limit for one in tried] == [2e-3] * count + [3e-3] * count
     assert len(search.state.failures) == (not clean) * len(tried)
+    assert [len(rows) for _, rows in search.state.stood_at_blade] == [len(chain.stands)] * 3
     # then a jet before the rails of each of steel; where air alone was not enough, of the best with it
     with_air = [proposal for proposal, _ in blown if assisting.blade_of(proposal).air is not None]
     assert with_air == ([tried[0], tried[count]] if shows == "better" else [])
