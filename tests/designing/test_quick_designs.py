@@ -45,7 +45,7 @@ def test_a_quick_look_ends_with_a_clean_chain_and_runs_no_draw_and_no_queue(monk
 
 
 def test_a_quick_look_gives_no_head_all_of_its_trials(monkeypatch):
-    """Of a bushing all eight went to rails; of a bolt six, two of them at livelier drives, and none was clean."""
+    """Of a bushing all eight went to rails; of a bolt six, two of them livelier, and none was clean."""
     asked, classes = [], []
 
     def candidates(search, cost_class):
