@@ -30,8 +30,8 @@ def first_chain(search: Search) -> Candidate | None:
     """
     state = search.state
     # few trials: each side has one first
-    few = {"rails_trials": QUICK_RAILS, "rails_given_up": QUICK_RAILS, "livelier_trials": 0}
-    policy = replace(search.policy, tries_before_others=1, **few)
+    policy = replace(search.policy, tries_before_others=1, livelier_trials=0)
+    policy = replace(policy, rails_trials=QUICK_RAILS, rails_given_up=QUICK_RAILS)
     limited = replace(search, request=replace(search.request, budget=QUICK_TRIALS), policy=policy)
     for cost_class in proposals.COST_CLASSES:
         state.proposals_left = QUICK_PROPOSALS
