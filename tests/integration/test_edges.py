@@ -335,6 +335,19 @@ def test_edges_of_the_drawings(case, name):
             assert np.abs(line.min(axis=0) - foot).max() < NEAR
             if placed.drop.aside > 0.0:
                 assert abs(line[:, 0].max() - placed.begin - placed.drop.length) < NEAR
+    for placed in tooled.devices:
+        own = placed.features
+        for slope in own.slopes:
+            begins = [ring[:, 0].min() for ring in rings["SLOPE"]]
+            assert np.abs(np.array(begins) - placed.begin - slope.begin).min() < NEAR
+        if own.sensor is not None:
+            ends = [(ring[:, 0].min(), ring[:, 0].max()) for ring in rings["SENSOR"]]
+            assert np.abs(np.array(ends) - [placed.start, placed.end]).max(axis=1).min() < NEAR
+        for jet in own.jets if own.sensor is None else ():  # its beam grows towards the free edge
+            middle, wide = placed.begin + jet.at[0], jet.radius + jet.spread * tooled.width
+            beam = [(-jet.radius, 0.0), (jet.radius, 0.0), (wide, tooled.width), (-wide, tooled.width)]
+            gaps = [np.abs(ring - beam - [middle, 0.0]).max() for ring in rings["NOZZLE"]]
+            assert min(gaps) < NEAR
     blades = [ring for placed in tooled.devices for ring in placed.footprints]
     for ring, drawn in itertools.zip_longest(blades, rings.get("GATE", [])):
         assert np.hypot(*(ring[:, None] - drawn).transpose(2, 0, 1)).min(axis=1).max() < NEAR
