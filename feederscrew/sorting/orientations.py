@@ -20,6 +20,7 @@ from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.polygons import convex, cross, outline, sides, turned
 from feederscrew.base.signatures import Keywords
 from feederscrew.base.units import GRAVITY
+from feederscrew.bowl.devices.ledges import NarrowedTrack
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.motion import conveying as answer
 from feederscrew.motion import sameness
@@ -217,7 +218,7 @@ ORIENTATION_SIZE_COLUMNS: tuple[Column[Orientation], ...] = (
         "balcony_mm",
         lambda orientation: float(orientation.balcony) if np.isfinite(orientation.balcony) else None,
         "mm",
-        heading="narrowed track",  # files keep the word of the theory
+        heading=NarrowedTrack.kind,  # files keep the word of the theory
     ),
     Column("canyon_mm", lambda orientation: orientation.canyon, "mm"),
     Column("gap_mm", lambda orientation: orientation.gap, "mm"),

@@ -36,7 +36,8 @@ def functions():
             lines = source.split("\n")
             name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
             for node in ast.parse(source).body:
-                if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+                is_overload = "overload" in map(ast.unparse, getattr(node, "decorator_list", ()))
+                if isinstance(node, ast.FunctionDef) and not node.name.startswith("_") and not is_overload:
                     yield f"{name}.{node.name}", node, "\n".join(lines[node.lineno - 1 : node.end_lineno])
 
 

@@ -242,6 +242,10 @@ def shares_taken(
 ) -> tuple[float, float, float]:
     """Return the shares of a jet's thrust that a part takes, in axes in which the jet blows along y.
 
+    A jet without friction leaves a facet along it: what of its momentum is square to the facet stays. So each
+    of ``RAYS`` equal rays gives the first facet that it meets (d . n) n of its share, d its direction and n
+    the facet's normal. A facet that leans by a from upright takes cos^2 a outwards, sin a cos a down or up.
+
     Parameters
     ----------
     posture : Posture
@@ -258,6 +262,10 @@ def shares_taken(
     -------
     out, down, right : float [1]
         Along the jet, onto the track, and to the jet's right.
+
+    References
+    ----------
+    Momentum of a jet on an inclined plate: F. M. White, "Fluid Mechanics", 8th ed., 2016, sec. 3.4.
     """
     points, faces = posture.surface, posture.facets
     plan = turned(points[:, :2], heading) + place
