@@ -134,9 +134,12 @@ class StageBar:
             'trial', 'queue' or another name.
         done, total : int
             Of that stage.
-        gone, rest : float [s]
+        gone : float [s]
             Of the whole run.
+        rest : float [s]
+            Of it to go if the design that is tried, or proved, holds; nobody knows whether it does.
         """
+        case = "" if stage == "long proof" else " if it holds"
         text = f"{stage}: {done} of {total}"
         if stage == "queue":
             text = f"queue: {100.0 * done / max(total, 1):.0f} %"
@@ -149,11 +152,11 @@ class StageBar:
         if self.terminal:
             full = round(self.WIDTH * gone / max(gone + rest, 1e-9))
             bar = "#" * full + "-" * (self.WIDTH - full)
-            _write(f"\r\033[K{text}  [{bar}]  {_time(gone)} gone, about {_time(rest)} to go")
+            _write(f"\r\033[K{text}  [{bar}]  {_time(gone)} gone, about {_time(rest)} to go{case}")
             self.is_drawn = True
         elif self.lines and time.monotonic() - self.last_line >= LINE_EVERY_S:
             self.last_line = time.monotonic()
-            _write(f"{text} after {gone:.0f} s, about {rest:.0f} s to go\n")
+            _write(f"{text} after {gone:.0f} s, about {rest:.0f} s to go{case}\n")
 
     def clear(self) -> None:
         """Take the bar away, so that a line can be printed; a line there is as good as one of its own."""

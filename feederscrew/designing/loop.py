@@ -89,7 +89,7 @@ def design(
         Called before anything is compiled, and before the first trial is told.
     progress : callable, optional
         Called with what is done ('trial', 'draws', 'queue'), how many of how many, the seconds gone and a
-        guess of those to go.
+        guess of those to go if what is tried holds.
     with_nearest : bool, optional
         Whether the nearest that holds is looked for where the design does not.
 

@@ -34,10 +34,8 @@ USUAL_S = {
 }
 # [1] of a stage that is done, from which its own pace is what counts: the fill that is followed first is the
 # slowest by far, so that queues show theirs late
-OWN_PACE_SHARE = {SearchStage.DRAWS: 0.1, SearchStage.QUEUE: 0.5, SearchStage.LONG_PROOF: 0.0}
-# [1] of the time gone, that a search goes on at least: chosen of 0, 0.3, 0.5, 0.7 and 1 on the designs of
-# tests/data/design_times.csv
-GOES_ON_SHARE = 0.7
+OWN_PACE_SHARE = {SearchStage.DRAWS: 0.1, SearchStage.QUEUE: 0.1, SearchStage.LONG_PROOF: 0.0}
+WRITING_S = 8.0  # [s] of a machine of usual speed, from the last queue to the last file
 LONGER_SHARE = 0.25  # [1] of the time gone, that a stage which takes longer than usual goes on
 
 
@@ -62,8 +60,8 @@ class Clock:
         self.stage: SearchStage | None = None
         self.done, self.total, self.counts = 0, 0, True
         self.found = 0  # done before the stage began: runs that were kept
-        self.proofs = 0  # that were begun: all but the last of them denied their designs
         self.durations: dict[SearchStage, tuple[float, int]] = {}  # of each stage seconds, and how many
+        self.queued, self.queue_total = 0, 0  # part-seconds of all queues; of a whole one as it looks by now
 
     @property
     def seconds(self) -> float:
@@ -82,13 +80,14 @@ class Clock:
         self.end()
         self.stage, self.done, self.total, self.counts = stage, 0, 1, counts
         self.found, self.since = 0, time.monotonic()
-        self.proofs += stage is SearchStage.DRAWS
 
     def end(self) -> None:
         """End the stage that runs, and note how long it took, however far it came."""
         if self.stage is not None and self.counts and (self.stage is SearchStage.TRIAL or self.done > 0):
             seconds, number = self.durations.get(self.stage, (0.0, 0))
             self.durations[self.stage] = seconds + time.monotonic() - self.since, number + 1
+            if self.stage is SearchStage.QUEUE:
+                self.queued, self.queue_total = self.queued + self.done - self.found, self.total
         self.stage = None
 
     def reach(self, stage: SearchStage, done: int, total: int) -> bool:
@@ -116,6 +115,8 @@ class Clock:
     def each(self, stage: SearchStage) -> float:
         """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine.
 
+        Queues that were denied ended early: the next one counts to its end, at their pace.
+
         Parameters
         ----------
         stage : SearchStage
@@ -126,11 +127,17 @@ class Clock:
         """
         if stage in self.durations:
             seconds, number = self.durations[stage]
-            return seconds / number
+            is_paced = stage is SearchStage.QUEUE and self.queued > 0
+            return seconds * self.queue_total / self.queued if is_paced else seconds / number
+        return USUAL_S[stage] * self.slowness
+
+    @property
+    def slowness(self) -> float:
+        """How many times [1] as long as usual the stages took that are done."""
         # one quick trial is no fast machine
         seconds = USUAL_SLOWNESS_S + sum(duration for duration, _ in self.durations.values())
         usual = USUAL_SLOWNESS_S + sum(number * USUAL_S[name] for name, (_, number) in self.durations.items())
-        return USUAL_S[stage] * seconds / usual
+        return seconds / usual
 
     def rest_of_stage(self, stage: SearchStage) -> float:
         """Return a guess of the seconds to go of a stage that runs: at its own pace as soon as it has one.
@@ -151,11 +158,10 @@ class Clock:
         return max(self.each(stage) - gone, LONGER_SHARE * gone)
 
     def rest(self, trials: int, limit: int) -> float:
-        """Return a guess of the seconds to go: as if a usual number of trials led to one proof.
+        """Return a guess of the seconds to go if the design that is proved, or that is proved next, holds.
 
-        Where a proof has denied a design, the next may be denied as well: one more round of trials and proof,
-        as long as those before, is counted. Whether a proof denies is not known beforehand, so that no search
-        is guessed to end soon: ``GOES_ON_SHARE`` of the time gone is the least.
+        Whether it does is not known beforehand. Where it does not, trials and a proof follow that may take as
+        long again. So the guess is of this case, and texts say so: 'if it holds'.
 
         Parameters
         ----------
@@ -168,18 +174,14 @@ class Clock:
         """
         if self.stage is SearchStage.LONG_PROOF:
             return self.rest_of_stage(SearchStage.LONG_PROOF)
+        rest = WRITING_S * self.slowness
         if self.stage is SearchStage.QUEUE:
-            rest = self.rest_of_stage(SearchStage.QUEUE)
-        elif self.stage is SearchStage.DRAWS:
-            rest = self.rest_of_stage(SearchStage.DRAWS) + self.each(SearchStage.QUEUE)
-        else:
-            left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
-            rest = left * self.each(SearchStage.TRIAL)
-            rest += self.each(SearchStage.DRAWS) + self.each(SearchStage.QUEUE)
-        is_proving = self.stage in (SearchStage.DRAWS, SearchStage.QUEUE)
-        denied = self.proofs - is_proving
-        rest += self.seconds / (denied + 1) if denied > 0 else 0.0
-        return max(rest, GOES_ON_SHARE * self.seconds)
+            return rest + self.rest_of_stage(SearchStage.QUEUE)
+        rest += self.each(SearchStage.QUEUE)
+        if self.stage is SearchStage.DRAWS:
+            return rest + self.rest_of_stage(SearchStage.DRAWS)
+        left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
+        return rest + self.each(SearchStage.DRAWS) + left * self.each(SearchStage.TRIAL)
 
 
 @dataclass(eq=False)
@@ -246,4 +248,4 @@ class SearchProgress:
             return text
         rest = self._rest(budget)  # on steps of 10 s above 20 s
         rest = max(round(rest / 10.0) * 10.0, 10.0) if rest > 20.0 else max(rest, 1.0)
-        return f"{text}; {self.clock.seconds:.0f} s gone, about {rest:.0f} s to go"
+        return f"{text}; {self.clock.seconds:.0f} s gone, about {rest:.0f} s to go if it holds"

@@ -641,6 +641,6 @@ def test_the_bar_shows_stage_and_time_and_a_click_turns_and_chooses(tmp_path):
         page.evaluate(AT.format("order") + ".requestSubmit()")
         page.until(f"!{AT.format('bar')}.hidden && {AT.format('bar')}.value === 0.25")
         stage = page.evaluate(AT.format("stage") + ".textContent")
-        assert stage == "trial 2 of 16, 30 s gone, about 90 s to go"
+        assert stage == "trial 2 of 16, 30 s gone, about 90 s to go if it holds"
         page.press("Enter")  # Stop has the focus
         page.until(f"{AT.format('state')}.textContent === 'stopped' && {AT.format('bar')}.hidden")
