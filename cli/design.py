@@ -59,7 +59,7 @@ REQUEST = (  # what shall leave, and what may be used
         "--trials budget",
         1,
         1000,
-        "Short trials of the search, at most.",
+        "Short trials of the search, at most; those of air for what stands at steel come on top.",
         default=16,
         former=("--budget",),
     ),

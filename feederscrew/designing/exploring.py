@@ -176,7 +176,7 @@ def _assisted(search: Search) -> Iterator[Candidate]:
         for changed in assisting.assist(candidate.proposal, candidate.trial, stands, lying):
             if chain_key(candidate.bowl.track, changed, lying) in state.chains:
                 continue
-            state.reach += 1  # no other chain is left out for it
+            search.leave_no_other_out()
             if search.is_spent:
                 return
             tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))
@@ -221,7 +221,7 @@ def _try_jet_before(search: Search, candidate: Candidate, stands: Sequence[int])
     changed = hanging.blow_off(candidate.proposal, candidate.trial, stands, lying)
     if changed is None or chain_key(candidate.bowl.track, changed, lying) in state.chains:
         return
-    state.reach += 1  # no other chain is left out for it
+    search.leave_no_other_out()
     if search.is_spent:
         return
     tried = _screen(search, try_again(search, candidate, changed, candidate.bowl))

@@ -370,6 +370,8 @@ def _try_mends(
     known = {other.proposal.chain for other in proved if other.bowl.drive == candidate.bowl.drive}
     fresh = (mended for mended in mends if mended.chain not in known)
     for mended in itertools.islice(fresh, most):
+        if mended.cost_class == proposals.AIR:
+            search.leave_no_other_out()
         if search.is_spent:
             return
         yield exploring.try_again(search, candidate, mended, candidate.bowl)

@@ -72,6 +72,7 @@ class SearchState:
     start: int = 0  # trials that were made before this search began
     reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
     most_trials: float = np.inf  # short trials that are worth it
+    beyond: int = 0  # trials of air for what stood at steel, which come on top of those that are allowed
     cost_class: int = 1  # that is searched
     tried: Counter[str] = field(default_factory=Counter)  # short trials of this search, by orientation
     looked_at: set[str] = field(default_factory=set)  # orientations that had their turn before the others
@@ -197,13 +198,20 @@ class Search:
     @property
     def limit(self) -> int:
         """Short trials at most."""
-        return int(self.state.nearest_limit or min(self.request.budget, self.state.most_trials))
+        most = min(self.request.budget, self.state.most_trials) + self.state.beyond
+        return int(self.state.nearest_limit or most)
 
     @property
     def is_spent(self) -> bool:
         """Tell whether the budget of trials is used up."""
         state = self.state
-        return len(state.attempts) >= min(self.request.budget, state.most_trials, state.reach)
+        most = min(self.request.budget, state.most_trials) + state.beyond
+        return len(state.attempts) >= min(most, state.reach)
+
+    def leave_no_other_out(self) -> None:
+        """Allow one more trial, for air where parts stood at steel: no other chain is left out for it."""
+        self.state.beyond += 1
+        self.state.reach += 1
 
     @property
     def arrivals(self) -> Shares:

@@ -181,7 +181,7 @@ def test_what_an_impure_queue_lets_through_meets_one_device_after_the_other(
     seen, calm = [], []
 
     def chain(name):
-        return SimpleNamespace(chain=name)
+        return SimpleNamespace(chain=name, cost_class=3)
 
     def outcome(name):
         own = SimpleNamespace(loses_wanted=name in losing)
@@ -210,3 +210,15 @@ def test_what_an_impure_queue_lets_through_meets_one_device_after_the_other(
     changed = loop._change_by_proof(search, impure, candidate, proved)
     assert seen == tried and calm == calmed
     assert (changed is None) == (not clean) and (not clean or changed.attempt.clean)
+
+
+@pytest.mark.parametrize(("cost_class", "count"), [(1, 0), (2, 2), (3, 0)])
+def test_air_for_what_stands_comes_on_top_of_the_trials_that_are_allowed(monkeypatch, cost_class, count):
+    """Of an eyelet it took the trials of the class of sensors, whose second camera was then never tried."""
+    search = Search.begin(PART, DesignRequest(0.5, budget=1), BOWL)
+    search.state.attempts.append(None)
+    search.state.reach = 1
+    monkeypatch.setattr(exploring, "try_again", lambda search, *_: search.state.attempts.append(None))
+    mends = [SimpleNamespace(chain=name, cost_class=cost_class) for name in "ab"]
+    list(loop._try_mends(search, SimpleNamespace(bowl=BOWL), mends, (), 3))
+    assert len(search.state.attempts) == 1 + count and search.is_spent and search.limit == 1 + count

@@ -398,7 +398,9 @@ def test_a_chain_is_proved_once_at_a_drive_and_a_few_are(monkeypatch, mended, pr
     """A nut's queue jammed at one width of the track, then at another: each asks for the other again."""
     first, _ = candidates_of(BOWL, BOWL.drive)
     own = vars(first.proposal)
-    chains = {name: SimpleNamespace(**own | {"chain": (name,), "name": name}) for name in "ABCDE"}
+    chains = {
+        name: SimpleNamespace(**own | {"chain": (name,), "name": name, "cost_class": 1}) for name in "ABCDE"
+    }
 
     def made(name, stroke):
         bowl = replace(BOWL, drive=replace(BOWL.drive, amplitude=stroke * BOWL.drive.amplitude))
