@@ -81,7 +81,7 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
             continue
         share = search.policy.budget_shares[proposals.COST_CLASSES.index(number)]
         state.cost_class = number
-        state.reach = state.start + math.ceil(share * (search.request.budget - state.start))
+        state.reach = state.start + math.ceil(share * (search.request.budget - state.start)) + state.beyond
         tracks = _tracks(search)
         for candidate in [other for other in state.waiting if other.attempt.cost_class == number]:
             state.waiting.remove(candidate)

@@ -222,3 +222,7 @@ def test_air_for_what_stands_comes_on_top_of_the_trials_that_are_allowed(monkeyp
     mends = [SimpleNamespace(chain=name, cost_class=cost_class) for name in "ab"]
     list(loop._try_mends(search, SimpleNamespace(bowl=BOWL), mends, (), 3))
     assert len(search.state.attempts) == 1 + count and search.is_spent and search.limit == 1 + count
+    # the class of sensors keeps what was its own
+    monkeypatch.setattr(exploring, "_tracks", lambda _: [])
+    list(exploring.candidates(replace(search, request=replace(search.request, budget=4)), 3))
+    assert search.state.reach == 4 + count
