@@ -89,7 +89,10 @@ def run_again(folders: list[str], keep: str) -> None:
 def line_of(result: dict, part: str, target: str, more: str, seconds: float) -> dict[str, str]:
     """Return the line of a part from what `feeder design` printed, which took some CPU seconds."""
     chain = (f"{device['device']} {device['value']}".strip() for device in result["chain"])
-    held = [row["class"] for row in result["alternatives"] if row["status"] == result["status"]]
+    names = [f"{device['device']}: {device['value']}" for device in result["chain"]]
+    # what is nearest may be of no class that is listed: then the cheapest of its status
+    same = [row["class"] for row in result["alternatives"] if row["chain"] == names]
+    held = same or [row["class"] for row in result["alternatives"] if row["status"] == result["status"]]
     return {
         "part": part,
         "asked": target,
