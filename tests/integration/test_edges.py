@@ -344,9 +344,14 @@ def test_edges_of_the_drawings(case, name):
             ends = [(ring[:, 0].min(), ring[:, 0].max()) for ring in rings["SENSOR"]]
             assert np.abs(np.array(ends) - [placed.start, placed.end]).max(axis=1).min() < NEAR
         for jet in own.jets if own.sensor is None else ():  # its beam grows towards the free edge
-            middle, wide = placed.begin + jet.at[0], jet.radius + jet.spread * tooled.width
-            beam = [(-jet.radius, 0.0), (jet.radius, 0.0), (wide, tooled.width), (-wide, tooled.width)]
-            gaps = [np.abs(ring - beam - [middle, 0.0]).max() for ring in rings["NOZZLE"]]
+            # square to the wall, or askew along a blade's face: in the plane of complex numbers
+            x, y, _ = jet.towards
+            axis, way = complex(x, y), tooled.width / y
+            mouth = placed.begin + jet.at[0] - jet.at[1] * x / y
+            near, far = jet.radius, jet.radius + jet.spread * way
+            beam = [mouth + 1j * near * axis, mouth - 1j * near * axis]
+            beam += [mouth + (way - 1j * far) * axis, mouth + (way + 1j * far) * axis]
+            gaps = [np.abs(ring[:, 0] + 1j * ring[:, 1] - beam).max() for ring in rings["NOZZLE"]]
             assert min(gaps) < NEAR
     blades = [ring for placed in tooled.devices for ring in placed.footprints]
     for ring, drawn in itertools.zip_longest(blades, rings.get("GATE", [])):
