@@ -56,7 +56,7 @@ ASSIST = Basis(
 DENIED = Basis(
     ("tnut_m5", "cap_14x10", "lbracket_30x20x15"),
     "558 s and 384 s of processor time until the first two fell short, four fifths of it in the queues of "
-    "nine and seven designs; the bracket holds by its third chain with a sensor",
+    "nine and seven designs; what is tried before two cameras of the bracket comes after 600 s",
 )
 SIDES = Basis(
     (),
