@@ -27,7 +27,7 @@ from feederscrew.sorting.verdicts import DeviceEncounter
 # on an eyelet, at whose wiper 6 of 10 on their side stand without air, and none at 6 of these
 PUSHES = (3.0, 6.0, 1.5)
 HEIGHTS = 8  # of the nozzle, from the blade's edge to the top of what stands
-HEIGHT_DECIMALS = 4  # [m] to which a height is rounded
+HEIGHT_DECIMALS = 4  # of a height in metres: it is rounded to 0.1 mm
 STRONGER = 2.0  # times the pressure, where a queue shows that parts still stand
 
 

@@ -12,7 +12,7 @@ from on_track import device, lying, read
 from feederscrew import bowl as bowls
 from feederscrew.base.errors import FeederError
 from feederscrew.bowl.devices import pneumatics
-from feederscrew.bowl.devices.air_assist import ASIDE_RAD, AirAssist
+from feederscrew.bowl.devices.air_assist import ASIDE_RAD, AirAssist, FaceForce
 from feederscrew.bowl.devices.base import UNSURE
 from feederscrew.bowl.devices.kinds import CostClass
 from feederscrew.sorting import falling
@@ -74,7 +74,7 @@ def test_the_jet_pushes_square_to_the_side_that_it_meets(degrees):
 
 
 @pytest.mark.parametrize("degrees", [62.0, 70.0, 80.0])
-def test_air_takes_off_what_friction_holds_at_a_steeper_face(degrees):
+def test_air_takes_off_what_friction_holds_at_a_steeper_face(monkeypatch, degrees):
     """T sin(aim) (sin a + 2 mu cos a) = 2 mu W (mu sin a - cos a) is twice what it takes, by hand."""
     one, a = block_along(), math.radians(degrees)
     weight, needed = one.posture.mass * GRAVITY, GRIP * math.sin(a) - math.cos(a)
@@ -84,6 +84,10 @@ def test_air_takes_off_what_friction_holds_at_a_steeper_face(degrees):
     assert wiper(degrees).fate(meets) == "stopped"
     assert wiper(degrees, air_of(0.97 * enough)).fate(meets) == "stopped"
     assert wiper(degrees, air_of(1.03 * enough)).fate(meets) == "returned"
+    # air that pushes it back takes off nothing, though it presses it off the face
+    monkeypatch.setattr(AirAssist, "at_face", lambda *_: [FaceForce(-0.1 * weight, 2.0 * weight, 0.0)])
+    assert wiper(degrees, air_of(1.03 * enough)).fate(meets) == "stopped"
+    monkeypatch.undo()
     # above the part it blows at nothing
     assert wiper(degrees, air_of(10.0 * enough, height=25e-3)).fate(meets) == "stopped"
 

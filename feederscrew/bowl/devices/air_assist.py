@@ -1,8 +1,9 @@
 """Air assist: a steady nozzle in the wall at a blade's foot, which blows along the blade's face.
 
-The nozzle is in the wall where the face begins. Its jet widens by 11 deg to either side, and is aimed so
-that its side runs along the face: none of it meets the blade. It pushes what stands there along the face,
-over the free edge.
+Axes: x along the wall with the travel, y from the wall to the free edge, z up. The blade's face begins at the
+wall, its foot, and makes an angle a with x, above 0 and below 90 deg; parts come from -x. The nozzle is in
+the wall there. Its jet widens by 11 deg to either side (``SPREAD``), and is aimed so that its side runs along
+the face: no ray meets the blade. It pushes a part that the blade holds up along the face, over the free edge.
 
 Source: the thrust and the jet of `pneumatics`, Coulomb's friction; docs/tooling.md, "Air assist".
 """
@@ -37,17 +38,17 @@ FORM = forms.mapping(
     nozzle=forms.LENGTH_FORM, pressure=forms.quantity("pressure"), height=forms.LENGTH_FORM
 )  # of its value in a bowl file
 EXAMPLE = "{nozzle: 2 mm, pressure: 0.3 bar, height: 8 mm}"
-ASIDE_RAD = math.atan(SPREAD)  # [rad] of its axis to the face
-FACE_PLACES = 7  # along a face at which a part is blown at
-PASSING_PLACES = 13  # along the track at which one that passes below the blade is
+ASIDE_RAD = math.atan(SPREAD)  # [rad] between the jet's axis and the face
+FACE_PLACES = 7  # along the face, at which the force on a part that stands there is taken
+PASSING_PLACES = 13  # along the track, at which that on a part that passes below the blade is taken
 
 
 class FaceForce(NamedTuple):
     """Force of the air on a part [N]."""
 
-    along: float  # the face, towards the free edge
-    off: float  # the face, square to it
-    down: float  # onto the track
+    along: float  # along the face, positive towards the free edge
+    off: float  # square to the face, positive away from it
+    down: float  # positive onto the track
 
 
 class AirAssist(NamedTuple):
@@ -109,17 +110,17 @@ class AirAssist(NamedTuple):
         return Jet(mouth, towards, 0.5 * self.nozzle, SPREAD, self.thrust, JET_REACH_M)
 
     def _mouth(self, heading: float) -> tuple[float, float]:
-        """The middle of its mouth from the face's foot [m]: deep enough that none stands out of the wall."""
+        """Middle of its mouth from the face's foot, x and y [m]: set back until its rim is flush."""
         aim, radius = heading + ASIDE_RAD, 0.5 * self.nozzle
-        deep = radius * abs(math.cos(aim)) / math.sin(aim)
-        before = (radius * math.cos(ASIDE_RAD) + deep * math.sin(ASIDE_RAD)) / math.sin(heading)
-        return -before - deep * math.cos(aim), -deep * math.sin(aim)
+        setback = radius * abs(math.cos(aim)) / math.sin(aim)  # along its axis
+        before = (radius * math.cos(ASIDE_RAD) + setback * math.sin(ASIDE_RAD)) / math.sin(heading)
+        return -before - setback * math.cos(aim), -setback * math.sin(aim)
 
     def forces(self, orientation: LyingPart, heading: float, places: Sequence[tuple[float, float]]) -> Floats:
-        """Return the forces on an orientation with its weight at places beside a face.
+        """Return the forces on an orientation with its centre of mass at places beside a face.
 
-        Each of the jet's 24 rays is followed to the first facet that it meets, and gives it what of its
-        share of the thrust goes into it.
+        Each of the jet's rays gives the first facet that it meets what of its momentum is square to that
+        facet: ``pneumatics.shares_taken``.
 
         Parameters
         ----------
@@ -127,14 +128,14 @@ class AirAssist(NamedTuple):
         heading : float [rad]
             Of the face to the direction of travel.
         places : sequence of (float, float) [m]
-            From the face's foot: along the wall, and from it.
+            Of the centre of mass from the face's foot: x and y.
 
         Returns
         -------
         (N, 3) float [N]
             Rows as ``FaceForce``.
         """
-        aim, c, s = heading + ASIDE_RAD, math.cos(ASIDE_RAD), math.sin(ASIDE_RAD)
+        aim, cos_aside, sin_aside = heading + ASIDE_RAD, math.cos(ASIDE_RAD), math.sin(ASIDE_RAD)
         turn = 0.5 * math.pi - aim  # into axes in which the jet blows along y
         mouth = self._mouth(heading)
         rows = []
@@ -148,13 +149,14 @@ class AirAssist(NamedTuple):
                 self.height,
             )
             out, down, right = share
-            rows.append((out * c + right * s, out * s - right * c, down))
+            along, off = out * cos_aside + right * sin_aside, out * sin_aside - right * cos_aside
+            rows.append((along, off, down))
         return self.thrust * np.array(rows).reshape(-1, 3)
 
     def at_face(self, orientation: LyingPart, heading: float, clearance: float) -> list[FaceForce]:
         """Return the forces on an orientation that stands at a blade, from the wall to the free edge.
 
-        It comes along the wall, as it lies, until what of it is higher than the blade's edge meets the face.
+        It comes along the wall, as it lies, until a corner of it above the blade's edge meets the face.
 
         Parameters
         ----------
@@ -167,7 +169,7 @@ class AirAssist(NamedTuple):
         Returns
         -------
         list of FaceForce
-            At ``FACE_PLACES`` along the face; none on one that is not as high.
+            At ``FACE_PLACES`` along the face; empty where no corner of it is above the edge.
         """
         surface, c, s = orientation.posture.surface, math.cos(heading), math.sin(heading)
         high = turned(surface[surface[:, 2] > clearance, :2], orientation.heading)
@@ -182,15 +184,17 @@ class AirAssist(NamedTuple):
     def clears(self, encounter: Encounter, heading: float, friction: float, clearance: float) -> bool:
         """Tell whether an orientation that stands at a blade surely slides along its face with this air.
 
-        The track drags a part that stands by D = mu N along the wall, N its weight and what the air presses
-        it down. The face at the angle a pushes back with R = D sin a - Fn, where Fn is the air's force off
-        the face, and holds with mu_f R at most. So it slides where the air's force along the face is
+        The track drags a part that stands by D = mu N along the wall at most. N is its weight and what the
+        air presses it down by, 0 where that lifts it off. The face at the angle a pushes back with
+        R = D sin a - Fn and holds with mu_f R at most. F and Fn are the air's force along the face and off
+        it. So the part slides where
 
-            F > mu_f max(D sin a - Fn, 0) - D cos a,
+            F > mu_f max(D sin a - Fn, 0) - D cos a.
 
-        which is nothing below a = 90 deg - atan(mu_f). Sure is twice as much, at every place along the face.
-        It holds for a part that slides. One that rolls at the face, leans on it or has tipped into a slot
-        needs more, of which statics says nothing: a trial does.
+        Where the air does not press it onto the face, the right side is 0 or less below a = 90 deg -
+        atan(mu_f): then no air is needed. Sure is twice the right side, or 0 where that is negative, at each
+        of ``FACE_PLACES`` with the air's other forces as they are. It covers sliding only: a part that turns
+        or rolls at the face, leans on it or has tipped into a slot needs a trial.
 
         Parameters
         ----------
@@ -219,7 +223,9 @@ class AirAssist(NamedTuple):
             drag = encounter.grip * max(weight + force.down, 0.0)
             return friction * max(drag * s - force.off, 0.0) - drag * c
 
-        return bool(forces) and all(force.along >= SURE_FORCE_RATIO * needed(force) for force in forces)
+        return bool(forces) and all(
+            force.along >= SURE_FORCE_RATIO * max(needed(force), 0.0) for force in forces
+        )
 
     def least_at_face(self, orientation: LyingPart, heading: float, clearance: float) -> FaceForce:
         """Return the force on an orientation that stands at a blade, where it is least along the face.
@@ -243,9 +249,11 @@ class AirAssist(NamedTuple):
     def passing_margin(self, encounter: Encounter, heading: float, margin: float) -> float:
         """Return the margin of an orientation that passes below the blade, with the air on it.
 
-        As at an ``air jet``: up to half the force that just takes it off it stays, from twice that on it is
-        blown off, in between the verdict has no margin. Between rails only half of what friction holds is
-        sure to leave it.
+        A lying part stays where the greatest force on it towards the free edge is half of what just takes it
+        off, or less, and is blown off where the mean one is twice that, as at an ``air jet``. In between
+        nothing is sure: 0, or barely below it. A part that hangs in rails stays where the air's force is half
+        of the friction that holds it, mu m g, or less; else its margin is 0. What the air does to the time
+        that a part takes is left out.
 
         Parameters
         ----------
@@ -265,18 +273,18 @@ class AirAssist(NamedTuple):
         steps = begin + (np.arange(PASSING_PLACES) + 0.5) / PASSING_PLACES * (end - begin)
         forces = self.forces(orientation, heading, [(step, orientation.distance) for step in steps.tolist()])
         c, s = math.cos(heading), math.sin(heading)
-        inwards = s * forces[:, 0] + c * forces[:, 1] - encounter.grip * np.maximum(forces[:, 2], 0.0)
+        off_wall = s * forces[:, 0] + c * forces[:, 1] - encounter.grip * np.maximum(forces[:, 2], 0.0)
         if encounter.hanging:
             size = np.hypot(forces[:, 0], forces[:, 1]).max()
             holds = encounter.grip * orientation.posture.mass * orientation.gravity
             return margin if SURE_FORCE_RATIO * size <= holds else min(margin, 0.0)
         force = encounter.force_to_clear(end - begin, self.height)
-        mean, most = float(inwards.mean()) / force, float(inwards.max()) / force
+        mean, most = float(off_wall.mean()) / force, float(off_wall.max()) / force
         distance = width - orientation.distance
         if most <= 1.0 / SURE_FORCE_RATIO:
             return min(margin, distance * (1.0 - most))
         if mean >= SURE_FORCE_RATIO:
-            return max(distance * (1.0 - mean), -distance)
+            return -distance
         return 0.0 if mean < 1.0 else -UNSURE
 
 

@@ -31,6 +31,7 @@ from feederscrew.bowl.devices.base import (
     tall_of,
 )
 from feederscrew.bowl.devices.features import Blade, Features, Jet
+from feederscrew.bowl.devices.pneumatics import AirJet
 from feederscrew.bowl.devices.trade import IS_ANGLE, Action, Bound, ProposedBy, Trade, ValueSearch
 from feederscrew.bowl.devices.values import Corner, DeviceFields
 
@@ -49,7 +50,6 @@ SWEPT = forms.mapping(
     contour=forms.POLYGON | {"minItems": 1},
     air=air_assist.FORM,
 )
-STEADY_AIR = 2  # cost class of a blade with air along its face
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class SweptBlade(Overhead):
 
     @property
     def cost_class(self) -> int:
-        return super().cost_class if self.air is None else max(super().cost_class, STEADY_AIR)
+        return super().cost_class if self.air is None else max(super().cost_class, AirJet.trade.cost_class)
 
     def with_air(self, air: AirAssist | None) -> Self:
         """Return the same blade with other air along its face, or without.
