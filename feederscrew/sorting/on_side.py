@@ -1,7 +1,10 @@
 """A part that a twisted track stands on its side: whether it stays on both faces, and how it then lies.
 
-A twisted track turns floor and wall together about the wall's foot. The floor stands up as a wall at the
-inner side, the wall lies down as the floor, and the part goes on on the side that was at the wall.
+A twisted track turns floor and wall together about the corner between them. The floor stands up as a wall at
+the inner side, the wall lies down as the floor, and the part goes on on the side that was at the wall.
+
+Axes turn with the track, from the part's centre of mass: x ahead, y from the wall inwards, z off the floor.
+The *foot* is where the part touches the floor, the *side* where it touches the wall.
 """
 
 import math
@@ -22,7 +25,8 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.resting.posture import Posture
 from feederscrew.sorting.orientations import Orientation
 
-HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
+# [rad] turns about the heading of an orientation, within which a part that lies so is known as that one
+HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))
 REACH_DIRECTIONS, REACH_TOLERANCE = 160, 0.05  # reaches that are compared; of the part's size, how alike
 HEIGHT_SHARE = 0.3  # of the part's size: an aspect whose reach upwards or downwards is off by more is another
 SIDE_COSINE = np.cos(
@@ -35,43 +39,54 @@ SIDE_HEADINGS = np.radians(np.arange(360.0))  # at which a part may lie on its s
 
 @dataclass(frozen=True)
 class SideLevers:
-    """Levers of the weight of a part on both faces of a twisted track [m]; negative: it turns."""
+    """Levers of the weight of a part on both faces of a twisted track [m], moments over weight.
+
+    Where ``out``, ``back`` or ``along`` is negative the part turns.
+    """
 
     out: float  # against tipping away from the floor that has become a wall
-    back: float  # against turning into the corner
-    along: float  # against tipping ahead or back over an end of the side at the wall
+    back: float  # against its top tipping onto that floor while its lower end slides away from the corner
+    along: float  # against tipping ahead or back over an end of the side
     height: float  # of the centre of mass over the wall that has become the floor
 
     @property
     def least(self) -> float:
-        """Return the least of the three [m]."""
+        """Return the least of ``out``, ``back`` and ``along`` [m]."""
         return min(self.out, self.back, self.along)
 
 
 def side_levers(orientation: Orientation, angle: float) -> SideLevers:
     """Return by how much its weight keeps a part on both faces of a track that is twisted by an angle.
 
-    Floor and wall stand square to each other, and the floor rises by the angle from the wall's foot. Faces
-    hold nothing along themselves on a vibrating track. So the floor presses at a distance y of the foot and
-    the wall at a height z of the side there, both from the centre of mass, and moments about the track are in
-    balance where y cos(angle) = z sin(angle). Beyond the ends of foot and side there is no balance: the
-    levers are those of the weight about the points square over these ends, the outer and the inner one.
+    Floor and wall stand square to each other, and the floor has risen by the angle. Friction counts as none:
+    contacts of a vibrating track slip. So the floor presses with W cos(angle), W the weight, at a distance y
+    within the foot, and the wall with W sin(angle) at a height z within the side. Both do so in the plane
+    x = 0, and moments about x balance where y cos(angle) = z sin(angle). With y from ``near`` to ``far`` and
+    z from ``bottom`` to ``top`` such a place exists where both of these are 0 or more:
+
+        out = top sin(angle) - near cos(angle),  back = far cos(angle) - bottom sin(angle).
+
+    They are the level distances of the centre of mass from the points (near, top) and (far, bottom), in which
+    the forces at these ends meet. ``along`` is the x of the side's nearer end times sin(angle), at the height
+    of the centre of mass: that of a side which is not as high there is taken at its nearest edge. That the
+    part turns on the wall is left out: then it goes on askew and does not fall. 0 is the limit of a part at
+    rest; nothing is taken off for vibration.
 
     Parameters
     ----------
     orientation : Orientation
         As it lies against the wall.
     angle : float [rad]
-        Of the floor from level.
+        Of the floor from level, 0 to a right angle.
 
     Returns
     -------
     SideLevers
-        NaN of a part whose place at the wall is not known.
+        All but ``height`` are NaN of a part of which it is not known where it touches the wall.
 
     References
     ----------
-    Statics of a rigid body on two faces without friction; docs/tooling.md, "4. Turning parts over".
+    Statics of a rigid body on two faces without friction; docs/tooling.md, "A twisted track".
     """
     if orientation.touching is None:
         return SideLevers(math.nan, math.nan, math.nan, orientation.distance)
@@ -82,9 +97,10 @@ def side_levers(orientation: Orientation, angle: float) -> SideLevers:
 
 
 def _side_at_wall(orientation: Orientation) -> Points:
-    """Corners (K, 2) [m] of the side at the wall, ahead of the centre of mass and over it.
+    """Corners (K, 2) [m] of the side, x and z.
 
-    The wall is bent, and touches two edges of a flat side only. The part comes to lie on all of that side.
+    The bowl's wall is curved, and touches two edges of a flat side only. Twisted it lies flat below the part,
+    which comes to lie on all of that side: that is the hull's face within ``SIDE_COSINE`` of the wall.
     """
     solid = orientation.solid
     hull = convex_hull(cast(Points, solid.vertices), solid.centre_of_mass, solid.source)
