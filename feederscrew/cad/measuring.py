@@ -161,12 +161,12 @@ def ways_down(solid: BowlSolid) -> dict[str, str]:
         If it comes to lie on something else.
     """
     plan, ways = solid.plan, {}
-    if plan.stretch is None or plan.stretch.falls is None:
+    if plan.stretch is None:
         return {}
     whole = facets.unplaced(solid)
     for placed, opening in plan.stretch.openings:
-        # places spread over the cut, of those within the track and before what hangs only goes on
-        within = shapely.box(-1.0, CUT_EDGE_MARGIN_M, plan.stretch.falls, plan.width)
+        # places spread over the cut, of those within the track
+        within = shapely.box(-1.0, CUT_EDGE_MARGIN_M, 1e3, plan.width)
         area = shapely.Polygon(opening.ring).buffer(0.0).intersection(within).buffer(-CUT_EDGE_MARGIN_M)
         if area.is_empty:
             continue

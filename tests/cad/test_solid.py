@@ -372,6 +372,10 @@ def test_a_turn_below_a_cut_is_found_and_a_track_that_was_shortened_says_so():
     assert swept.falls == pytest.approx(blade.begin + blade.features.length)
     assert rails.falls < rails.length and swept.falls < swept.length
     assert ways_down(built("rails and wiper")) == {"rails": "the floor"}
+    # what hangs only goes on past a device without a blade
+    jet = device("air jet", nozzle=2e-3, pressure=2e4, height=8e-3)
+    blown = planned((*CHAINS["narrowed and rails"], jet)).stretch
+    assert blown.falls == pytest.approx(rails.falls) and blown.length > rails.length
     # The outlet lies where it is wanted.
     plan = planned(asked=SolidOptions(outlet_height=0.04, outlet_angle=0.7))
     turned, straight = body(plan), body(replace(plan, turned=0.0))
