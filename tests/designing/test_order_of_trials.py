@@ -16,6 +16,7 @@ from feederscrew.designing.findings import Cause, Move, MoveKind
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.search import Candidate, Search, TrackAtBank
 from feederscrew.trials.course import Fate
+from feederscrew.trials.fills import LeavingPose, PoseKind
 
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.default()
@@ -210,6 +211,30 @@ def test_what_an_impure_queue_lets_through_meets_one_device_after_the_other(
     changed = loop._change_by_proof(search, impure, candidate, proved)
     assert seen == tried and calm == calmed
     assert (changed is None) == (not clean) and (not clean or changed.attempt.clean)
+
+
+def test_a_drop_of_each_kind_comes_once_for_what_left_a_queue(monkeypatch):
+    """Of a bracket gaps of 6.6 and 5.7 mm came, which both stop it, and the narrowed track too late."""
+
+    def dropped(kind, number=0):
+        cut = SimpleNamespace(device=SimpleNamespace(kind=kind))
+        return SimpleNamespace(cuts=(cut, *own.cuts), chain=(kind, number))
+
+    def add_drop(proposal, rows, wanted, lying, kinds):
+        return next((dropped(kind) for kind in ("gap", "narrowed track") if kind not in kinds), None)
+
+    own = SimpleNamespace(cuts=("camera",), chain=("camera",))
+    moved = SimpleNamespace(cuts=("wider",), chain=("wider",))
+    first = {1: dropped("gap", 1), 2: dropped("gap", 2), 3: moved}
+    monkeypatch.setattr(proposals, "_cut_more", lambda proposal, trial, row, lying: first[row])
+    monkeypatch.setattr(proposals, "add_drop", add_drop)
+    lying = tuple(SimpleNamespace(name=f"{name}@0") for name in "ABCD")
+    candidate = SimpleNamespace(
+        proposal=own, trial=SimpleNamespace(wanted=(0,)), orientations=SimpleNamespace(lying=lying)
+    )
+    left = [(LeavingPose(PoseKind.ORIENTATION, one.name[0], one.name), 1) for one in lying]
+    found = [one.chain for one in proposals.purify(candidate, left)]
+    assert found == [("gap", 1), ("wider",), ("narrowed track", 0)]
 
 
 @pytest.mark.parametrize(("cost_class", "count"), [(1, 0), (2, 2), (3, 0)])
