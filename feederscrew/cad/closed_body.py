@@ -295,13 +295,17 @@ def tooled_bodies(
     cuts, leaning = track.groove_walls(plan, kit)
     chain = () if plan.stretch is None else plan.stretch.devices
     deep = 2.0 * (plan.material.wall + PIECE_OVERLAP_M)
+    drilled: list[Body] = []
     for placed, bore in [(item, bore) for item in chain for bore in item.features.bores]:
         s = plan.first + placed.begin + bore.place
         begin, outwards = plan.path.bore(s, bore.height, PIECE_OVERLAP_M, bore.angle)
-        cuts.append(kit.bore(begin, outwards, bore.diameter, deep / math.sin(bore.angle)))
+        drilled.append(kit.bore(begin, outwards, bore.diameter, deep / math.sin(bore.angle)))
     slab = kit.without(track.slab(plan, kit), track.holes(plan, kit, hang=False))
     plates = [_plate(plan, kit, *blade) for blade in blades]
-    return [kit.without(wall, cuts), slab, *plates, *track.ledges(plan, kit), *leaning]
+    if drilled:  # a nozzle's bore goes through the root of a blade within the wall, not through its face
+        within = [kit.without(one, [kit.without(one, [wall])]) for one in drilled]
+        plates = [kit.without(plate, within) for plate in plates]
+    return [kit.without(wall, [*cuts, *drilled]), slab, *plates, *track.ledges(plan, kit), *leaning]
 
 
 def _floor(plan: BowlPlan, kit: ModuleType) -> list[Body]:

@@ -16,6 +16,7 @@ from feederscrew.bowl.devices.pneumatics import (
     pressure_for,
     thrust,
 )
+from feederscrew.bowl.devices.trade import Action
 from feederscrew.designing.findings import Move, MoveKind
 from feederscrew.designing.hanging import HELD_FATES
 from feederscrew.designing.proposals import Proposal
@@ -45,7 +46,9 @@ def blade_place(proposal: Proposal) -> int | None:
     places = [
         place
         for place, cut in enumerate(proposal.cuts)
-        if isinstance(cut.device, SweptBlade) and cut.device.face is not None
+        if isinstance(cut.device, SweptBlade)
+        and cut.device.action is Action.OVERHEAD
+        and cut.device.face is not None
     ]
     return places[-1] if places else None
 

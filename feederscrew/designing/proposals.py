@@ -536,7 +536,8 @@ def sweep_blade(
     stays_at = {end.kind for n in range(len(trial.rows)) if trial.held[n] for end in trial.ends[n]}
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device  # a blade, where it is overhead
-        if device.action is not Action.OVERHEAD or not device.face or device.kind not in stays_at:
+        is_blade = device.action in (Action.OVERHEAD, Action.PUSH)
+        if not is_blade or not device.face or device.kind not in stays_at:
             continue
         used = proposal.sweeps or (round(np.degrees(device.sweep)),)
         grip = orientations[proposal.row].grip

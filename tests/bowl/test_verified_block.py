@@ -216,6 +216,8 @@ def draw(kind, rng):
         "dish-out": lambda: {"limit": length(), "radius": length(1e-3)},
         "cap selector": lambda: {"limit": first, "length": length(3e-2, 4e-2), "tongue": length(),
                                  "reach": first + length()},
+        "silhouette blade": lambda: {"limit": length(), "reach": first, "leaves": first + length(),
+                                     "sweep": number(0.1, 1.5), **some(friction=number(0.0, 2.0))},
         "curved deflector": lambda: {"limit": length(), "begin": number(0.1, 0.4), "end": number(0.5, 1.2),
                                      **air},
         "profile gate": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),

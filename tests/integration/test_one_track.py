@@ -76,6 +76,10 @@ def draw_device(kind, rng, every):
     if kind == "cap selector":
         land, length = mm(2.0, 5.0), mm(16.0, 22.0)
         return made(limit=land, length=length, tongue=mm(3.0, 8.0), reach=land + mm(3.0, 9.0))
+    if kind == "silhouette blade":
+        reach = mm(3.0, 6.0)
+        sizes = {"limit": mm(3.0, 7.0), "reach": reach, "leaves": reach + mm(2.0, 6.0)}
+        return made(sweep=np.radians(rng.uniform(20.0, 60.0)), **sizes)
     if kind == "curved deflector":
         begin, end = np.radians(rng.uniform(10.0, 20.0)), np.radians(rng.uniform(35.0, 60.0))
         limit = mm(4.0, 6.0)
@@ -246,10 +250,12 @@ def differences(seed, radius, consumers):
                         affinity.translate(face, own.foot[1])
                         for face, own in zip(tried.faces, features.blades)
                     ]
-                    free = shapely.box(0.0, 0.0, track.width, top).difference(shapely.union_all(faces))
+                    plates = shapely.union_all(faces)
+                    end = min(track.width, plates.bounds[2])  # a blade may end before the free edge
+                    free = shapely.box(0.0, 0.0, end, top).difference(plates)
                     # it stands to the right of the track: what it shows is its shape
                     shown = affinity.translate(view.faces[0], free.bounds[0] - view.faces[0].bounds[0])
-                    whole = shapely.box(0.0, NEAR, track.width, top)
+                    whole = shapely.box(0.0, NEAR, end, top)
                     yield device.kind, name, "opening", apart(free, shown, whole)
                     continue
                 for height in (least + 2.0 * NEAR, least + 0.3 * (top - least), 0.7 * top):

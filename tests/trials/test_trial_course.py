@@ -176,6 +176,18 @@ def test_a_cap_on_its_bottom_rides_over_a_selector_and_one_on_its_mouth_falls(bo
     assert (seen.fates[seen.entry_rows == flat[1]] == course.RETURNED).all()
 
 
+def test_an_angle_whose_leg_stands_at_the_wall_is_pushed_off_and_the_other_way_round_rides_on(bowl):
+    """Its upright leg is 5 mm of 20 mm wide: at the wall a blade of 12 mm pushes it off a track of 15 mm."""
+    part = shapes.part(shapes.prism([(0, 0), (20, 0), (20, 4), (5, 4), (5, 12), (0, 12)], 15))
+    one = bowl("silhouette blade: {clearance: 6 mm, reach: 12 mm, leaves: 15 mm, sweep: 30 deg}")
+    every = lying(part, one)
+    rows = [k for k, own in enumerate(every) if abs(own.height - 12e-3) < 1e-5 and own.length < 15.1e-3]
+    near, far = sorted(rows, key=lambda k: every[k].distance)
+    seen = sent(part, one, [near, far], 8, one.devices)
+    assert (seen.fates[seen.entry_rows == near] == course.RETURNED).all()
+    assert (seen.fates[seen.entry_rows == far] == course.PASSED).all()
+
+
 def test_a_fall_down_a_step_or_over_the_free_edge_wins_nothing_and_sinks_nowhere(bowl):
     """A bracket that falls down a step onto an edge won 6 to 8 um at once there."""
     bracket, one = load("parts/lbracket_30x20x15.stl"), bowl("step: 4 mm", "gap: 7 mm", own=())

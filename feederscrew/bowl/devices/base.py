@@ -57,6 +57,7 @@ RETURNED, STOPPED, CARRIED = DeviceFate
 # what becomes of what does not pass, where the device alone decides; else it falls through or is stopped
 REJECTED_BY = {
     Action.OVERHEAD: STOPPED,
+    Action.PUSH: STOPPED,
     Action.GATE: STOPPED,
     Action.NARROW: RETURNED,
     Action.RELIEVE: RETURNED,

@@ -145,13 +145,61 @@ class SweptBlade(Overhead):
 
 
 @dataclass(frozen=True)
-class Wiper(SweptBlade):
-    """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
+class StraightBlade(SweptBlade):
+    """A blade whose face is one flat plate at an angle to the direction of travel."""
 
     sweep: float = field(
         default=SQUARE_FACE_RAD, metadata=IS_ANGLE
     )  # [rad] of the face to the direction of travel
     friction: float | None = None  # [1] of the face; None: that of the track
+
+    def chord(self, track: "Track") -> float:
+        return self.sweep
+
+    @property
+    def face(self) -> tuple[float, float | None] | None:
+        """Its sweep [rad] and friction [1], None: that of the track; None of one straight across."""
+        return (self.sweep, self.friction) if self.sweep < SQUARE_FACE_RAD else None
+
+    def clear_of(self, grip: float) -> bool:
+        """Tell whether its face sweeps parts off a track: sweep below 90 deg less the angle of friction.
+
+        Parameters
+        ----------
+        grip : float [1]
+            Friction of the track, that of a face of which nothing else is said.
+
+        Returns
+        -------
+        bool
+        """
+        friction = grip if self.friction is None else self.friction
+        return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
+
+    def fate(self, encounter: Encounter) -> str:
+        if encounter.hanging:  # rails hold what hangs
+            return super().fate(encounter)
+        clears = self.clear_of(encounter.grip)
+        if not clears and self.air is not None:
+            friction = encounter.grip if self.friction is None else self.friction
+            clears = self.air.clears(encounter, self.sweep, friction, self.lowest)
+        return RETURNED if clears else super().fate(encounter)
+
+    def face_values(self) -> Document:
+        """Return sweep and friction of its face for a document.
+
+        Returns
+        -------
+        dict of str to float
+        """
+        own: Document = {"sweep_deg": math.degrees(self.sweep)}
+        return own | ({} if self.friction is None else {"friction": self.friction})
+
+
+@dataclass(frozen=True)
+class Wiper(StraightBlade):
+    """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
+
     contour: tuple[tuple[float, float], ...] = ()  # [m] distance from the wall and clearance there
 
     kind = "wiper"
@@ -212,38 +260,6 @@ class Wiper(SweptBlade):
     def lowest(self) -> float:
         return min((height for _, height in self.contour), default=self.limit)
 
-    def chord(self, track: "Track") -> float:
-        return self.sweep
-
-    @property
-    def face(self) -> tuple[float, float | None] | None:
-        """Its sweep [rad] and friction [1], None: that of the track; None of one straight across."""
-        return (self.sweep, self.friction) if self.sweep < SQUARE_FACE_RAD else None
-
-    def clear_of(self, grip: float) -> bool:
-        """Tell whether its face sweeps parts off a track: sweep below 90 deg less the angle of friction.
-
-        Parameters
-        ----------
-        grip : float [1]
-            Friction of the track, that of a face of which nothing else is said.
-
-        Returns
-        -------
-        bool
-        """
-        friction = grip if self.friction is None else self.friction
-        return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
-
-    def fate(self, encounter: Encounter) -> str:
-        if encounter.hanging:  # rails hold what hangs
-            return super().fate(encounter)
-        clears = self.clear_of(encounter.grip)
-        if not clears and self.air is not None:
-            friction = encounter.grip if self.friction is None else self.friction
-            clears = self.air.clears(encounter, self.sweep, friction, self.lowest)
-        return RETURNED if clears else super().fate(encounter)
-
     def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
         if not self.contour:
             return super().judged(encounter, self.sweep if self.face else 0.0)
@@ -260,9 +276,7 @@ class Wiper(SweptBlade):
         return Features(0.5 * room + ahead, blades=(blade,), jets=self._jets(0.5 * room, track))
 
     def document_values(self) -> Document:
-        own = {"sweep_deg": math.degrees(self.sweep)}
-        own |= {} if self.friction is None else {"friction": self.friction}
-        return super().document_values() | (own if self.face else {})
+        return super().document_values() | (self.face_values() if self.face else {})
 
     def _edge(self, width: float) -> list[Corner]:
         """Its lower edge from the wall to the free edge: distances and heights [m]."""

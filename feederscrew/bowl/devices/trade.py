@@ -15,6 +15,7 @@ class Action(enum.StrEnum):
     NARROW = "narrow"  # lets fall over the free edge what the track does not carry
     RELIEVE = "relieve"  # the same, and what backs up leaves the track at it
     OVERHEAD = "overhead"  # holds up what is too high, by a blade that is open to the track's free edge
+    PUSH = "push"  # pushes off a narrowed track what stands out to the wall above it, by a blade
     GATE = "gate"  # holds up what does not fit through its opening
     BLOW = "blow"  # blows off, all the time, what offers it enough area
     SENSE = "sense"  # blows off what a sensor sees to differ: air, no edge that is met
@@ -49,7 +50,7 @@ class Action(enum.StrEnum):
     @property
     def suits_hanging(self) -> bool:
         """Tell whether it means anything to parts that hang between rails."""
-        return not (self.turns or self in (Action.RELIEVE, Action.GROOVE))
+        return not (self.turns or self in (Action.RELIEVE, Action.PUSH, Action.GROOVE))
 
 
 class Bound(enum.StrEnum):

@@ -215,7 +215,7 @@ def candidates(
         if kind.search.is_proposed and kind.action is not Action.SENSE and not kind.search.bound
     ]
     for kind in (kind for kind in shaped if constraints.allows(kind.kind)):
-        if kind.trade.cost_class > 1 and not air:
+        if (kind.trade.cost_class > 1 and not air) or (kind.action is Action.PUSH and not clearing):
             continue
         devices += kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY)
 

@@ -1,0 +1,259 @@
+"""A silhouette that clears itself: a blade off the wall, over a narrowed track."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from feederscrew.base import value_forms as forms
+from feederscrew.base.arrays import Floats
+from feederscrew.base.columns import Document
+from feederscrew.base.documents import Entry
+from feederscrew.base.errors import ConfigError
+from feederscrew.base.heavy import heavy
+from feederscrew.base.units import MM
+from feederscrew.bowl.devices import values
+from feederscrew.bowl.devices.asked import Encounter, LyingPart
+from feederscrew.bowl.devices.base import (
+    UNSURE,
+    Verdict,
+    angle_text,
+    degrees_words,
+    length_text,
+    length_words,
+    mapping_text,
+    room_of,
+    tall_of,
+)
+from feederscrew.bowl.devices.blades import PROPOSED_SWEEP_RAD, StraightBlade
+from feederscrew.bowl.devices.features import Blade, Features, TrackOpening, box_ring
+from feederscrew.bowl.devices.trade import Action, ProposedBy, Trade, ValueSearch
+from feederscrew.bowl.devices.values import DeviceFields
+
+if TYPE_CHECKING:
+    import shapely
+
+    from feederscrew.bowl.record import Track
+else:
+    shapely = heavy("shapely")  # a bowl without devices needs none of it
+
+SILHOUETTE_KEYS = ("clearance", "reach", "leaves")
+SILHOUETTE_EXAMPLE = "{clearance: 5 mm, reach: 3.5 mm, leaves: 8 mm, sweep: 30 deg}"
+MIN_SWEEP_RAD = math.radians(5.0)  # [rad] the least of a blade
+HIGHEST_M = 10.0  # [m] above any part
+SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
+HEIGHTS = 12  # clearances that a design tries, evenly up to the tallest orientation
+HEIGHT_ROOM_M = 5e-4  # [m] that wanted ones lie below the edge, and others stand above it
+# [m] rooms of which a design tries the blade that returns most: draws of a push button lost what was wanted
+# at 0.49 mm, and none at 1 mm; above the first no more is looked for
+ROOMS_M = (1e-3, 7e-4, 5e-4, 3.5e-4, 2.5e-4)
+
+
+@dataclass(frozen=True)
+class SilhouetteBlade(StraightBlade):
+    """A blade that stands out from the wall over a narrowed track, and pushes off what is in its way.
+
+    Its lower edge lies ``limit`` over the track, and it ends ``reach`` off the wall. Of a part that has
+    material above that edge and nearer to the wall, it pushes this out as far as it reaches. The track below
+    is only ``leaves`` wide: a part that is pushed so far that its weight lies beyond this falls off. A part
+    whose silhouette leaves the blade room travels on along the wall. Unlike a profile gate it stops nothing.
+    """
+
+    reach: float = 0.0  # [m] off the wall, up to which the blade stands out
+    leaves: float = math.inf  # [m] width of the track that is left below it
+
+    kind = "silhouette blade"
+    trade = Trade(
+        SILHOUETTE_EXAMPLE,
+        "blade that stands out from the wall so far, at that clearance over a track of which that width is "
+        "left: what has material in its way is pushed out by it, along a face of that sweep, and falls off "
+        "the narrowed track; what leaves it room travels on along the wall; friction: 0.2 is that of the "
+        "face",
+        forms.mapping(
+            ("friction",),
+            **dict.fromkeys(SILHOUETTE_KEYS, forms.LENGTH_FORM),
+            sweep=forms.ANGLE_FORM,
+            friction=forms.quantity("number", "0", "5"),
+        ),
+        measures="distance of what stands above a height from the wall",
+    )
+    action = Action.PUSH
+    search = ValueSearch(ProposedBy.VALUE)
+
+    @staticmethod
+    def read(entry: Entry) -> DeviceFields:
+        mend = f"write {SILHOUETTE_EXAMPLE}"
+        own = values.mapping(entry, (*SILHOUETTE_KEYS, "sweep", "friction"), mend, ("friction",))
+        fields: DeviceFields = {
+            name: values.within(own, key, "length", 1e-5, values.MAX_LENGTH_M)
+            for key, name in zip(SILHOUETTE_KEYS, ("limit", "reach", "leaves"))
+        }
+        fields["sweep"] = values.within(own, "sweep", "angle", MIN_SWEEP_RAD, 0.5 * math.pi)
+        if "friction" in own:
+            fields["friction"] = values.within(own, "friction", "number", 0.0, 5.0)
+        return fields
+
+    def misfits(self, width: float) -> list[ConfigError]:
+        if self.reach < min(self.leaves, width):
+            return []
+        what = f"{self.kind} reaches over the free edge, {1e3 * min(self.leaves, width):.4g} mm off the wall"
+        return [ConfigError(self.where, what, "give a smaller reach, or a wiper, which goes on so far")]
+
+    def value_text(self) -> str:
+        lengths = (self.limit, self.reach, self.leaves)
+        return mapping_text(
+            (
+                *zip(SILHOUETTE_KEYS, map(length_text, lengths)),
+                ("sweep", angle_text(self.sweep)),
+                ("friction", "" if self.friction is None else f"{self.friction:.9g}"),
+            )
+        )
+
+    @property
+    def value_words(self) -> str:
+        place = f"up to {length_words(self.reach)} off the wall, {length_words(self.limit)} over the track"
+        return f"{place}, swept back {degrees_words(self.sweep)}; leaves {length_words(self.leaves)} of track"
+
+    def document_values(self) -> Document:
+        own = {"reach_mm": self.reach / MM, "leaves_mm": self.leaves / MM}
+        return super().document_values() | own | self.face_values()
+
+    def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
+        room, ahead = room_of(orientations), self.reach / math.tan(self.sweep)
+        face = shapely.box(
+            0.0, self.limit, self.reach / math.sin(self.sweep), tall_of(orientations, self.limit)
+        )
+        blade = Blade(face, (0.5 * room, 0.0), self.sweep, friction=self.friction)
+        length = 1.5 * room + ahead  # what is pushed out has a room to fall
+        if self.leaves >= track.extent:
+            return Features(length, blades=(blade,))
+        span = self.leaves, track.extent
+        return Features(length, openings=(TrackOpening(box_ring(0.0, length, *span), span),), blades=(blade,))
+
+    def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
+        """Return what it does with an orientation.
+
+        With d the distance of the blade from the part's outline seen along the track, b the width of track
+        that carries the part and w the width that is left, it passes by min(d, w - b). One that is not
+        carried fails by b - w. One with material in the way of the blade, up to h above the clearance and
+        from n off the wall on, is pushed by r - n, r being the reach. It fails by min(h, r - n, b + r - n
+        - w): it has to be in the way, and to lose its support. Where that is not positive it is not sure.
+
+        Parameters
+        ----------
+        encounter : Encounter
+        sweep : float, optional
+            Not used: it has its own.
+
+        Returns
+        -------
+        Verdict
+        """
+        own = encounter.orientation
+        needed = own.balcony if math.isfinite(own.balcony) else self.leaves + own.axial_foot.reach
+        kept, view = self.leaves - needed, own.view_ahead
+        in_way = shapely.clip_by_rect(view, -HIGHEST_M, self.limit, self.reach, HIGHEST_M)
+        if in_way.is_empty or in_way.area <= 0.0:
+            room = view.distance(shapely.box(-HIGHEST_M, self.limit, self.reach, HIGHEST_M))
+            return encounter.verdict(min(room, kept))
+        near, _, _, top = in_way.bounds
+        pushed = min(self.reach - near, top - self.limit, self.reach - near - kept)
+        fails = max(-kept, pushed)
+        if fails <= 0.0:
+            return encounter.verdict(-UNSURE)
+        if -kept >= pushed:
+            return encounter.verdict(-fails)
+        return encounter.verdict(encounter.unless_laid_over(-fails, self.limit, self.sweep))
+
+    @classmethod
+    def proposals(
+        cls,
+        wanted: Sequence[Encounter],
+        competitors: Sequence[Encounter],
+        orientations: Sequence[LyingPart],
+        where: str,
+    ) -> "list[SilhouetteBlade]":
+        """Return blades that let some orientations pass, those of the greatest room first.
+
+        At a clearance let n and b be those of the wanted orientations of which the least is left (see
+        ``judged``). A blade with the reach n - p that leaves b + p gives them a room p. It pushes off another
+        one of n', b' by the same room or more where p <= min((n - n') / 2, (n - n' + b' - b) / 3), and does
+        not carry it where p <= (b' - b) / 2. Of each of ``ROOMS_M`` the blade is taken that returns most.
+
+        Parameters
+        ----------
+        wanted, competitors : sequence of Encounter
+            Those that pass, and those that are pushed off.
+        orientations : sequence of LyingPart
+            All of the part.
+        where : str
+            What asks for them.
+
+        Returns
+        -------
+        list of SilhouetteBlade
+            Each returns more orientations than those of a greater room.
+        """
+        lying = [one.orientation for one in wanted]
+        others = [one.orientation for one in competitors]
+        carried = max((one.balcony for one in lying), default=math.inf)
+        if not others or not math.isfinite(carried) or any(one.hanging for one in wanted):
+            return []
+        farther = np.array([one.balcony for one in others]) - carried
+        tries: list[tuple[float, float, Floats]] = []  # clearance, n, rooms of the others
+        for height in _clearances([*lying, *others]):
+            near = min(carried, *(nearest_above(one, height - HEIGHT_ROOM_M) for one in lying))
+            higher = [nearest_above(one, height + HEIGHT_ROOM_M) for one in others]
+            tries.append((height, near, _rooms(near, farther, higher)))
+        proposed: list[SilhouetteBlade] = []
+        most = 0
+        for room in ROOMS_M:
+            height, near, rooms = max(tries, key=lambda one: int((one[2] >= room).sum()))
+            reach = math.floor((near - room) / SHOP_STEP_M + 1e-6) * SHOP_STEP_M
+            leaves = math.ceil((carried + room) / SHOP_STEP_M - 1e-6) * SHOP_STEP_M
+            returned = int((rooms >= room).sum())
+            if returned <= most or reach <= 0.0:
+                continue
+            blade = cls(where, limit=height, sweep=PROPOSED_SWEEP_RAD, reach=reach, leaves=leaves)
+            if not blade.misfits(lying[0].track.extent):
+                proposed.append(blade.rewritten())
+                most = returned
+        return proposed
+
+
+def nearest_above(orientation: LyingPart, height: float) -> float:
+    """Return how near to the wall an orientation has material above a height.
+
+    Parameters
+    ----------
+    orientation : LyingPart
+    height : float [m]
+        Over the track.
+
+    Returns
+    -------
+    float [m]
+        Infinite where nothing of it is so high.
+    """
+    above = shapely.clip_by_rect(orientation.view_ahead, -HIGHEST_M, height, HIGHEST_M, HIGHEST_M)
+    return math.inf if above.is_empty else float(above.bounds[0])
+
+
+def _rooms(near: float, farther: Floats, others: Sequence[float]) -> Floats:
+    """The greatest room [m] at which each of K others is pushed off or not carried, see ``proposals``.
+
+    ``near`` [m] is that of the wanted ones, ``farther`` (K,) [m] by how much more track the others need,
+    and ``others`` [m] how near to the wall each of them has material above the clearance.
+    """
+    pushed = near - np.array(others)
+    rooms = np.minimum(0.5 * pushed, (pushed + np.where(np.isfinite(farther), farther, HIGHEST_M)) / 3.0)
+    return np.maximum(rooms, 0.5 * farther)
+
+
+def _clearances(orientations: Sequence[LyingPart]) -> list[float]:
+    """Clearances [m] that a design tries, each a whole multiple of ``SHOP_STEP_M``."""
+    tallest = max(one.height for one in orientations)
+    steps = np.round(np.linspace(0.0, tallest, HEIGHTS + 2)[1:-1] / SHOP_STEP_M)
+    return [float(step) * SHOP_STEP_M for step in np.unique(steps) if step > 0.0]

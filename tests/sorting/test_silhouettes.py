@@ -1,0 +1,105 @@
+"""The silhouette blade: verdicts in closed form, what it proposes, and what a file says of it."""
+
+import numpy as np
+import pytest
+import shapes
+from on_track import device, lying, read
+
+from feederscrew.base.errors import Faults
+from feederscrew.bowl.devices.kinds import KINDS
+from feederscrew.sorting.verdicts import DeviceEncounter, verdict
+
+# [mm] an angle of 20 x 12 mm, its long leg 4 mm thick and its short one 5 mm; 15 mm long
+ANGLE = [(0.0, 0.0), (20.0, 0.0), (20.0, 4.0), (5.0, 4.0), (5.0, 12.0), (0.0, 12.0)]
+
+
+@pytest.fixture(scope="module")
+def angle():
+    """The angle on its broad leg, along the wall: its upright leg at the wall, and at the free edge."""
+    every = lying(shapes.prism(ANGLE, 15))
+    flat = [one for one in every if abs(one.height - 12e-3) < 1e-5 and abs(one.width - 20e-3) < 1e-4]
+    flat = [one for one in flat if one.foot.corners.shape[0] and one.length < 15.1e-3]
+    at_wall = min(flat, key=lambda one: one.distance)
+    off_wall = max(flat, key=lambda one: one.distance)
+    return {"at": at_wall, "off": off_wall, "all": every}
+
+
+def blade(limit, reach, leaves, sweep=30.0):
+    """A silhouette blade of lengths [mm] and a sweep [deg]."""
+    sizes = {"limit": 1e-3 * limit, "reach": 1e-3 * reach, "leaves": 1e-3 * leaves}
+    return device("silhouette blade", sweep=np.radians(sweep), **sizes)
+
+
+def centre():
+    """How far the weight of the angle lies from the outside of its upright leg [m], by hand."""
+    long, short = 20.0 * 4.0, 5.0 * 8.0
+    return 1e-3 * (long * 10.0 + short * 2.5) / (long + short)
+
+
+def test_a_leg_off_the_wall_leaves_the_blade_room(angle):
+    """The blade ends r off the wall, the leg begins at 15 mm; the track left is w, its weight at 12.5 mm."""
+    assert angle["at"].distance == pytest.approx(centre(), abs=2e-4)  # the track bends
+    assert angle["off"].distance == pytest.approx(20e-3 - centre(), abs=2e-4)
+    for reach, leaves in ((13.0, 19.0), (8.0, 13.5)):
+        expected = min(15e-3 - 1e-3 * reach, 1e-3 * leaves - angle["off"].balcony)
+        assert verdict(blade(6, reach, leaves), angle["off"]).margin == pytest.approx(expected, abs=1e-4)
+
+
+def test_material_below_the_edge_is_as_far_off_as_the_blade_is_higher(angle):
+    """The broad leg is 4 mm high: a blade 5 mm over the track has 1 mm of room above it."""
+    own = verdict(blade(5, 8, 19), angle["off"])
+    assert own.margin == pytest.approx(1e-3, abs=2e-5)
+
+
+@pytest.mark.parametrize(("reach", "leaves"), [(8.0, 11.5), (12.0, 15.0), (9.0, 16.0)])
+def test_a_leg_at_the_wall_is_pushed_off_what_is_left(angle, reach, leaves):
+    """Pushed by the reach, its weight lies that and 7.5 mm off the wall; it stands 6 mm over the edge."""
+    pushed = angle["at"].balcony + 1e-3 * (reach - leaves)
+    own = verdict(blade(6, reach, leaves), angle["at"])
+    assert own.margin == pytest.approx(-min(1e-3 * reach, pushed, 6e-3), abs=1e-4)
+    assert blade(6, reach, leaves).fate(DeviceEncounter(angle["at"])) == "returned"
+    assert blade(6, reach, leaves, 85.0).fate(DeviceEncounter(angle["at"])) == "stopped"
+
+
+def test_one_that_is_pushed_and_still_carried_is_not_sure(angle):
+    judged = verdict(blade(6, 3, 19), angle["at"])
+    assert judged.passes == 0.0 and not judged.sure
+
+
+def test_what_the_narrowed_track_does_not_carry_falls_without_a_push(angle):
+    leaves = 1e3 * angle["off"].balcony - 2.0
+    assert verdict(blade(6, 3, leaves), angle["off"]).margin == pytest.approx(-2e-3, abs=1e-6)
+
+
+def test_a_blade_is_proposed_that_tells_an_angle_from_its_mirror_pose(angle):
+    kind, every = KINDS["silhouette blade"], angle["all"]
+
+    def proposed(wanted, others):
+        met = [[DeviceEncounter(one, every) for one in some] for some in (wanted, others)]
+        return kind.proposals(*met, every, "test")
+
+    (first, *_) = proposed([angle["off"]], [angle["at"]])
+    assert verdict(first, angle["off"]).margin >= 4.9e-4 and verdict(first, angle["at"]).margin <= -9.9e-4
+    assert not proposed([angle["off"]], [])
+
+
+def test_what_a_file_says_of_a_blade_comes_back_as_it_was(tmp_path):
+    words = "{clearance: 5 mm, reach: 3.5 mm, leaves: 8 mm, sweep: 30 deg, friction: 0.2}"
+    own = read(tmp_path, f"silhouette blade: {words}").devices[0]
+    assert own.value_text() == words
+    assert (own.limit, own.reach, own.leaves, own.friction) == (5e-3, 3.5e-3, 8e-3, 0.2)
+    assert own.document_values() == {
+        "value_mm": 5.0, "reach_mm": 3.5, "leaves_mm": 8.0, "sweep_deg": pytest.approx(30.0), "friction": 0.2
+    }  # fmt: skip
+    assert not own.misfits(20e-3) and own.misfits(3e-3)
+    with pytest.raises(Faults, match="reaches over the free edge"):
+        read(tmp_path, "silhouette blade: {clearance: 5 mm, reach: 9 mm, leaves: 8 mm, sweep: 30 deg}")
+
+
+def test_behind_rails_a_blade_has_no_meaning(tmp_path):
+    with pytest.raises(Faults, match="no meaning for parts that hang"):
+        read(
+            tmp_path,
+            "rails: {from: 3 mm, to: 7 mm}",
+            f"silhouette blade: {KINDS['silhouette blade'].trade.example}",
+        )
