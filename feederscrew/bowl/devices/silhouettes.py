@@ -44,11 +44,15 @@ SILHOUETTE_EXAMPLE = "{clearance: 5 mm, reach: 3.5 mm, leaves: 8 mm, sweep: 30 d
 MIN_SWEEP_RAD = math.radians(5.0)  # [rad] the least of a blade
 HIGHEST_M = 10.0  # [m] above any part
 SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
+MOST_LEFT = 6.0  # rooms beyond what carries the wanted ones, of which a width in the middle leaves half
+BLADES = 2  # of each room, one for what the other leaves
 HEIGHTS = 12  # clearances that a design tries, evenly up to the tallest orientation
-HEIGHT_ROOM_M = 5e-4  # [m] that wanted ones lie below the edge, and others stand above it
-# [m] rooms of which a design tries the blade that returns most: draws of a push button lost what was wanted
-# at 0.49 mm, and none at 1 mm; above the first no more is looked for
-ROOMS_M = (1e-3, 7e-4, 5e-4, 3.5e-4, 2.5e-4)
+# [m] that parts come off the wall and askew: draws lost a push button to which blade and edge left 0.5 mm, in
+# 5 of 14
+PLAY_M = 5e-4
+HEIGHT_ROOM_M = 2.5e-4  # [m] that wanted ones lie below the edge, and others stand above it
+# [m] rooms beside the play, of which a design tries the blades that return most
+ROOMS_M = (1e-3, 5e-4, 2.5e-4)
 
 
 @dataclass(frozen=True)
@@ -135,11 +139,13 @@ class SilhouetteBlade(StraightBlade):
     def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
         """Return what it does with an orientation.
 
-        With d the distance of the blade from the part's outline seen along the track, b the width of track
-        that carries the part and w the width that is left, it passes by min(d, w - b). One that is not
-        carried fails by b - w. One with material in the way of the blade, up to h above the clearance and
-        from n off the wall on, is pushed by r - n, r being the reach. It fails by min(h, r - n, b + r - n
-        - w): it has to be in the way, and to lose its support. Where that is not positive it is not sure.
+        A part comes up to a play off the wall. With d the distance of the blade, longer by that play, from
+        the part's outline seen along the track, b the width of track that carries the part and w the width
+        that is left, less the play, it passes by min(d, w - b). One that is not carried fails by b - w. One
+        with material in the way of the blade, up to h above the clearance and from n off the wall on, is
+        pushed by r - n, r being the reach. It fails by min(h, r - n, b + r - n - w): it has to be in the way,
+        and to lose its support. Where that is not positive it is not sure. What the blade lays over falls off
+        too: there is no track beside it.
 
         Parameters
         ----------
@@ -154,18 +160,17 @@ class SilhouetteBlade(StraightBlade):
         own = encounter.orientation
         needed = own.balcony if math.isfinite(own.balcony) else self.leaves + own.axial_foot.reach
         kept, view = self.leaves - needed, own.view_ahead
+        carried = -UNSURE if 0.0 <= kept < PLAY_M else kept - PLAY_M
         in_way = shapely.clip_by_rect(view, -HIGHEST_M, self.limit, self.reach, HIGHEST_M)
         if in_way.is_empty or in_way.area <= 0.0:
-            room = view.distance(shapely.box(-HIGHEST_M, self.limit, self.reach, HIGHEST_M))
-            return encounter.verdict(min(room, kept))
+            room = view.distance(shapely.box(-HIGHEST_M, self.limit, self.reach + PLAY_M, HIGHEST_M))
+            return encounter.verdict(min(room, carried) if kept >= 0.0 and room > 0.0 else min(kept, -UNSURE))
         near, _, _, top = in_way.bounds
         pushed = min(self.reach - near, top - self.limit, self.reach - near - kept)
         fails = max(-kept, pushed)
         if fails <= 0.0:
             return encounter.verdict(-UNSURE)
-        if -kept >= pushed:
-            return encounter.verdict(-fails)
-        return encounter.verdict(encounter.unless_laid_over(-fails, self.limit, self.sweep))
+        return encounter.verdict(-fails)
 
     @classmethod
     def proposals(
@@ -175,12 +180,14 @@ class SilhouetteBlade(StraightBlade):
         orientations: Sequence[LyingPart],
         where: str,
     ) -> "list[SilhouetteBlade]":
-        """Return blades that let some orientations pass, those of the greatest room first.
+        """Return blades that let some orientations pass, the highest first.
 
         At a clearance let n and b be those of the wanted orientations of which the least is left (see
-        ``judged``). A blade with the reach n - p that leaves b + p gives them a room p. It pushes off another
-        one of n', b' by the same room or more where p <= min((n - n') / 2, (n - n' + b' - b) / 3), and does
-        not carry it where p <= (b' - b) / 2. Of each of ``ROOMS_M`` the blade is taken that returns most.
+        ``judged``). A blade with the reach n - p gives them a room p beside the play. It pushes off another
+        one of n', b' up to a width b' + n - p - n' that is left, where n - p - n' >= p; it does not carry it
+        up to b'. The width that is left lies in the middle between b and the least of those widths. Of each
+        room p of ``ROOMS_M`` the blade that returns most is taken, and the one that returns most of the rest;
+        then the same of blades that return by pushing alone.
 
         Parameters
         ----------
@@ -194,33 +201,48 @@ class SilhouetteBlade(StraightBlade):
         Returns
         -------
         list of SilhouetteBlade
-            Each returns more orientations than those of a greater room.
+            None twice. In a full track of push buttons 26 of 26 left right with the higher blade in front,
+            and 21 of 26 with the lower one.
         """
         lying = [one.orientation for one in wanted]
         others = [one.orientation for one in competitors]
         carried = max((one.balcony for one in lying), default=math.inf)
         if not others or not math.isfinite(carried) or any(one.hanging for one in wanted):
             return []
-        farther = np.array([one.balcony for one in others]) - carried
-        tries: list[tuple[float, float, Floats]] = []  # clearance, n, rooms of the others
-        for height in _clearances([*lying, *others]):
-            near = min(carried, *(nearest_above(one, height - HEIGHT_ROOM_M) for one in lying))
-            higher = [nearest_above(one, height + HEIGHT_ROOM_M) for one in others]
-            tries.append((height, near, _rooms(near, farther, higher)))
-        proposed: list[SilhouetteBlade] = []
-        most = 0
+        needed = np.array([one.balcony for one in others])
+        views: list[tuple[float, float, Floats]] = []  # clearance, n, n' of the others
+        for height in _clearances(lying, others):
+            near = min(nearest_above(one, height - HEIGHT_ROOM_M) for one in lying)
+            views.append(
+                (height, near, np.array([nearest_above(one, height + HEIGHT_ROOM_M) for one in others]))
+            )
+        proposed: dict[str, SilhouetteBlade] = {}
         for room in ROOMS_M:
-            height, near, rooms = max(tries, key=lambda one: int((one[2] >= room).sum()))
-            reach = math.floor((near - room) / SHOP_STEP_M + 1e-6) * SHOP_STEP_M
-            leaves = math.ceil((carried + room) / SHOP_STEP_M - 1e-6) * SHOP_STEP_M
-            returned = int((rooms >= room).sum())
-            if returned <= most or reach <= 0.0:
-                continue
-            blade = cls(where, limit=height, sweep=PROPOSED_SWEEP_RAD, reach=reach, leaves=leaves)
-            if not blade.misfits(lying[0].track.extent):
-                proposed.append(blade.rewritten())
-                most = returned
-        return proposed
+            for by_pushing in (True, False):
+                made: list[tuple[frozenset[int], float, float, float]] = []
+                for height, near, other in views:
+                    farthest = min(near - room - PLAY_M, carried)  # it ends over the track that is left
+                    reach = math.floor(farthest / SHOP_STEP_M + 1e-6) * SHOP_STEP_M
+                    pushed = reach - other
+                    widths = np.where(pushed >= room, needed + pushed, -math.inf if by_pushing else needed)
+                    falls = widths - carried >= 2.0 * room + PLAY_M
+                    if reach > 0.0 and falls.any():
+                        least = min(float(widths[falls].min()), carried + PLAY_M + MOST_LEFT * room)
+                        middle = 0.5 * (carried + PLAY_M + least)
+                        returned = frozenset(np.flatnonzero(falls).tolist())
+                        made.append((returned, height, reach, math.floor(middle / SHOP_STEP_M) * SHOP_STEP_M))
+                left = set(range(len(others)))
+                for _ in range(BLADES):  # the next one returns most of those that the first one leaves
+                    made = [one for one in made if left & one[0]]
+                    if not made:
+                        break
+                    best = max(made, key=lambda one: (len(left & one[0]), one[3], -one[1]))
+                    returned, height, reach, leaves = best
+                    left -= returned
+                    blade = cls(where, limit=height, sweep=PROPOSED_SWEEP_RAD, reach=reach, leaves=leaves)
+                    if not blade.misfits(lying[0].track.extent):
+                        proposed.setdefault(blade.value_text(), blade.rewritten())
+        return sorted(proposed.values(), key=lambda blade: -blade.limit)
 
 
 def nearest_above(orientation: LyingPart, height: float) -> float:
@@ -241,19 +263,13 @@ def nearest_above(orientation: LyingPart, height: float) -> float:
     return math.inf if above.is_empty else float(above.bounds[0])
 
 
-def _rooms(near: float, farther: Floats, others: Sequence[float]) -> Floats:
-    """The greatest room [m] at which each of K others is pushed off or not carried, see ``proposals``.
+def _clearances(wanted: Sequence[LyingPart], others: Sequence[LyingPart]) -> list[float]:
+    """Clearances [m] that a design tries, each a whole multiple of ``SHOP_STEP_M``.
 
-    ``near`` [m] is that of the wanted ones, ``farther`` (K,) [m] by how much more track the others need,
-    and ``others`` [m] how near to the wall each of them has material above the clearance.
+    Evenly up to the tallest orientation, and just above the tallest one that is wanted.
     """
-    pushed = near - np.array(others)
-    rooms = np.minimum(0.5 * pushed, (pushed + np.where(np.isfinite(farther), farther, HIGHEST_M)) / 3.0)
-    return np.maximum(rooms, 0.5 * farther)
-
-
-def _clearances(orientations: Sequence[LyingPart]) -> list[float]:
-    """Clearances [m] that a design tries, each a whole multiple of ``SHOP_STEP_M``."""
-    tallest = max(one.height for one in orientations)
-    steps = np.round(np.linspace(0.0, tallest, HEIGHTS + 2)[1:-1] / SHOP_STEP_M)
+    above = max(one.height for one in wanted)
+    tallest = max(above, *(one.height for one in others))
+    even = np.linspace(0.0, tallest, HEIGHTS + 2)[1:-1]
+    steps = np.round(np.append(even, above + 2.0 * HEIGHT_ROOM_M) / SHOP_STEP_M)
     return [float(step) * SHOP_STEP_M for step in np.unique(steps) if step > 0.0]

@@ -355,16 +355,26 @@ def fewest(
     tuple of Device
     """
     best: tuple[Device, ...] = ()
-    weight, total = 0.0, float(competitors.sum())
+    weight, surest, total = 0.0, 0.0, float(competitors.sum())
     devices = [device for device, some in margins.items() if competitors[some <= -margin].any()]
     for count in range(1, len(devices) + 1):
         if total - weight <= enough:
             break
         for combination in itertools.combinations(devices, count):
-            is_returned = np.any([margins[device] <= -margin for device in combination], axis=0)
+            returned_by = -np.array([margins[device] for device in combination])
+            is_returned = (returned_by >= margin).any(axis=0)
             held = float(competitors[is_returned].sum())
-            if held > weight + 1e-12 and not jams(margins, combination, competitors, margin):
-                best, weight = combination, held
+            if held < weight - 1e-12 or jams(margins, combination, competitors, margin):
+                continue
+            least = float(
+                np.nanmax(returned_by[:, is_returned & (competitors > 0.0)], axis=0).min(initial=np.inf)
+            )
+            # a blade that pushes parts off is the surer, the farther it pushes them
+            is_surer = (
+                len(best) == count and any(one.action is Action.PUSH for one in best) and least > surest
+            )
+            if held > weight + 1e-12 or is_surer:
+                best, weight, surest = combination, held, least
     return best
 
 
