@@ -426,10 +426,15 @@ def _mend_cut(proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orie
     device that should have returned it towards the greatest.
     """
     for place, cut in enumerate(proposal.cuts):
-        if not cut.device.search.bound:
-            continue
         lost = lost_at(trial, cut.device.kind)
         if lost == _slips(cut, trial, orientations):
+            continue
+        if not cut.device.search.bound:
+            eased = -0.25 * (cut.margin_reject - MARGINS[-1])
+            by = eased if lost else 0.5 * (cut.margin_pass - MARGINS[-1])
+            moved = _moved_by(proposal, place, by, orientations)
+            if moved is not None:
+                return moved
             continue
         limit = 0.5 * (cut.device.limit + (cut.smallest if lost else cut.largest).limit)
         if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
@@ -456,9 +461,11 @@ def ease_cut(proposal: Proposal, place: int, orientations: Sequence[Orientation]
         None where another made the device, its value cannot be moved, or it would return no less.
     """
     found = _own_cut(proposal, place)
-    if found is None or not found[1].device.search.bound:
+    if found is None:
         return None
     number, cut = found
+    if not cut.device.search.bound:
+        return _moved_by(proposal, number, -0.25 * (cut.margin_reject - MARGINS[-1]), orientations)
     limit = 0.5 * (cut.device.limit + cut.smallest.limit)
     if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
         return None
@@ -609,6 +616,10 @@ def _cut_more(
     """The proposal that cuts more of an orientation that is carried through; None where nothing does."""
     name = orientations[row].name
     for place, cut in enumerate(proposal.cuts):
+        if name in cut.returns and not cut.device.search.bound:
+            moved = _moved_by(proposal, place, 0.5 * (cut.margin_pass - MARGINS[-1]), orientations)
+            if moved is not None:
+                return moved
         if not cut.device.search.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
             continue
         other = move_cut(cut, 0.5 * (cut.device.limit + cut.largest.limit), orientations, proposal.row)
@@ -616,6 +627,20 @@ def _cut_more(
             return proposal.with_cut(place, other, _move_of(MoveKind.VALUE, other.device))
     wanted = trial.wanted
     return add_drop(proposal, [row] if row not in wanted else [], wanted, orientations)
+
+
+def _moved_by(
+    proposal: Proposal, place: int, by: float, orientations: Sequence[Orientation]
+) -> Proposal | None:
+    """The proposal with a device of several values moved by a length [m]: to return more, below 0 less."""
+    cut = proposal.cuts[place]
+    other = cut.device.cutting_more(by) if abs(by) >= VALUE_STEP_M else None
+    if other is None:  # of a kind that is not moved so, or by nothing
+        return None
+    changed = _judge(cut, other, orientations, proposal.row, (other, other))
+    if not changed.margin_pass > 0.0:
+        return None
+    return proposal.with_cut(place, changed, _move_of(MoveKind.VALUE, other))
 
 
 def purify(candidate: Any, left_instead: LeavingCounts) -> Iterator[Proposal]:

@@ -342,6 +342,21 @@ class Device:
         """
         return []
 
+    def cutting_more(self, by: float) -> "Device | None":
+        """Return the device that returns more by a length, of a kind whose value is not one number.
+
+        Parameters
+        ----------
+        by : float [m]
+            By which the margin of what passes is less; below 0, by which it is more.
+
+        Returns
+        -------
+        Device or None
+            None of a kind that cannot be moved so.
+        """
+        return None
+
     # -- as it stands on the track
 
     def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:

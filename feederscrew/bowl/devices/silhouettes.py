@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,7 +44,10 @@ SILHOUETTE_EXAMPLE = "{clearance: 5 mm, reach: 3.5 mm, leaves: 8 mm, sweep: 30 d
 MIN_SWEEP_RAD = math.radians(5.0)  # [rad] the least of a blade
 HIGHEST_M = 10.0  # [m] above any part
 SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
-MOST_LEFT = 6.0  # rooms beyond what carries the wanted ones, of which a width in the middle leaves half
+MOST_LEFT = 6.0  # rooms beyond what carries the wanted ones, from which the width is taken at most
+# [1] of the way from what carries the wanted ones to what the others need: with 100 push buttons in a full
+# track 4 others left at a half of it (reach 3 mm, 7.45 mm left), 1 at 3.25 and 7.2 mm, none at 3.6 and 7.2 mm
+KEPT_SHARE = 1.0 / 3.0
 BLADES = 2  # of each room, one for what the other leaves
 HEIGHTS = 12  # clearances that a design tries, evenly up to the tallest orientation
 # [m] that parts come off the wall and askew: draws lost a push button to which blade and edge left 0.5 mm, in
@@ -52,7 +55,7 @@ HEIGHTS = 12  # clearances that a design tries, evenly up to the tallest orienta
 PLAY_M = 5e-4
 HEIGHT_ROOM_M = 2.5e-4  # [m] that wanted ones lie below the edge, and others stand above it
 # [m] rooms beside the play, of which a design tries the blades that return most
-ROOMS_M = (1e-3, 5e-4, 2.5e-4)
+ROOMS_M = (5e-4, 2.5e-4)
 
 
 @dataclass(frozen=True)
@@ -136,6 +139,22 @@ class SilhouetteBlade(StraightBlade):
         span = self.leaves, track.extent
         return Features(length, openings=(TrackOpening(box_ring(0.0, length, *span), span),), blades=(blade,))
 
+    def cutting_more(self, by: float) -> "SilhouetteBlade | None":
+        """Return the blade that reaches farther and leaves less track, each by a length.
+
+        Parameters
+        ----------
+        by : float [m]
+
+        Returns
+        -------
+        SilhouetteBlade or None
+            None where it would reach nothing, or over the edge of what it leaves.
+        """
+        step = round(by / SHOP_STEP_M) * SHOP_STEP_M
+        reach, leaves = self.reach + step, self.leaves - step
+        return replace(self, reach=reach, leaves=leaves).rewritten() if 0.0 < reach < leaves else None
+
     def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
         """Return what it does with an orientation.
 
@@ -185,7 +204,7 @@ class SilhouetteBlade(StraightBlade):
         At a clearance let n and b be those of the wanted orientations of which the least is left (see
         ``judged``). A blade with the reach n - p gives them a room p beside the play. It pushes off another
         one of n', b' up to a width b' + n - p - n' that is left, where n - p - n' >= p; it does not carry it
-        up to b'. The width that is left lies in the middle between b and the least of those widths. Of each
+        up to b'. The width that is left lies a third of the way from b to the least of those widths. Of each
         room p of ``ROOMS_M`` the blade that returns most is taken, and the one that returns most of the rest;
         then the same of blades that return by pushing alone.
 
@@ -228,9 +247,9 @@ class SilhouetteBlade(StraightBlade):
                     falls = widths - carried >= 2.0 * room + PLAY_M
                     if reach > 0.0 and falls.any():
                         least = min(float(widths[falls].min()), carried + PLAY_M + MOST_LEFT * room)
-                        middle = 0.5 * (carried + PLAY_M + least)
+                        width = carried + PLAY_M + KEPT_SHARE * (least - carried - PLAY_M)
                         returned = frozenset(np.flatnonzero(falls).tolist())
-                        made.append((returned, height, reach, math.floor(middle / SHOP_STEP_M) * SHOP_STEP_M))
+                        made.append((returned, height, reach, math.floor(width / SHOP_STEP_M) * SHOP_STEP_M))
                 left = set(range(len(others)))
                 for _ in range(BLADES):  # the next one returns most of those that the first one leaves
                     made = [one for one in made if left & one[0]]
