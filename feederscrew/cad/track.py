@@ -21,6 +21,7 @@ CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut ov
 OUTLET_OVERRUN_M = 5e-3  # [m] by which a slot that is open at the outlet is cut beyond its end
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
+STEP_OVERLAP_M = 1e-5  # [m] by which the face below a step reaches into the lower plate: no face on a face
 LEDGE_SINK_M = 1e-5  # [m] by which a ledge lies lower than the plate before it: no face on a face
 PLATE_OVERLAP_M = 3e-5  # [m] by which the side of the outlet reaches into the plate: no face on a face
 TWISTED = 4  # facets where the bank changes in place of one
@@ -71,14 +72,29 @@ def slab(plan: BowlPlan, kit: ModuleType) -> Body:
             heights = path.height(np.clip(s, start + 1e-9, end - 1e-9))  # past its ends a run goes on level
             legs.append((_sections(plan, s, heights, _strips(plan, kit)), frames(plan, s)))
         runs.append(kit.swept(legs))
-    joined, plate = runs[:1], plan.material.plate
+    joined = runs[:1]
     for (at, drop), run in zip(path.drops, runs[1:]):
         # the face below a step down comes first: what is apart cannot be united exactly
-        y, low = -TRACK_PIECE_OVERLAP_M, float(path.height(at))
-        ring = np.array([[at - plate, y], [at + 1e-4, y], [at + 1e-4, plan.width], [at - plate, plan.width]])
-        joined += [kit.over(path, ring, low - plate, low + drop - 0.5 * plate, plan.chord), run]
+        joined += [_step_face(plan, kit, at, drop, changes), run]
     whole = kit.united(joined) if len(runs) > 1 else runs[0]
     return kit.above(whole, plan.underside + 0.5 * TRACK_PIECE_OVERLAP_M)
+
+
+def _step_face(plan: BowlPlan, kit: ModuleType, at: float, drop: float, changes: Iterable[float]) -> Body:
+    """The upright face below a step, a plate thick: from below the lower track into the upper plate.
+
+    It leans across as the track is banked: a level one leaves a slit by the free edge between the two plates.
+    """
+    path, plate, legs = plan.path, plan.material.plate, []
+    for leg in _legs(plan, kit, [at - plate, at + STEP_OVERLAP_M], changes):
+        s = steps(plan, kit, *leg)
+        bank, low = path.bank_at(s), path.height(s) - drop * (s < at)
+        y = np.array([-TRACK_PIECE_OVERLAP_M, plan.width])
+        across, rise = (y * turn(bank)[:, None] for turn in (np.cos, np.sin))
+        under = np.stack([-across, low[:, None] - plate + rise], axis=-1)
+        over = np.stack([-across, low[:, None] + drop - 0.5 * plate + rise], axis=-1)
+        legs.append((np.concatenate([over, under[:, ::-1]], axis=1), frames(plan, s)))
+    return kit.swept(legs)
 
 
 def _legs(

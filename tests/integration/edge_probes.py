@@ -107,8 +107,12 @@ def _drops(placed, width):
     far = begin + (drop.length if is_ledge else 4e-3)
     ways = np.linspace(begin + 1e-3, far - 1e-3, 3)
     across = drop.aside + np.array(SHARES) * (width - drop.aside)
-    if not is_ledge:  # behind its face, close by the wall
-        yield "edge", begin - ASIDE, 3e-4, placed.level - 0.97 * drop.height, 0.0, True
+    # the face of a step is whole from the wall to the free edge, and from the upper track to the lower
+    sides = () if is_ledge else (3e-4, *np.array(SHARES) * width, width - CLEAR)
+    for y, share in itertools.product(sides, (*SHARES, 0.97)):
+        yield "face", begin - ASIDE, y, placed.level - share * drop.height, 0.0, True
+        if y > 3e-4 and share < 0.97:
+            yield "face", begin + ASIDE, y, placed.level - share * drop.height, 0.0, False
     for s in ways if is_ledge else ():  # all of it, down to the lower track
         for y, share in itertools.product(np.array(SHARES) * drop.aside, (0.5, 0.9)):
             yield "ledge", s, y, placed.level - share * drop.height, 0.0, True

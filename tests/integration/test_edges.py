@@ -105,6 +105,7 @@ TRIED = (
     "opening",
     "surface",
     "edge",
+    "face",
     "lower track",
     "ledge",
     "blade",
