@@ -284,11 +284,16 @@ class AskedOrientation:
     def _try_class(self, cost_class: CostClass) -> None:
         design, first = self.study.design, self.study
         own = CostClass.of(design.devices) if design is not None else cost_class
+        is_twisted = any(device.on_side for device in self.study.bowl.devices)
+        if is_twisted and own is not cost_class:  # nothing stands behind a twist: the file has one chain
+            return
         if own is not cost_class and own.number < cost_class.number:
             first = self.propose((), cost_class)
             design = first.design
         is_static = own.number <= cost_class.number and _may_isolate(design, cost_class)
         if is_static and design is not None and not self._try(first, design).faults:
+            return
+        if is_twisted:
             return
         for found in search_chains(self, cost_class):
             if found.design is not None and not self._try(found, found.design).faults:

@@ -71,7 +71,10 @@ def find_leaving(study: MachineSheet, trial: Verified | None = None) -> tuple[in
     coming = None if order is None else order.on_track
     if order is None or coming is None or not coming.lying or coming.lying[0].posture.solid is None:
         return None
-    return _leaving(coming, np.nan_to_num(coming.rules[order.rule]), order, trial)
+    row, leaving = _leaving(coming, np.nan_to_num(coming.rules[order.rule]), order, trial)
+    if any(device.on_side for device in study.bowl.devices):
+        leaving = leaving.against_inner_wall()
+    return row, leaving
 
 
 def _leaving(
@@ -91,7 +94,7 @@ def _leaving(
         row = max(rows, key=lambda k: float(shares[k]))
         if named[1] is not None:
             row = nearest(coming.aspects, coming.headings, named[0], named[1])
-        return row, coming.lying[row]
+        return row, coming.states[int(coming.leaves_as[row])]
     if flow.any():
         most, state = divmod(int(np.argmax(flow)), flow.shape[1])
         return most, coming.states[state]

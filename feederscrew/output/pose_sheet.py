@@ -53,11 +53,13 @@ def part_on_track(orientation: Orientation) -> tuple[Points, Triangles]:
     Returns
     -------
     (V, 3) array [m], (F, 3) array of int
-        Corners ahead, from the wall and over the track; faces.
+        Corners ahead, from the wall and over the track; faces. Behind a twist the wall is at the inner side,
+        and places from it are below 0.
     """
     posture = orientation.posture
     corners = vectors.product(orientation.solid.corners, orientation.axes.T)
-    corners = corners + [0.0, orientation.distance, posture.height]
+    off = -orientation.distance if orientation.at_inner_wall else orientation.distance
+    corners = corners + [0.0, off, posture.height]
     return shading.reduced_mesh(corners, np.asarray(posture.facets), MOST_FACETS)
 
 
@@ -76,7 +78,8 @@ def draw_outlet_views(drawing: Drawing, leaving: Orientation, box: tuple[float, 
     """Draw the part as it leaves, from above, from the wall and from ahead, with its sizes.
 
     Parts travel to the right; the view from the wall lies below that from above, the one from ahead to the
-    right of it (ISO 128-3, labelled views).
+    right of it (ISO 128-3, labelled views). Behind a twist the wall is at the inner side, above the part in
+    the view from above, and that from the side is from the free edge.
 
     Parameters
     ----------
@@ -89,7 +92,11 @@ def draw_outlet_views(drawing: Drawing, leaving: Orientation, box: tuple[float, 
     low, high = corners.min(axis=0) / MM, corners.max(axis=0) / MM
     long, wide = (high - low)[:2]
     left, bottom, right, top = box
-    reach = max(high[1], 0.0) + 0.15 * wide  # from the wall [mm]
+    # across the track, the wall at 0: from and to [mm]
+    edge, far = (
+        (low[1] - 0.15 * wide, 0.0) if leaving.at_inner_wall else (0.0, max(high[1], 0.0) + 0.15 * wide)
+    )
+    reach = far - edge
     below = min(low[2], 0.0)  # what hangs is below the track
     room_x = right - left - BESIDE_MM - VIEWS_GAP_MM - 5.0
     room_y = top - bottom - HEAD_MM - VIEWS_GAP_MM - SIZES_MM
@@ -97,9 +104,10 @@ def draw_outlet_views(drawing: Drawing, leaving: Orientation, box: tuple[float, 
     scale = next(fits, SCALES[-1])
     drawing.text(left, top - 3.0, f"part at the outlet  {scale_words(scale)}", 3.0, bold=True)
     x0 = left + BESIDE_MM - low[0] * scale
-    y_above = top - HEAD_MM - reach * scale  # the wall, seen from above
-    y_wall = y_above - VIEWS_GAP_MM - high[2] * scale  # the track, seen from the wall
-    x_ahead = left + BESIDE_MM + max(long * scale + VIEWS_GAP_MM + 5.0, LABEL_MM)  # the wall, from ahead
+    y_above = top - HEAD_MM - far * scale  # the wall, seen from above
+    y_wall = y_above + (edge - high[2]) * scale - VIEWS_GAP_MM  # the track, seen from the wall
+    # the wall, from ahead
+    x_ahead = left + BESIDE_MM + max(long * scale + VIEWS_GAP_MM + 5.0, LABEL_MM) - edge * scale
     span = np.array([low[0] - 0.1 * long, high[0] + 0.1 * long]) * scale + x0
     for (azimuth, elevation), at in (
         (FROM_ABOVE, (x0, y_above)),
@@ -112,23 +120,23 @@ def draw_outlet_views(drawing: Drawing, leaving: Orientation, box: tuple[float, 
     drawing.lines([[(span[0], y_above), (span[1], y_above)]], "OUTLINE")
     drawing.lines([[(span[0], y_wall), (span[1], y_wall)]], "CENTRE")
     drawing.lines([[(x_ahead, y_wall), (x_ahead, y_wall + high[2] * scale)]], "OUTLINE")
-    ends = [0.0, reach]
+    ends = [edge, far]
     if isinstance(leaving, Hanging):
         ends = [
             0.0,
             leaving.span[0] / MM,
             leaving.span[1] / MM,
-            max(reach, leaving.span[1] / MM + 0.3 * wide),
+            max(far, leaving.span[1] / MM + 0.3 * wide),
         ]
-        for edge in leaving.span:
-            y = y_above + edge / MM * scale
+        for rail in leaving.span:
+            y = y_above + rail / MM * scale
             drawing.lines([[(span[0], y), (span[1], y)]], "CENTRE")
     track = [
         [(x_ahead + a * scale, y_wall), (x_ahead + b * scale, y_wall)] for a, b in zip(ends[::2], ends[1::2])
     ]
     drawing.lines(track, "OUTLINE")
     # the way parts travel, and the sizes
-    x, y = span[1] + 2.0, y_above + 0.5 * reach * scale
+    x, y = span[1] + 2.0, y_above + 0.5 * (edge + far) * scale
     _draw_arrow(drawing, (x, y), (min(ARROW_MM, 8.0), 0.0))
     start, end = (low[0] * scale + x0, y_wall + below * scale), (high[0] * scale + x0, y_wall + below * scale)
     drawing.length(start, end, (0.0, -5.5), scale, decimals=1)
@@ -142,9 +150,10 @@ def draw_outlet_views(drawing: Drawing, leaving: Orientation, box: tuple[float, 
         (low[0] * scale + x0, y_wall + high[2] * scale),
     )
     drawing.length(start, end, (-4.0, 0.0), scale, decimals=1)
-    drawing.text(x0 + low[0] * scale, top - 8.5, "from above, wall below", 1.9)
-    drawing.text(x0 + low[0] * scale, y_wall + high[2] * scale + 1.5, "from the wall", 1.9)
-    drawing.text(x_ahead, y_wall + high[2] * scale + 1.5, "from ahead", 1.9)
+    labels = ("above", "free edge") if leaving.at_inner_wall else ("below", "wall")
+    drawing.text(x0 + low[0] * scale, top - 8.5, f"from above, wall {labels[0]}", 1.9)
+    drawing.text(x0 + low[0] * scale, y_wall + high[2] * scale + 1.5, f"from the {labels[1]}", 1.9)
+    drawing.text(x_ahead + edge * scale, y_wall + high[2] * scale + 1.5, "from ahead", 1.9)
 
 
 def _draw_arrow(drawing: Drawing, start: tuple[float, float], way: tuple[float, float]) -> None:
@@ -157,7 +166,9 @@ def _draw_arrow(drawing: Drawing, start: tuple[float, float], way: tuple[float, 
 
 
 def draw_pose(drawing: Drawing, orientation: Orientation, box: tuple[float, float, float, float]) -> None:
-    """Draw a part in its pose as lines, seen from ahead and from inside the bowl, on its piece of track.
+    """Draw a part in its pose as lines, seen from ahead and from its free edge, on its piece of track.
+
+    That is from inside the bowl, but behind a twist, which stands the floor up at the inner side.
 
     Parameters
     ----------
@@ -167,10 +178,12 @@ def draw_pose(drawing: Drawing, orientation: Orientation, box: tuple[float, floa
         Of the paper; the picture is as large as it allows.
     """
     corners, faces = part_on_track(orientation)
-    view = views.camera(*SMALL_VIEW)
+    inwards = -1.0 if orientation.at_inner_wall else 1.0
+    view = views.camera(inwards * SMALL_VIEW[0], SMALL_VIEW[1])
     low, high = corners.min(axis=0), corners.max(axis=0)
     size = float(np.max(high - low))
-    near, far, inner = low[0] - 0.15 * size, high[0] + 0.15 * size, max(high[1], 0.0) + 0.1 * size
+    near, far = low[0] - 0.15 * size, high[0] + 0.15 * size
+    inner = min(low[1], 0.0) - 0.1 * size if orientation.at_inner_wall else max(high[1], 0.0) + 0.1 * size
     edges = [(0.0, inner)]
     if isinstance(orientation, Hanging):
         edges = [

@@ -166,22 +166,21 @@ def _find_on_side(orientations: tuple[Orientation, ...], axes: tuple[float, ...]
         return None
     c, s = math.cos(heading), math.sin(heading)
     plan = vectors.product(cast(Points, alike.posture.corners)[:, :2], np.array([[c, s], [-s, c]]))
-    (length, width), inwards = np.ptp(plan, axis=0), float(plan[:, 1].max())
-    return replace(
+    length, width = np.ptp(plan, axis=0)
+    on_side = replace(
         alike,
         heading=heading,
         heading_share=0.0,
         chances=dict.fromkeys(alike.chances, 0.0),
         length=float(length),
         width=float(width),
-        distance=inwards,  # from the wall that is at the inner side
         mirror="",
-        touching=None,
         falls_off=False,
         turns_over=False,
         may_tip=False,
         may_yaw=False,
     )
+    return on_side.against_inner_wall()
 
 
 def _one_of_each_aspect(orientations: Sequence[Orientation]) -> Iterator[Orientation]:

@@ -80,6 +80,7 @@ class Orientation:
     climbs: float = 0.0  # [m] height of an edge that the speed of the drive lifts it over
     groove: float = 0.0  # [rad] of both faces of the groove that it lies in; 0 on a track with a wall
     any_heading: bool = False  # on that aspect it is known however it is turned
+    at_inner_wall: bool = False  # behind a twist: the wall is the floor that stands at the inner side
 
     @property
     def name(self) -> str:
@@ -100,6 +101,17 @@ class Orientation:
         Orientation
         """
         return replace(self, track=track, **changes)
+
+    def against_inner_wall(self) -> Self:
+        """Return it as it lies behind a twist: its wall is the floor that stands at the inner side.
+
+        Returns
+        -------
+        Orientation
+            Its ``distance`` is from that wall, outwards; where it touches it is not known.
+        """
+        inwards = float(self.outline[:, 1].max())
+        return replace(self, distance=inwards, touching=None, at_inner_wall=True)
 
     @property
     def solid(self) -> Part:

@@ -63,13 +63,13 @@ def _leads(orientation: Orientation) -> str:
     """Return what of a part is ahead or behind, at the wall or at the free edge; '' if nothing tells it."""
     if neck(orientation) is not None:
         return "head ahead" if head_first(orientation) else "head behind"
-    plan = orientation.outline
+    plan, free = orientation.outline, -1.0 if orientation.at_inner_wall else 1.0
     low, high = plan.min(axis=0), plan.max(axis=0)
     middle, size = 0.5 * (low + high), high - low
     hole = _largest_hole(orientation)
     if hole is not None:
-        return _where("hole", hole, size) or "hole in the middle"
-    return _where("heavier end", -middle, size)  # the centre of mass is at 0, 0
+        return _where("hole", hole, size, free) or "hole in the middle"
+    return _where("heavier end", -middle, size, free)  # the centre of mass is at 0, 0
 
 
 def _largest_hole(orientation: Orientation) -> Vector | None:
@@ -87,14 +87,17 @@ def _largest_hole(orientation: Orientation) -> Vector | None:
     return np.asarray(centroid(holes[int(np.argmax(sizes))])) - middle
 
 
-def _where(what: str, off: Vector, size: Vector) -> str:
-    """'hole ahead': where something is off the middle by more than ``OFF_SHARE``; '' where it is not."""
+def _where(what: str, off: Vector, size: Vector, free: float) -> str:
+    """'hole ahead': where something is off the middle by more than ``OFF_SHARE``; '' where it is not.
+
+    The free edge is inwards where ``free`` is 1, and outwards where it is -1.
+    """
     x, y = off / size
     if max(abs(x), abs(y)) < OFF_SHARE:
         return ""
     if abs(x) >= abs(y):
         return f"{what} {'ahead' if x > 0.0 else 'behind'}"
-    return f"{what.replace(' end', ' side')} {'at the free edge' if y > 0.0 else 'at the wall'}"
+    return f"{what.replace(' end', ' side')} {'at the free edge' if free * y > 0.0 else 'at the wall'}"
 
 
 def _heavy_side(orientation: Orientation) -> str:

@@ -185,7 +185,7 @@ class ToolingStudy(ReadableRecord, view="tooling.TOOLING_VIEW"):
         if self.wanted is None or self.design is None:
             return ""
         own = HANGING if any(device.action is Action.HANG for device in self.design.devices) else ""
-        return self.state or own or self.orientations[self.wanted].name
+        return self.state or own or self.design.leaves_as or self.orientations[self.wanted].name
 
     def trial_of(self, place: int) -> Any:
         """Return what the trial of an orientation's design said: its TriedDesign; None without one."""

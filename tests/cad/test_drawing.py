@@ -5,6 +5,7 @@ import itertools
 import re
 import zlib
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import ezdxf
@@ -16,17 +17,19 @@ from matplotlib.text import Text
 from solids import RULES, STEEP, STEPPED, TRACK, built, device, planned
 
 from feederscrew import bowl as bowls
+from feederscrew import part as parts
 from feederscrew.bowl.size import Size
 from feederscrew.cad.closed_body import body
 from feederscrew.cad.plan import SolidOptions, material, plan
 from feederscrew.feeding import stream
-from feederscrew.output import bowl_sheet, outlet_poses
-from feederscrew.output.drafting import FRAME
+from feederscrew.output import bowl_sheet, outlet_poses, pose_sheet
+from feederscrew.output.drafting import FRAME, Drawing
 from feederscrew.output.marking import SheetFields
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations
 from feederscrew.sorting.pose_words import describe_pose
 from feederscrew.sorting.tooled_track import lay_out
+from feederscrew.sorting.verdicts import verdict
 
 CASES = {
     "cylinder": ("narrowed and rails", TRACK, SolidOptions()),
@@ -77,6 +80,66 @@ def test_the_part_stands_at_the_outlet_as_it_leaves_and_beside_each_device(posed
     other = next(one for one in coming.lying if one.name != leaves.name and not one.returned)
     posed_as = outlet_poses.find_outlet_poses(posed, SimpleNamespace(wanted=f"{other.name} or X@1"))
     assert posed_as.leaving is other
+
+
+PARTS = Path(__file__).parents[2] / "parts"
+TWIST = device("twisted track", angle=np.radians(80.0), length=0.12)
+
+
+def seen_from_ahead(pose):
+    """The boxes (2, 2) [mm] of part, wall and track that the sheet of an outlet shows from ahead; its texts.
+
+    Least and most, across and up from the foot of the wall, in the part's size.
+    """
+    drawing = Drawing()
+    pose_sheet.draw_outlet_views(drawing, pose, (0.0, 0.0, 300.0, 200.0))
+    lines = {}
+    for layer, kind, points, _ in drawing.sheets[0]:
+        if kind == "line":
+            lines.setdefault(layer, []).append(np.asarray(points))
+    _, wall, track = lines["OUTLINE"]  # the first is the wall from above
+    beside = max(line[:, 0].max() for line in lines["CENTRE"])  # where the views to the left of it end
+    part = np.concatenate([line for line in lines["EDGE"] if line[:, 0].min() > beside])
+    (title,) = (words for words in drawing.texts(0) if words.startswith("part at the outlet"))
+    paper, real = title.split(" ")[-1].split(":")
+    boxes = (np.array([points.min(axis=0), points.max(axis=0)]) - wall[0] for points in (part, wall, track))
+    return [box * float(real) / float(paper) for box in boxes], drawing.texts(0)
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_behind_a_twist_the_wall_of_the_sheet_is_the_floor_that_stood_up(own):
+    """A part turns with its track by a right angle: what was over the floor is off the wall, outwards.
+
+    It leaves in a pose that the level track has too, or in one of its own.
+    """
+    ring = [(0, 0), (30, 0), (30, 4), (12, 4), (12, 15), (0, 15)]
+    bracket = shapes.part(shapes.prism(ring, 10.0), "bracket")
+    part = parts.load(PARTS / "lbracket_30x20x15.stl") if own else bracket
+    every, seen = orientations(part, find(part), TRACK), 0
+    devices = (device("gap", limit=9e-3), TWIST) if own else (TWIST,)
+    sheet = study(None)
+    sheet.bowl = replace(sheet.bowl, devices=devices, track=TRACK)
+    sheet.order.part, sheet.order.rule = part, "hops"
+    sheet.order.on_track = stream.along(every, find(part), devices)
+    for row, one in enumerate(every):
+        outcome = verdict(TWIST, one, every)
+        is_asked = not own or sheet.order.on_track.leaves_as[row] != row  # no other leaves by its name
+        if one.returned or not outcome.margin > 0.0 or bool(outcome.onto) == own or not is_asked:
+            continue
+        asked = one if own else every[outcome.onto[0][0]]
+        sheet.order.wanted = asked.aspect, asked.heading
+        _, pose = outlet_poses.find_leaving(sheet)
+        (drawn, wall, track), words = seen_from_ahead(pose)
+        turned, near = [[-1e3 * one.height, 0.0], [0.0, 1e3 * one.width]], 0.05 * 30.0  # of its size
+        np.testing.assert_allclose(drawn, turned, atol=near)
+        assert wall[0, 0] == wall[1, 0] == 0.0 and track[0, 0] < drawn[0, 0] and track[1, 0] == 0.0
+        assert "from above, wall above" in words and "from the free edge" in words
+        seen += 1
+        # and on the level as ever
+        (drawn, wall, track), words = seen_from_ahead(one)
+        assert drawn[0, 0] > -0.1 and track[0, 0] == 0.0 and track[1, 0] > drawn[1, 0]
+        assert "from above, wall below" in words
+    assert seen
 
 
 def shortest(length):

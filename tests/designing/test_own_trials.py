@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.ensemble import wilson
@@ -11,7 +12,9 @@ from feederscrew.bowl.devices.kinds import CostClass, make_device
 from feederscrew.designing import short_trials, tooling_trials
 from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.output import tooling as tables
+from feederscrew.resting.aspects import find
 from feederscrew.sorting.isolating import chain
+from feederscrew.sorting.orientations import orientations
 from feederscrew.sorting.tooling import ToolingSearch, tooling, tooling_without
 
 
@@ -248,3 +251,33 @@ def test_what_is_printed_is_the_trials_and_a_least_without_one(study):
     assert not one.agrees and "agrees" not in tables.remarks(own)[0]
     wider = replace(one, efficiency_ends=(0.0, 1.0))
     assert wider.agrees and "the trial agrees" in tables.remarks(replace(study, trials=(wider,)))[0]
+
+
+@pytest.mark.parametrize("angle", [80, 68])
+def test_of_a_file_with_a_twist_its_own_chain_is_tried_and_holds_as_the_rule_says(
+    monkeypatch, tmp_path, angle
+):
+    """Nothing may stand behind a twist: no other chain is looked for, of any class."""
+    lines = "wiper: {clearance: 6 mm, sweep: 30 deg}", "narrowed track: 11 mm"
+    lines = (*lines, f"twisted track: {{angle: {angle} deg, length: 120 mm}}")
+    path = tmp_path / "bowl.yaml"
+    path.write_text("track: {width: 30 mm}\ndevices:\n" + "".join(f"  - {line}\n" for line in lines))
+    part, bowl = shapes.part(shapes.box(24, 14, 4)), bowls.read(path)
+    aspects, asked = find(part), {"search": ToolingSearch(rule="closed")}
+    (wanted,) = (one for one in orientations(part, aspects, bowl.track) if one.name == "B@0")
+    assert wanted.height == pytest.approx(0.014)  # on the side that was at the wall
+    asked["aspect_shares"] = aspects
+    static = tooling(part, bowl, wanted.name, **asked)
+
+    def again(kinds, cost_class=None):
+        return tooling_without(kinds, part, bowl, wanted.name, cost_class=cost_class, **asked)
+
+    tried = tooling_trials.try_designs(static, again)
+    (own,) = tried.trials
+    with monkeypatch.context() as patched:  # also where a trial denies it
+        patched.setattr(tooling_trials, "_try_design", Verdicts(9))
+        patched.setattr(tooling_trials, "search_chains", lambda *_: pytest.fail("nothing is searched"))
+        assert [bool(one.faults) for one in tooling_trials.try_designs(static, again).trials] == [True]
+    assert own.agrees and own.devices == tuple(f"{one.kind}: {one.text}" for one in bowl.devices)
+    assert tried.isolates(tried.wanted) and tried.design.devices == bowl.devices
+    assert own.efficiency == pytest.approx(static.design.efficiency, abs=0.01)

@@ -8,13 +8,17 @@ import pytest
 import shapes
 from on_track import WIDE, block, coming, load, lying, named, pick, read, slanted
 
+from feederscrew.arrivals.entry import Shares
 from feederscrew.base.errors import FeederError
 from feederscrew.bowl.devices.base import UNSURE
 from feederscrew.bowl.devices.kinds import make_device
+from feederscrew.feeding.rate import rate
+from feederscrew.resting.aspects import find
 from feederscrew.sorting.device_passages import worst_passage
 from feederscrew.sorting.fates import course, leading_devices
 from feederscrew.sorting.on_side import find_on_side, side_levers
 from feederscrew.sorting.tooled_track import lay_out
+from feederscrew.sorting.tooling import ToolingSearch, tooling
 from feederscrew.sorting.verdicts import verdict
 
 DEG = math.radians(1.0)
@@ -165,3 +169,60 @@ def test_it_begins_at_its_own_place_over_its_own_length(tmp_path):
     for changes in (tooled.banks, tooled.walls):
         ((start, end, angle),) = changes
         assert (end - start, angle) == (pytest.approx(0.09), pytest.approx(75.0 * DEG))
+
+
+def test_behind_it_the_wall_is_the_floor_that_stood_up_as_far_off_as_that_was_below():
+    """Of poses of their own and of those of the level track, which some parts come back to."""
+    seen = set()
+    for part in (block(), load("lbracket_30x20x15")):
+        every = coming(part)
+        for one in every:
+            passage = worst_passage(twist(), one, every)
+            if passage.verdict.margin > 0.0:
+                after = passage.after
+                # known within ten degrees of heading: off by as much of the part's reach at most
+                slack = 1e-4 if part.name == "block" else math.sin(10.0 * DEG) * one.length
+                assert after.at_inner_wall and not one.at_inner_wall
+                assert after.distance == pytest.approx(one.posture.height, abs=slack)
+                seen.add(after.name in {other.name for other in every})
+        # what lies so on the level keeps its wall
+        assert not any(one.at_inner_wall for one in every)
+    assert seen == {True, False}
+
+
+CUTS = "wiper: {clearance: 6 mm, sweep: 30 deg}", "narrowed track: 11 mm"
+TWIST_LINE = "twisted track: {angle: 80 deg, length: 120 mm}"
+
+
+@pytest.mark.parametrize(
+    ("part", "lines"),
+    [
+        (block(24, 14, 4), CUTS),
+        (block(24, 14, 4), ("banked track: 4 deg", "canyon: 4 mm")),
+        (load("lbracket_30x20x15"), ("gap: 9 mm",)),
+    ],
+    ids=["cuts", "canyon on a bank", "gap"],
+)
+def test_tooling_says_of_a_file_with_a_twist_what_the_rate_says(tmp_path, part, lines):
+    bowl, aspects, ratios = read(tmp_path, *lines, TWIST_LINE), find(part), []
+    search, every = ToolingSearch(rule="closed", turn=True), [one for one in coming(part) if not one.returned]
+    for one in every[:6]:
+        study = tooling(part, bowl, one.name, aspect_shares=aspects, search=search)
+        rated = rate(part, bowl, one.name, rule="closed", aspect_shares=Shares(aspects)).rate
+        design = study.design
+        assert design.devices == bowl.devices and not design.cuts
+        assert np.nan_to_num(design.purity) == pytest.approx(np.nan_to_num(rated.purity))
+        assert study.isolates(study.wanted) == (np.nan_to_num(rated.purity) >= design.least_purity)
+        if rated.efficiency > 0.0:
+            ratios.append(design.efficiency / rated.efficiency)
+    # the rate counts of what the bare track carries, tooling of all that come
+    assert ratios and ratios == pytest.approx([ratios[0]] * len(ratios)) and 0.9 < ratios[0] <= 1.0
+
+
+def test_tooling_names_the_pose_to_ask_for_where_a_twist_has_turned_the_one_that_was(tmp_path):
+    part = block(24, 14, 4)
+    bowl = read(tmp_path, *CUTS, TWIST_LINE)
+    flat = pick(coming(part), length=24, height=4)
+    study = tooling(part, bowl, flat.name, aspect_shares=find(part), search=ToolingSearch(rule="closed"))
+    edge = pick(study.orientations, length=24, height=14)
+    assert any(f"leaves as {edge.name}" in reason for reason in study.design.reasons)

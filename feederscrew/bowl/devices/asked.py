@@ -155,6 +155,9 @@ class LyingPart(Protocol):
     def on_track(self, track: "Track", **changes: Any) -> Self:
         """Return it on another stretch of track, with changes of its own fields."""
 
+    def against_inner_wall(self) -> Self:
+        """Return it as it lies behind a twist: its wall is the floor that stands at the inner side."""
+
 
 class HangingPart(LyingPart, Protocol):
     """A part that hangs by its head between rails."""

@@ -223,7 +223,8 @@ class TwistedTrack(Lean):
 
     def onward(self, orientation: Lying) -> Lying:
         # the wall that the floor has become holds it: what would tip on the level does not
-        return orientation.on_track(orientation.track, falls_off=False, turns_over=False, may_tip=False)
+        held = orientation.on_track(orientation.track, falls_off=False, turns_over=False, may_tip=False)
+        return held.against_inner_wall()
 
     def judged(self, encounter: Encounter) -> Verdict:
         return encounter.stood_on_side(self.angle)

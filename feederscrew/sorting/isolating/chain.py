@@ -690,6 +690,7 @@ class Design:
     least_purity: float = ISOLATED_PURITY  # [1] from which it is said to isolate
     surely: float = 0.0  # [1] of the efficiency, what does not roll or rock on its way: the least of it
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
+    leaves_as: str = ""  # name of the state in which it leaves, where it is known
 
     @cached_property
     def reasons(self) -> tuple[str, ...]:
@@ -877,6 +878,9 @@ def propose(task: DesignTask, cuts: Sequence[Cut], is_returned: Bools, same: Boo
     if hopeful is not None and hopeful < least:
         remarks = [f"only {100.0 * hopeful:.3g} % of what leaves is so"]
     impure = bool(remarks)
+    becomes = flow.states[int(flow.leaving[wanted].argmax())].name
+    if any(device.on_side for device in task.before) and flow.leaving[wanted].any() and not fed > 0.0:
+        remarks.append(f"{orientations[wanted].name} leaves as {becomes}: ask for that one")
     against = np.array(names)[(unsure > 0.0) & task.often]
     if len(against):
         remarks.append(f"no verdict is sure to return {' '.join(against)}: the purity counts it as leaving")
@@ -909,6 +913,7 @@ def propose(task: DesignTask, cuts: Sequence[Cut], is_returned: Bools, same: Boo
         ),
         inseparable=tuple((orientations[wanted], orientations[k], task.margin) for k in left),
         remarks=tuple(remarks),
+        leaves_as=flow.states[flow.leaves_as(wanted)].name,
     )
 
 

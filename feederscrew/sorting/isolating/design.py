@@ -124,7 +124,8 @@ def design(
     search = search or hole_search.HoleSearch()
     task = chain.design_task(orientations, shares, wanted, margin, purity, before, constraints=constraints)
     proposal = _design_returning(task, search.start())
-    if task.constraints.turn and not (proposal.isolated and proposal.efficiency >= efficiency > 0.0):
+    may_turn = task.constraints.turn and _is_open(before)
+    if may_turn and not (proposal.isolated and proposal.efficiency >= efficiency > 0.0):
         # turning devices before all others, where that delivers enough more
         enough = GAIN if efficiency <= 0.0 else 1.0
         for cuts in turning_chains(task):
@@ -155,10 +156,16 @@ def design(
     return replace(proposal, remarks=(*proposal.remarks, *reasons)) if reasons else proposal
 
 
+def _is_open(devices: Sequence[Device]) -> bool:
+    """Whether others may stand behind devices: parts neither hang behind them nor are on their side."""
+    return not any(device.action is Action.HANG or device.on_side for device in devices)
+
+
 def _design_returning(task: DesignTask, search: HoleSearch) -> Design:
     """The best chain of devices that only return parts: they leave lying, or hanging."""
-    if any(device.action is Action.HANG for device in task.before):
-        return chain.propose(task, (), np.zeros(len(task.orientations), dtype=bool))
+    if not _is_open(task.before):  # it is judged by what leaves of it
+        is_twisted = any(device.on_side for device in task.before)
+        return chain.propose(task, (), np.full(len(task.orientations), is_twisted))
     outcome = task.constraints.outcome
     hung = (
         design_rails(task)
