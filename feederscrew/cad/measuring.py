@@ -12,7 +12,8 @@ from feederscrew.cad.facets import Body
 from feederscrew.cad.plan import FULL_TURN_RAD, SEEN, SURE, BowlPlan
 
 WALL_RAY_HEIGHT_M = 5e-4  # [m] over the track, where its wall is met
-RIM_SECTION_RAD = -0.3 - 1e-4  # [rad] before the outlet, beside the corners of facets: there is the rim
+RIM_SECTION_RAD = -0.3  # [rad] before the outlet: there is the rim
+BESIDE_CORNER_RAD = 1e-6  # [rad] so near to corners of facets, which lie on the circle, a ray meets the wall
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,8 @@ def measures(solid: BowlSolid) -> Measures:
     # rim and wall: before every groove, where the wall is open
     high = plan.top - 1e-3
     starts = [float(path.angle(groove.begin)) - 0.1 for groove in track.groove_spans(plan)]
-    at = min([RIM_SECTION_RAD, *starts])
+    step = FULL_TURN_RAD / plan.segments
+    at = step * float(np.floor(min([RIM_SECTION_RAD, *starts]) / step)) - BESIDE_CORNER_RAD
     rim = facets.first_met(body, (0.0, 0.0, high), towards(at, high))
     # floor: where it lies bare by the wall, or about, opposite to the track's first rise
     bare = float(path.angle(0.0)) - 0.1

@@ -23,7 +23,7 @@ from feederscrew.cad.closed_body import body
 from feederscrew.cad.plan import SolidOptions, material, plan
 from feederscrew.feeding import stream
 from feederscrew.output import bowl_sheet, outlet_poses, pose_sheet
-from feederscrew.output.drafting import FRAME, Drawing
+from feederscrew.output.drafting import A3, FRAME, SHEET_GAP_MM, Drawing
 from feederscrew.output.marking import SheetFields
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations
@@ -164,6 +164,62 @@ def test_dimensions_are_those_of_the_solid_and_all_is_within_the_frame(name):
         assert (places >= np.array([left, bottom]) - 0.1).all(), number
         assert (places <= np.array([right, top]) + 0.1).all(), number
         assert not overlapping(figure)  # no letters of a sheet lie on others
+
+
+def lengths_of_a_sheet(drawing):
+    """Lengths [mm] and angles [deg] that dimensions of the first sheet of the DXF file measure."""
+    lengths, angles = [], []
+    for one in ezdxf.read(io.StringIO(drawing.dxf().decode())).modelspace().query("DIMENSION"):
+        if one.dimtype != 6 and one.dxf.defpoint.x < A3[0]:
+            size = one.get_measurement()
+            if one.dimtype == 5:
+                angles.append(size)
+            else:
+                lengths.append(size * one.get_dim_style().dxf.dimlfac)
+    return sorted(lengths), sorted(angles)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_dimensions_of_the_first_sheet_are_those_of_the_bowl_and_its_springs(name):
+    solid = built(*CASES[name], turns=1.8)
+    sheet, own = study(solid), solid.plan
+    lengths, angles = lengths_of_a_sheet(bowl_sheet.draw_sheets(sheet))
+    machine, banks = sheet.bowl.machine, int(sheet.bowl.sizing.banks)
+    radius = own.path.radius
+    heights = float(np.ptp(solid.vertices[:, 2])), float(own.path.height(own.path.end))
+    inner, outer = 2.0 * radius, 2.0 * (radius + own.material.wall)
+    if own.stairs is not None:
+        inner, outer = radius, float(np.ptp(solid.vertices[:, 0]))
+    leaves = -(-int(machine.leaves) // banks)  # of the largest bank, with spacers of their thickness between
+    stack = (2 * leaves - 1) * machine.leaf_thickness
+    wanted = [*heights, inner, outer, 2.0 * machine.spring_radius, machine.leaf_length, stack]
+    np.testing.assert_allclose(lengths, sorted(1e3 * size for size in wanted), rtol=0.0, atol=0.02)
+    to_first = (90.0 - np.degrees(own.turned)) % 360.0  # from the outlet to the first bank
+    tilts = sorted([360.0 / banks, np.degrees(machine.spring_angle), *([to_first] if to_first else [])])
+    np.testing.assert_allclose(angles, tilts, rtol=0.0, atol=0.01)
+
+
+def test_heights_of_the_track_on_the_last_sheet_are_those_of_its_helix():
+    """Climbs up to a spacing section and from there on, less the step: at each change, and at the outlet."""
+    down, up = (device("spacing section", angle=np.radians(angle)).rewritten() for angle in (-4.0, 5.5))
+    solid = body(
+        planned((down, device("step", limit=4e-3), up), replace(TRACK, climb=np.radians(5.5)), turns=1.5)
+    )
+    plan, drawing = solid.plan, bowl_sheet.draw_sheets(study(solid))
+    (bend, back), ((step, drop),) = (at for at, _ in plan.path.bends), plan.path.drops
+    left, levels, places = (len(drawing.sheets) - 1) * (A3[0] + SHEET_GAP_MM), set(), set()
+    for one in ezdxf.read(io.StringIO(drawing.dxf().decode())).modelspace().query("DIMENSION"):
+        if one.dimtype == 6 and one.dxf.defpoint.x > left:
+            value, factor = one.get_measurement(), one.get_dim_style().dxf.dimlfac
+            is_along = bool(one.dxf.dimtype & 64)
+            (places if is_along else levels).add(factor * (value.x if is_along else value.y))
+    rise, fall = np.tan(np.radians([5.5, 4.0]))
+    top = rise * bend
+    wanted = [top, top - fall * (step - bend) - drop, top - fall * (back - bend) - drop]
+    wanted.append(wanted[-1] + rise * (plan.path.end - back))
+    np.testing.assert_allclose(sorted(levels), sorted(1e3 * z for z in wanted), rtol=0.0, atol=0.02)
+    stops = [0.0, bend, step, back, plan.path.end]
+    np.testing.assert_allclose(sorted(places), [1e3 * s for s in stops], rtol=0.0, atol=0.02)
 
 
 def overlapping(figure):
