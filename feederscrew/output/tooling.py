@@ -22,6 +22,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output.offers import RecordView
 from feederscrew.output.record_lines import tooling_text
 from feederscrew.sorting import device_passages
+from feederscrew.sorting.fates import course
 from feederscrew.sorting.isolating.chain import (
     CUT_COLUMNS,
     DESIGN_COLUMNS,
@@ -666,13 +667,32 @@ def _draw_section(
     fields: marking.SheetFields | None,
 ) -> str | bytes:
     """The drawing as 'dxf' or 'svg', with the outline of the part before the devices and at each."""
-    strip, wanted = section(), study.orientations[_asked_for(study)[1]]
-    outline = np.add(wanted.outline, [0.0, wanted.distance])
-    places = [placed.start + 0.5 * placed.length for placed in strip.devices if not placed.openings]
-    ghosts = [(outline, place) for place in (0.6 * wanted.length, *places)]
+    strip, ghosts = section(), []
+    comes, *at_devices = _poses_along(study, [placed.device for placed in strip.devices])
+    places = [(placed.start + 0.5 * placed.length, pose) for placed, pose in zip(strip.devices, at_devices)]
+    shown = [place for placed, place in zip(strip.devices, places) if not placed.openings]
+    for place, pose in ((0.6 * comes.length, comes), *shown):
+        ghosts.append((np.add(pose.outline, [0.0, pose.distance]), place))
     titles = [("tooling for", study.part.name), ("leaves as", study.leaves_as)]
     look = {"thickness": study.bowl.sizing.sheet, "fields": fields, "titles": titles}
     return getattr(tooling_drawing, kind)(strip, ghosts, mark, **look)
+
+
+def _poses_along(study: ToolingStudy, devices: Sequence[Device]) -> list[Orientation]:
+    """How a part that leaves as it is wanted lies: as it comes, and at each device.
+
+    It comes in the orientation of which most become the wanted one. On a track that has twisted it is shown
+    as it came there: it has turned with floor and wall, along which all is drawn.
+    """
+    _, wanted_row = _asked_for(study)
+    every, flow = study.orientations, course(devices, study.orientations)
+    becomes = study.shares * flow.leaving[:, flow.leaves_as(wanted_row)]
+    if not becomes[wanted_row] > 0.0 and becomes.any():
+        wanted_row = int(np.argmax(becomes))
+    poses = [every[wanted_row]]
+    for passage in device_passages.until_returned(devices, every[wanted_row], every):
+        poses.append(poses[-1] if passage.orientation.at_inner_wall else passage.orientation)
+    return poses + [poses[-1]] * (1 + len(devices) - len(poses))
 
 
 def _step(section: Callable[[], TooledTrack], mark: str) -> bytes:

@@ -14,6 +14,7 @@ import ezdxf
 import numpy as np
 import pytest
 import shapely
+import shapes
 import trimesh
 
 from feederscrew import bowl as bowls
@@ -325,6 +326,70 @@ def test_the_slot_that_parts_hang_in_is_open_at_the_outlet(behind):
     for (_, slot), (low, high) in zip(strip.openings, spans, strict=True):
         assert slot.ring[:, 1].min() == low and slot.ring[:, 1].max() == high
     assert mesh.is_watertight and mesh.body_count == 1
+
+
+def test_the_acceptance_sheet_states_the_drive_of_the_bowl():
+    settings = ["drive.amplitude=0.42 mm", "drive.frequency=47 Hz", "drive.vibration_angle=23 deg"]
+    bowl = bowls.read(None, [*settings, "friction.static=0.37", "sizing.controller=0.8"])
+    rows = {row["quantity"]: row for row in designs.acceptance(design_counts.proved(BRACKET, bowl)).rows()}
+    wanted = {
+        "stroke at the rim, peak to peak": 0.84,
+        "acceleration, peak": (2.0 * np.pi * 47.0) ** 2 * 0.42e-3,
+        "frequency of the drive": 47.0,
+        "vibration angle": 23.0,
+        "drive setting": 80.0,
+        "reserve of the drive": 25.0,
+        "angle at which a part slides down a tilted strip": np.degrees(np.arctan(0.37)),
+    }
+    for name, value in wanted.items():
+        assert float(rows[name]["computed"]) == pytest.approx(value, rel=1e-4), name
+        ends = float(rows[name]["low"]), float(rows[name]["high"])
+        assert ends == pytest.approx((0.9 * value, 1.1 * value), rel=1e-4), name
+
+
+def part_in_plan(part, one):
+    """Corners (K, 2) [m] of a part as it lies, from the foot of its weight: ahead, and inwards."""
+    return ((part.vertices - part.centre_of_mass) @ one.axes.T)[:, :2]
+
+
+@pytest.mark.parametrize("name", ["level", "twisted"])
+def test_outlines_of_parts_in_the_drawing_are_those_of_the_part_at_the_wall(name, tmp_path):
+    """Before the devices, and at each that is no cut: as it comes there; bent so that it touches the wall."""
+    lines = {
+        "level": ("height bar: 12 mm", "gap: 5 mm", "banked track: 3 deg"),
+        "twisted": (
+            "height bar: 6 mm",
+            "narrowed track: 11 mm",
+            "twisted track: {angle: 75 deg, length: 120 mm}",
+            "spacing section: {climb: 3 deg}",
+        ),
+    }[name]
+    path = tmp_path / "bowl.yaml"
+    path.write_text("track: {width: 30 mm}\ndevices:\n" + "".join(f"  - {line}\n" for line in lines))
+    part, bowl = shapes.part(shapes.box(24.0, 14.0, 4.0)), bowls.read(path)
+    study = tooling(part, bowl, "A" if name == "level" else "B", aspect_shares=find(part),
+                    search=ToolingSearch(rule="closed"))  # fmt: skip
+    offered = {one.name: one for one in files.offers(study, ())}
+    space = ezdxf.read(io.StringIO(offered["tooling.dxf"].make().decode())).modelspace()
+    rings = {"GHOST": [], "BENT_GHOST": [], "BENT_TRACK": []}
+    for line in space.query("LWPOLYLINE"):
+        if line.dxf.layer in rings:
+            rings[line.dxf.layer].append(np.array([place[:2] for place in line.get_points()]) / 1e3)
+    strip = lay_out(bowl.track, bowl.devices, study.orientations)
+    flat = next(one for one in study.orientations if one.name == "A@0")  # what comes, also of what is turned
+    corner, radius = rings["BENT_TRACK"][0].min(axis=0), bowl.track.radius
+    places = [0.6 * flat.length]
+    places += [placed.start + 0.5 * placed.length for placed in strip.devices if not placed.openings]
+    own = shapely.MultiPoint(part_in_plan(part, flat)).convex_hull
+    assert len(rings["GHOST"]) == len(rings["BENT_GHOST"]) == len(places) > 1
+    for place, drawn, bent in zip(places, rings["GHOST"], rings["BENT_GHOST"], strict=True):
+        turn, away = place / radius, (bent - corner - [0.0, radius]) @ [1.0, 1.0j]
+        assert np.abs(away).max() == pytest.approx(radius, abs=2e-5)  # it touches the wall
+        along = away * np.exp(-1j * turn)  # turned back to the datum, about the axis
+        laid = np.column_stack([along.real, along.imag + radius])
+        for ring, shift in ((drawn, place), (laid, 0.0)):
+            moved = shapely.affinity.translate(own, shift, flat.distance)
+            assert moved.hausdorff_distance(shapely.Polygon(ring)) < 2e-5
 
 
 def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(lying):
