@@ -210,6 +210,15 @@ def through_bores(placed, wall):
     ]
 
 
+def through_openings(placed, width, plate):
+    """Return the probes of openings again, upright below: they go through all of the plate as they begin."""
+    return [
+        Probe("opening", float(s), float(y), level - deep, 0.0, solid)
+        for _, s, y, level, _, solid in _openings(placed, width)
+        for deep in (0.5 * plate, 0.95 * plate)
+    ]
+
+
 def gate_in_notch(placed, play, wall):
     """Return probes of the notch of each gate in the wall, beside its plate and below it, and of the plate.
 

@@ -3,7 +3,9 @@
 import functools
 import io
 import itertools
+import tempfile
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import edge_probes as edges
@@ -13,6 +15,7 @@ import pytest
 import shapely
 import test_one_track as chains
 import track_views as views
+from shapely import affinity
 
 from feederscrew.bowl.devices.features import Features, Jet, Sensor, Slope
 from feederscrew.bowl.devices.kinds import KINDS, make_device
@@ -21,11 +24,12 @@ from feederscrew.cad import closed_body, facets
 from feederscrew.cad import section as printed
 from feederscrew.cad.closed_body import pieces
 from feederscrew.cad.exact import exact_body, exact_file
+from feederscrew.cad.track import CUT_OVERRUN_M, OUTLET_OVERRUN_M
 from feederscrew.output import bowl_sheet, tooling_drawing
 from feederscrew.output.drafting import Drawing
 from feederscrew.resting.aspects import find
 from feederscrew.sorting.orientations import orientations
-from feederscrew.sorting.solid import WALL, WALL_OVERLAP_M
+from feederscrew.sorting.solid import PLATE, WALL, WALL_OVERLAP_M
 from feederscrew.sorting.tooled_track import lay_out
 from feederscrew.trials import queue, staging
 
@@ -271,12 +275,77 @@ def test_bores_go_through_the_wall_and_gates_stand_in_their_notches(case):
     assert seen > 0
 
 
+def wrong_below(tooled, is_solid):
+    """Probes of openings below the surface of which a section says otherwise."""
+    own = [edges.through_openings(placed, tooled.width, PLATE) for placed in tooled.devices]
+    below = list(itertools.chain(*own))
+    return [probe for probe in below if is_solid(edges.in_section(tooled, probe)) != probe.solid]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_openings_of_the_print_go_through_the_plate(case):
+    *_, tooled = laid_out(case)
+    assert not wrong_below(tooled, of_facets([views.mesh(*printed.solid(tooled))]))
+
+
+def opened_again(data):
+    """The bodies [mm] of a STEP file."""
+    from OCP import STEPControl, TopAbs
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "section.step"
+        path.write_bytes(data)
+        reader = STEPControl.STEPControl_Reader()
+        reader.ReadFile(str(path))
+        reader.TransferRoots()
+        return exact_body.parts(reader.OneShape(), TopAbs.TopAbs_SOLID)
+
+
 @pytest.mark.needs("OCP")
 @pytest.mark.parametrize("case", CASES)
 def test_edges_of_the_step_file(case):
+    """Of the file as it is written, opened again; openings also below their edges."""
     *_, tooled = laid_out(case)
-    section = of_exact([exact_file.exact_section(tooled)])
+    (body,) = opened_again(exact_file.section_file(tooled))
+    section = of_exact([body])
     assert not wrong(tooled, lambda _, probe: edges.in_section(tooled, probe), lambda _: section)
+    assert not wrong_below(tooled, section)
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if case not in (4, "blades on a steep bank")])
+@pytest.mark.parametrize("moved", ["inwards", "along", "across"])
+def test_an_opening_that_is_cut_a_twentieth_of_a_millimetre_off_is_noticed(monkeypatch, case, moved):
+    """Each opening in turn, in a body of facets: exact ones are asked at the same places."""
+    *_, tooled = laid_out(case)
+    over, order, turn = facets.over, itertools.count(), 0
+
+    def cut_off(path, ring, *rest):
+        """As ``facets.over``; the opening of the turn is cut off."""
+        if is_opening(ring) and next(order) == turn:
+            area = shapely.Polygon(ring)
+            shift = {"along": (5e-5, 0.0), "across": (0.0, 5e-5)}.get(moved, (0.0, 0.0))
+            area = affinity.translate(area, *shift) if any(shift) else area.buffer(-5e-5, join_style="mitre")
+            ring = shapely.get_coordinates(area)[:-1]
+        return over(path, ring, *rest)
+
+    plan = printed.section_plan(tooled)
+    rings = [
+        outline + [plan.first, 0.0]
+        for _, opening in plan.stretch.opened_to(OUTLET_OVERRUN_M + plan.path.end - plan.first).openings
+        for outline in opening.carried_over(plan.width, CUT_OVERRUN_M)
+    ]
+
+    def is_opening(ring):
+        return any(len(ring) == len(one) and np.allclose(ring, one, rtol=0.0, atol=1e-9) for one in rings)
+
+    assert rings
+    monkeypatch.setattr(facets, "over", cut_off)
+    for number, ring in enumerate(rings):
+        if moved == "across" and ring[:, 1].min() < 0.0 and ring[:, 1].max() > tooled.width:
+            continue  # it goes through the track from side to side
+        turn, order = number, itertools.count()
+        section = of_facets([printed.section_body(tooled, facets)])
+        assert wrong(tooled, lambda _, probe: edges.in_section(tooled, probe), lambda _: section)  # noqa: B023
 
 
 @pytest.mark.needs("OCP")
