@@ -52,6 +52,12 @@ def test_orientations_of_simple_bodies_have_closed_form_limits():
     assert width == pytest.approx(2.0 * np.sqrt(2.0 * 0.03) * 0.003, rel=0.05)
 
 
+def test_a_long_block_on_a_bent_track_passes_a_gap_of_half_its_length():
+    """Its middle is a^2 / 8 R = 1.33 mm nearer to the bowl's axis than its ends: the gap reaches it there."""
+    along = pick(lying(block(40, 12, 8), CURVED), height=8)
+    assert along.length > 0.039 and along.gap == pytest.approx(0.020, rel=1e-3)
+
+
 @pytest.mark.parametrize(("width", "carried"), [(7, False), (9, False), (11, True)])
 def test_a_foot_beyond_the_track_supports_nothing(width, carried):
     """A T on its stem of 4 mm, across the track: its foot begins 8 mm from the wall, its weight is at 10."""
