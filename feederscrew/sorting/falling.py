@@ -386,6 +386,34 @@ def wall_holds(orientation: Orientation, width: float) -> float:
     return max(orientation.climbs * (2.0 * high - orientation.posture.height) / width, 0.0)
 
 
+def astride(orientation: Orientation, ahead: float) -> float:
+    """Return how far the weight of a part is from the sides of its foot, from below it up to a way ahead.
+
+    Over an edge across the track that far ahead, or nearer, the part does not tip to its side.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    ahead : float [m]
+        Up to which the edge is ahead of the weight.
+
+    Returns
+    -------
+    float [m]
+        Negative where the weight is beside the foot; -inf where there is no foot.
+    """
+    hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
+    least = math.inf
+    # a convex outline is narrowest at an end of a stretch
+    for place in (0.0, ahead):
+        across = hull.intersection(shapely.LineString([(place, -FAR), (place, FAR)]))
+        if across.is_empty:
+            return -math.inf
+        low, high = across.bounds[1], across.bounds[3]
+        least = min(least, high + orientation.shift, -orientation.shift - low)
+    return least
+
+
 def rides_over(orientation: Orientation, width: float, length: float) -> bool:
     """Tell whether a part on its round side along the track rides over a hole by its sides.
 
@@ -600,6 +628,8 @@ def lets_go(device: Device, orientation: Orientation) -> bool:
     if span is None:
         if not falls_through(orientation, cut):
             return False
+        if device.swings_clear(orientation):
+            return True
         # no tilt of it ahead may rest on both edges across the track of a hole as wide as the part
         hole = _open(cut, track.width)
         across = orientation.distance + orientation.outline[:, 1]

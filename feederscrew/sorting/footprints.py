@@ -367,7 +367,7 @@ def longest_gap(foot: "Foot", radius: float) -> float:
 
 
 def _extent(foot: "Foot", radius: float) -> float:
-    """How far [m] from the wall a foot reaches, and a little beyond; a straight side is nearest in between."""
+    """How far [m] from the wall a foot reaches, and a little on; a straight side is nearest in between."""
     (x, y), (u, v) = foot.sides[:, :2].T, foot.sides[:, 2:].T
     share = np.clip(-(x * u + y * v) / (u * u + v * v), 0.0, 1.0)
     nearest = min(foot.polar[:, 1].min(), np.hypot(x + share * u, y + share * v).min())

@@ -650,6 +650,7 @@ class DeviceEncounter:
 
     over_hole = _asks(lambda orientation, hole: footprints.least(orientation.axial_foot, hole))
     unheld = _asks(lambda orientation, hole: footprints.unheld(orientation.axial_foot, hole))
+    astride = _asks(falling.astride)  # (ahead)
     leans = _asks(falling.wall_holds)  # (width)
     rides = _asks(falling.rides_over)  # (width, length)
     falls_through = _asks(falling.falls_through)  # (cut)

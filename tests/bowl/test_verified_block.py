@@ -218,6 +218,7 @@ def draw(kind, rng):
                                  "reach": first + length()},
         "silhouette blade": lambda: {"limit": length(), "reach": first, "leaves": first + length(),
                                      "sweep": number(0.1, 1.5), **some(friction=number(0.0, 2.0))},
+        "balance gap": lambda: {"limit": length(), "clearance": length(), "hold": length()},
         "curved deflector": lambda: {"limit": length(), "begin": number(0.1, 0.4), "end": number(0.5, 1.2),
                                      **air},
         "profile gate": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),

@@ -80,6 +80,8 @@ def draw_device(kind, rng, every):
         reach = mm(3.0, 6.0)
         sizes = {"limit": mm(3.0, 7.0), "reach": reach, "leaves": reach + mm(2.0, 6.0)}
         return made(sweep=np.radians(rng.uniform(20.0, 60.0)), **sizes)
+    if kind == "balance gap":
+        return made(limit=mm(6.0, 11.0), clearance=mm(5.0, 8.0), hold=mm(3.0, 12.0))
     if kind == "curved deflector":
         begin, end = np.radians(rng.uniform(10.0, 20.0)), np.radians(rng.uniform(35.0, 60.0))
         limit = mm(4.0, 6.0)

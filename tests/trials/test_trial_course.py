@@ -73,6 +73,8 @@ def bowl(tmp_path):
     ("narrowed_track: 5.9 mm", 0.02, False),
     ("dish-out: {leaves: 4 mm, radius: 14 mm}", 0.02, True),  # its ends bridge the bay
     ("dish-out: {leaves: 4 mm, radius: 14 mm}", 0.012, False),
+    ("balance gap: {gap: 9 mm, clearance: 5.4 mm, hold: 8 mm}", 0.02, True),
+    ("balance gap: {gap: 14.5 mm, clearance: 5.4 mm, hold: 4 mm}", 0.012, False),
     ("canyon: 10.8 mm", 0.012, False),  # beyond what the wall carries
     ("wiper: 4.9 mm", 0.012, False),
     ("profile: [[0 mm, 0 mm], [12.1 mm, 0 mm], [12.1 mm, 5.1 mm], [0 mm, 5.1 mm]]", 0.02, True),

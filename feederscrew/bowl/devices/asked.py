@@ -117,6 +117,18 @@ class LyingPart(Protocol):
         """Greatest gap across the track that it passes [m]; 0 for none."""
 
     @property
+    def ahead(self) -> float:
+        """How far its foot reaches ahead of its weight [m]."""
+
+    @property
+    def behind(self) -> float:
+        """How far its foot reaches behind its weight [m]."""
+
+    @property
+    def nose_swing(self) -> float:
+        """How far from an edge across the track the top of its nose swings as it tips over that edge [m]."""
+
+    @property
     def carry(self) -> float:
         """Way that it travels on unsupported before it has tipped [m]; 0 of one that is only placed."""
 
@@ -218,6 +230,9 @@ class Encounter(Protocol):
 
     def unheld(self, hole: "HoleEdges") -> float:
         """Return the longest way [m] over a hole on which nothing holds it."""
+
+    def astride(self, ahead: float) -> float:
+        """Return how far its weight is from the sides of its foot, from below it up to a way ahead [m]."""
 
     def leans(self, width: float) -> float:
         """Return by how much the wall holds it over a strip of some width [m] removed along the wall."""

@@ -448,6 +448,20 @@ class Device:
             return STOPPED  # it hangs in the slot up to its end
         return RETURNED if encounter.falls_through(opening.ring) else STOPPED
 
+    def swings_clear(self, orientation: LyingPart) -> bool:
+        """Tell whether what tips over the near edge of its opening swings past the far edge for certain.
+
+        Parameters
+        ----------
+        orientation : LyingPart
+
+        Returns
+        -------
+        bool
+            False where that is not known: its tilts between both edges tell then.
+        """
+        return False
+
     def onward(self, orientation: Lying) -> Lying:
         """Return an orientation that it lets pass as it goes on behind it.
 
