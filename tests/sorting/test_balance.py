@@ -92,6 +92,15 @@ def test_a_tail_needs_a_bar_that_holds_it(fork, length, clearance, hold, sure):
     assert (judged.passes == 1.0 and judged.sure) == sure and judged.sure == sure
 
 
+def test_a_tail_with_a_step_below_it_is_not_sure():
+    """A block on two feet, 2 mm over the track between them: the tail meets the far edge by its own foot."""
+    ring = [(0, 0), (12, 0), (12, 2), (36, 2), (36, 0), (40, 0), (40, 5), (0, 5)]
+    along = [one for one in lying(shapes.prism(ring, 12)) if one.length > 39e-3 and one.height < 5.01e-3]
+    light = next(one for one in along if len(one.foot.rings) == 2 and one.ahead > one.behind)
+    judged = verdict(gap(1e3 * light.behind + 2.0, 5.5, 10), light)
+    assert judged.passes == 0.0 and not judged.sure
+
+
 def test_what_is_too_high_stands_at_the_bar(fork):
     own, on_edge = gap(20, 6, 10), [one for one in fork if abs(one.height - 12e-3) < 1e-6]
     light = max(on_edge, key=lambda one: one.ahead)

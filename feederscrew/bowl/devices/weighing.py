@@ -39,6 +39,7 @@ BALANCE_GAP_EXAMPLE = "{gap: 23 mm, clearance: 8.3 mm, hold: 14 mm}"
 MAX_TILT_RAD = math.radians(5.0)
 TILT_PLACES = 9  # of the far edge below the part, at which the hold-down has to meet it
 FAR_M = 10.0  # [m] beyond any part
+STEP_M = 5e-5  # [m] over the track: a foot that is nowhere higher slides up over the far edge
 # what a design tries
 LEAST_WAY_M = 5e-4  # [m] beside the flight, by which parts pass, fall and are held
 LEAST_PLAY_M = 3e-4  # [m] beside the hop, below the hold-down
@@ -141,13 +142,17 @@ class BalanceGap(Gap):
             The lesser of two ways: how far its top reaches beyond the hold-down as its tail leaves the near
             edge, less its flight; and, of what does not roll, how far its weight is from the sides of the
             foot on the far edge.
-            Infinite where its tail reaches the near edge to the end, -inf where it tips back by more than
-            ``MAX_TILT_RAD`` below the hold-down.
+            Infinite where its tail reaches the near edge to the end. -inf where it tips back by more than
+            ``MAX_TILT_RAD`` below the hold-down, or its underside has a step that meets the far edge.
         """
         part = encounter.orientation
         first = self.limit - part.behind  # of the far edge, ahead of the weight, as the tail leaves the near
         if first <= 0.0:
             return math.inf
+        sole = part.aside.intersection(shapely.box(-part.behind, -FAR_M, first, STEP_M))
+        ways = (shapely.box(piece.bounds[0], 0.0, piece.bounds[2], 1.0) for piece in shapely.get_parts(sole))
+        if shapely.union_all(list(ways)).area < self.limit - STEP_M:
+            return -math.inf
         level = self.clearance - self.hold * math.tan(MAX_TILT_RAD)
         for edge in np.linspace(first, 0.0, TILT_PLACES):
             place = edge + self.hold
