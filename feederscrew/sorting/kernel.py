@@ -197,7 +197,7 @@ def over_ring(foot: Foot, low: float, high: float, scratch: Buffers) -> float:
             theta = share * foot.reach / low
             count = _points_under(foot, theta, low, points, count)
             count = _points_under(foot, -theta, low, points, count)
-    return _inset_beside(points, count, foot, scratch.keep)
+    return _inset_beside(points, count, foot, scratch.keep, False)
 
 
 @entry
@@ -282,9 +282,9 @@ def _bound(foot: Foot, hole: HoleEdges, scratch: Buffers, i: int, out: Floats) -
     active = _status(foot, hole, scratch, i)
     # the margins at both ends, and how far any point moves between them
     first = _gather(foot, hole, scratch, low, active, scratch.points)
-    before = _inset_beside(scratch.points, first, foot, scratch.keep)
+    before = _inset_beside(scratch.points, first, foot, scratch.keep, False)
     second = _gather(foot, hole, scratch, high, active, scratch.moved_points)
-    after = _inset_beside(scratch.moved_points, second, foot, scratch.keep)
+    after = _inset_beside(scratch.moved_points, second, foot, scratch.keep, False)
     _lower(out, before, low)
     _lower(out, after, high)
     movement = 0.0
@@ -455,7 +455,7 @@ def _kept_inset(foot: Foot, scratch: Buffers, corners: Ints) -> float:
     for k in corners:
         if scratch.keep[k]:
             count = _add(scratch.points, count, foot.corners[k, 0], foot.corners[k, 1])
-    return _inset_beside(scratch.points, count, foot, scratch.keep)
+    return _inset_beside(scratch.points, count, foot, scratch.keep, False)
 
 
 @compiled
@@ -522,7 +522,7 @@ def _next(points: Points, count: int, ax: float, ay: float) -> int:
 
 
 @compiled
-def _inset_beside(points: Points, count: int, foot: Foot, keep: Ints, is_moving: bool = False) -> float:
+def _inset_beside(points: Points, count: int, foot: Foot, keep: Ints, is_moving: bool) -> float:
     """The same [m] of a foot of which some corners are kept, its own hull known.
 
     ``points``: the corners kept and those that replace the others. ``is_moving``: leave out the sides of the

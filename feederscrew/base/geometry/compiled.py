@@ -110,7 +110,8 @@ def compiled(function: Function) -> Function:
     """Mark a function that is compiled into those that call it; called from Python it runs as it stands.
 
     Such a function is compiled once for all numbers it is handed, not once for each constant. It becomes a
-    part of its callers, whatever its length. It makes no arrays: it is handed them.
+    part of its callers, whatever its length. It makes no arrays: it is handed them. Compiled code
+    hands it all of its arguments, by their order.
     """
     PENDING.append((function, True))
     return function
@@ -326,7 +327,7 @@ def _compile(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[bytes,
         ENTERED.add(function)
         compiled(function)
     _register()
-    name, module = llvm_code(function, [numba_type(kind, KIND_OF) for kind in kinds])
+    name, module = llvm_code(function, [numba_type(kind, KIND_OF) for kind in kinds], _target())
     needed = {f.name for f in module.functions if f.is_declaration and f.name.startswith(("numba_", "NRT_"))}
     return name.encode() + b"\n" + _target().emit_object(module), needed <= set(UNREACHED)
 
