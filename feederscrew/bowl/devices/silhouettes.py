@@ -228,7 +228,7 @@ class SilhouetteBlade(StraightBlade):
         carried = max((one.balcony for one in lying), default=math.inf)
         if not others or not math.isfinite(carried) or any(one.hanging for one in wanted):
             return []
-        needed = np.array([one.balcony for one in others])
+        needed = np.array([min(one.balcony, HIGHEST_M) for one in others])  # of one that nothing carries
         views: list[tuple[float, float, Floats]] = []  # clearance, n, n' of the others
         for height in _clearances(lying, others):
             near = min(nearest_above(one, height - HEIGHT_ROOM_M) for one in lying)
