@@ -1,5 +1,6 @@
 """A silhouette that clears itself: a blade off the wall, over a narrowed track."""
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -264,6 +265,7 @@ class SilhouetteBlade(StraightBlade):
         return sorted(proposed.values(), key=lambda blade: -blade.limit)
 
 
+@functools.lru_cache(maxsize=8192)
 def nearest_above(orientation: LyingPart, height: float) -> float:
     """Return how near to the wall an orientation has material above a height.
 
