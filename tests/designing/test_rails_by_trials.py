@@ -212,12 +212,13 @@ def test_what_hangs_and_stands_at_a_cut_before_the_rails_asks_for_another_kind_o
     other = tries[1]
     assert kinds_before_rails(other) == ["wiper"] and "C@90" in other.cuts[0].returns
     assert 6e-3 < other.cuts[0].device.limit < 10e-3
-    # no other kind of cut tells what stands as high as what hangs: then none is proposed
+    # a blade off the wall alone tells what stands as high as what hangs
     proposal, trial = cut_before(lying, "A@90")
     assert kinds_before_rails(proposal) == ["narrowed track"]
     wanted = lying[search_of(lying).row].name
     tries = list(search_of(lying).mends_of_jams(proposal, trial, [JammedParts(wanted, 1, "", 1)]))
-    assert tries and all(changed.move.kind is not MoveKind.OTHER_CUTS for changed in tries)
+    others = [changed for changed in tries if changed.move.kind is MoveKind.OTHER_CUTS]
+    assert tries and all(kinds_before_rails(other) == ["silhouette blade"] for other in others)
 
 
 @pytest.mark.parametrize(

@@ -462,7 +462,8 @@ def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
 ])  # fmt: skip
 def test_what_leaves_between_rails_hangs_as_the_design_says(devices, state, leaves):
     values = {"gap": {"limit": 8e-3}, "rails": {"span": (2e-3, 6e-3)}}
-    chain = SimpleNamespace(devices=[make_device(kind, "here", **values[kind]) for kind in devices])
+    made = [make_device(kind, "here", **values[kind]) for kind in devices]
+    chain = SimpleNamespace(devices=made, leaves_as="")
     lying = (SimpleNamespace(name="B@0"), SimpleNamespace(name="A@188"))
     study = ToolingStudy(
         BRACKET, bowls.default(), None, "csa", 0.0, lying, np.ones(2), (None, chain), 1, state=state

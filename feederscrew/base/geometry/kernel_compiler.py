@@ -118,7 +118,7 @@ def _load_array(context: Any, builder: Any, kind: Any, words: Any, place: int) -
     return array._getvalue()
 
 
-class Part(NamedTuple):
+class FunctionCode(NamedTuple):
     """A function compiled alone for arguments of some types: the functions that it calls are named in it."""
 
     name: str
@@ -126,7 +126,7 @@ class Part(NamedTuple):
     module: Any  # LLVM's
 
 
-PARTS: dict[tuple[Callable[..., Any], tuple[Any, ...]], Part] = {}  # by the function and the types
+PARTS: dict[tuple[Callable[..., Any], tuple[Any, ...]], FunctionCode] = {}  # by the function and the types
 
 
 def register(function: Callable[..., Any], is_inlined: bool) -> None:
@@ -153,7 +153,7 @@ def register(function: Callable[..., Any], is_inlined: bool) -> None:
         return returned  # the status tells of exceptions: kernels raise none
 
 
-def _compile_alone(function: Callable[..., Any], kinds: tuple[Any, ...], is_inlined: bool) -> Part:
+def _compile_alone(function: Callable[..., Any], kinds: tuple[Any, ...], is_inlined: bool) -> FunctionCode:
     """Compile a function for arguments of some types, without a way to call it from Python or C."""
     # numba takes the two last options, though its annotations do not name them
     options: Any = {"forceinline": is_inlined, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -161,7 +161,7 @@ def _compile_alone(function: Callable[..., Any], kinds: tuple[Any, ...], is_inli
     module = binding.parse_assembly(code.inspect_llvm(code.signatures[0]))
     own = (f.name for f in module.functions if not f.is_declaration and f.linkage == binding.Linkage.external)
     (name,) = own
-    return Part(name, code.nopython_signatures[0].return_type, module)
+    return FunctionCode(name, code.nopython_signatures[0].return_type, module)
 
 
 def numba_type(kind: Any, kind_of: dict[int, Any]) -> Any:

@@ -279,6 +279,10 @@ def nearest_above(orientation: LyingPart, height: float) -> float:
     -------
     float [m]
         Infinite where nothing of it is so high.
+
+    References
+    ----------
+    docs/tooling.md, "Fate": the n of a silhouette blade.
     """
     above = shapely.clip_by_rect(orientation.view_ahead, -HIGHEST_M, height, HIGHEST_M, HIGHEST_M)
     return math.inf if above.is_empty else float(above.bounds[0])
