@@ -48,6 +48,9 @@ class PartTurn(Protocol):
 class LyingPart(Protocol):
     """One aspect of a part at one heading against the wall, in track axes from the foot of its weight."""
 
+    def __hash__(self) -> int:
+        """Return a number by which what was worked out of it is found again."""
+
     @property
     def posture(self) -> "Posture":
         """The part on that aspect, not yet turned."""

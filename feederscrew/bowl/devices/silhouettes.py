@@ -282,7 +282,7 @@ def nearest_above(orientation: LyingPart, height: float) -> float:
 
     References
     ----------
-    docs/tooling.md, "Fate": the n of a silhouette blade.
+    docs/tooling.md, "What becomes of a part that does not pass".
     """
     above = shapely.clip_by_rect(orientation.view_ahead, -HIGHEST_M, height, HIGHEST_M, HIGHEST_M)
     return math.inf if above.is_empty else float(above.bounds[0])
