@@ -10,6 +10,7 @@ from round_bodies import revolved
 from feederscrew import bowl as bowls
 from feederscrew.base.errors import Faults
 from feederscrew.bowl.devices.kinds import KINDS
+from feederscrew.bowl.record import Track
 from feederscrew.sorting.falling import surely_gone
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 
@@ -65,7 +66,7 @@ def test_a_fork_passes_with_its_light_end_ahead_alone(fork, length, clearance, h
 def test_what_may_meet_the_far_edge_as_it_tips_is_not_sure(fork):
     """Between its way ahead and the way by which the top of its nose swings."""
     _, heavy = flat_ends(fork)
-    for length, fate in ((1e3 * BEHIND + 0.1, "stopped"), (1e3 * swing_of(BEHIND) - 0.1, "returned")):
+    for length, fate in ((1e3 * BEHIND + 0.1, "stopped"), (1e3 * swing_of(BEHIND) - 0.1, "stopped")):
         own = gap(length, 6, 10)
         judged = verdict(own, heavy)
         assert judged.passes == 0.0 and not judged.sure
@@ -135,6 +136,16 @@ def test_it_is_proposed_where_the_weight_is_off_the_middle():
     assert not any(proposed(every, one) for one in every)
 
 
+def test_the_way_to_the_hold_down_is_shorter_nearer_to_the_axis():
+    """Radius 150 mm, 23 mm of gap: the far edge is 23.09 mm along the wall, the bar 14 mm farther."""
+    own, bend = gap(23, 8.3, 14), Track(climb=0.0, bank=0.0, radius=0.15, width=0.02)
+    every = lying(block(), bend)
+    bar = 0.15 * np.arcsin(23 / 150) + 14e-3
+    assert own.features(bend, every).blades[0].foot[0] == pytest.approx(bar, rel=1e-9)
+    for one in every[:2]:
+        assert own.hold_below(one) == pytest.approx((0.15 - one.distance) * bar / 0.15 - 23e-3, rel=1e-9)
+
+
 def test_what_a_file_says_of_it_comes_back_as_it_was(tmp_path):
     words = "{gap: 23 mm, clearance: 8.3 mm, hold: 14 mm}"
     own = read(tmp_path, f"balance gap: {words}").devices[0]
@@ -149,5 +160,6 @@ def test_its_bar_stands_at_a_way_behind_its_gap(fork):
     track = pick(fork, height=5).track
     features = gap(20, 6, 10).features(track, fork)
     (opening,), (bar,) = features.openings, features.blades
-    assert bar.foot[0] - opening.end == pytest.approx(10e-3, abs=1e-9)
+    far = track.radius * np.arcsin(20e-3 / track.radius)  # at the wall
+    assert bar.foot[0] - far == pytest.approx(10e-3, abs=1e-9) and opening.end >= far
     assert bar.solid.bounds[:3] == pytest.approx((0.0, 6e-3, track.extent))

@@ -589,7 +589,7 @@ def gate_features(
 
 
 def tall_of(orientations: Sequence[LyingPart], least: float) -> float:
-    """Return how tall a gate is made: twice the tallest part, or the least height, and its frame.
+    """Return how tall a gate is made: as the tallest part, or the least height, and its frame.
 
     Parameters
     ----------

@@ -1,4 +1,7 @@
-"""Balance gap: tells which end of a part is the heavy one, by a gap and a hold-down behind it."""
+"""Balance gap: tells which end of a part is the heavy one, by a gap and a hold-down farther along the track.
+
+The grounds of its formulas, and where they hold: docs/tooling.md, "A balance gap".
+"""
 
 import math
 from collections.abc import Sequence
@@ -34,28 +37,29 @@ if TYPE_CHECKING:
 
 BALANCE_GAP_KEYS = ("gap", "clearance", "hold")
 BALANCE_GAP_EXAMPLE = "{gap: 23 mm, clearance: 8.3 mm, hold: 14 mm}"
-# [rad] by which a part tips back below the hold-down: in trials of a fork of 40 mm, 8 parts each, all pass
-# with up to 11 deg, and all stand with 15
+# [rad] by which a part may tip back, nose up and tail down, until it meets the hold-down: in trials of a fork
+# of 40 mm, 8 parts at each angle, all pass with up to 11 deg, and all stand with 15; half of 11 for others
 MAX_TILT_RAD = math.radians(5.0)
-TILT_PLACES = 9  # of the far edge below the part, at which the hold-down has to meet it
+TILT_PLACES = (
+    9  # of a part on the far edge, from its tail's end to its weight, at which its tilt is looked at
+)
 FAR_M = 10.0  # [m] beyond any part
-STEP_M = 5e-5  # [m] over the track: a foot that is nowhere higher slides up over the far edge
+STEP_M = 5e-5  # [m] over the track: an underside that is nowhere higher than that slides over the far edge
 # what a design tries
-LEAST_WAY_M = 5e-4  # [m] beside the flight, by which parts pass, fall and are held
-LEAST_PLAY_M = 3e-4  # [m] beside the hop, below the hold-down
+LEAST_WAY_M = 5e-4  # [m] of room, more than the flight along the track and than the hop below the hold-down
 
 
 @dataclass(frozen=True)
 class BalanceGap(Gap):
-    """A gap across the track, and a hold-down at a way behind it.
+    """A gap across the track, and a hold-down farther along it.
 
-    A gap alone treats both ends of a part alike: the part needs it to be shorter than both ways from its
-    weight to the ends of its foot. The hold-down keeps the tail up once the nose is below it. So only the way
-    ahead counts: the light end first passes, the heavy end first falls.
+    A gap alone treats both ends of a part alike: it has to be shorter than both ways from the part's weight
+    to the ends of its foot. The hold-down keeps the tail up once the nose is below it. So the way ahead
+    decides: a part with its light end ahead passes, and one with its heavy end ahead falls.
     """
 
     clearance: float = math.inf  # [m] of the hold-down over the track
-    hold: float = 0.0  # [m] from the gap's far edge to the hold-down
+    hold: float = 0.0  # [m] from the gap's far edge to the hold-down, along the wall
 
     kind = "balance gap"
     trade = Trade(
@@ -92,17 +96,31 @@ class BalanceGap(Gap):
         own = {"clearance_mm": self.clearance / MM, "hold_mm": self.hold / MM}
         return {"value_mm": self.limit / MM} | own
 
+    def bar_place(self, radius: float) -> float:
+        """Return how far the hold-down is from the near edge along a wall of a radius, both [m]."""
+        return radius * math.asin(min(self.limit / radius, 1.0)) + self.hold
+
+    def hold_below(self, part: LyingPart) -> float:
+        """Return the way from the far edge to the hold-down where the weight of a part goes [m].
+
+        The hold-down is radial, the gap's edges are parallel: nearer to the bowl's axis the way is shorter.
+        """
+        radius = part.track.radius
+        return (radius - part.distance) * self.bar_place(radius) / radius - self.limit
+
     def features(self, track: "Track", orientations: Sequence[LyingPart]) -> Features:
         gap = super().features(track, orientations)
         plate = shapely.box(0.0, self.clearance, track.extent, tall_of(orientations, self.clearance))
-        bar = Blade(plate, foot=(gap.length + self.hold, 0.0))
-        return replace(gap, length=gap.length + self.hold + bar.thickness, blades=(bar,))
+        bar = Blade(plate, foot=(self.bar_place(track.radius), 0.0))
+        return replace(gap, length=max(gap.length, bar.foot[0] + bar.thickness), blades=(bar,))
 
     def judged(self, encounter: Encounter) -> Verdict:
-        """Return what it does with an orientation, by the way from its weight to the end of its foot ahead.
+        """Return what it does with an orientation.
 
-        It falls where its nose swings past the far edge: see ``LyingPart.nose_swing``. Where it tips over the
-        near edge, but its nose may meet the far one, the verdict is not sure.
+        One whose foot reaches less far ahead of its weight than the gap is long tips over the near edge. It
+        surely falls where the gap is longer than its nose swings (``LyingPart.nose_swing``) and than it flies
+        besides. Any other stands at the hold-down if it is higher, and passes if that holds it (``held``). It
+        passes by what its foot reaches beyond the gap and its flight, and by what is free over its hop.
 
         Parameters
         ----------
@@ -126,7 +144,7 @@ class BalanceGap(Gap):
         return encounter.verdict(max(min(margin, held), 0.0) if held >= 0.0 else -UNSURE)
 
     def hop_blur(self, orientation: LyingPart) -> float:
-        """Return 0: each of its margins is less the hop or the flight already, as ``judged`` says."""
+        """Return 0: ``judged`` takes hop and flight off what they concern."""
         return 0.0
 
     def held(self, encounter: Encounter) -> float:
@@ -141,25 +159,26 @@ class BalanceGap(Gap):
         float [m]
             The lesser of two ways: how far its top reaches beyond the hold-down as its tail leaves the near
             edge, less its flight; and, of what does not roll, how far its weight is from the sides of the
-            foot on the far edge.
-            Infinite where its tail reaches the near edge to the end. -inf where it tips back by more than
-            ``MAX_TILT_RAD`` below the hold-down, or its underside has a step that meets the far edge.
+            foot on the far edge. Infinite where its tail rests on the near edge until its weight is on the
+            far one. -inf where it tips back by more than ``MAX_TILT_RAD`` below the hold-down, or its
+            underside has a step that meets the far edge.
         """
         part = encounter.orientation
-        first = self.limit - part.behind  # of the far edge, ahead of the weight, as the tail leaves the near
+        first = self.limit - part.behind  # how far ahead of the weight the far edge is as the tail leaves
         if first <= 0.0:
             return math.inf
         sole = part.aside.intersection(shapely.box(-part.behind, -FAR_M, first, STEP_M))
         ways = (shapely.box(piece.bounds[0], 0.0, piece.bounds[2], 1.0) for piece in shapely.get_parts(sole))
         if shapely.union_all(list(ways)).area < self.limit - STEP_M:
             return -math.inf
-        level = self.clearance - self.hold * math.tan(MAX_TILT_RAD)
+        hold = self.hold_below(part)
+        level = self.clearance - hold * math.tan(MAX_TILT_RAD)
         for edge in np.linspace(first, 0.0, TILT_PLACES):
-            place = edge + self.hold
+            place = edge + hold
             below = part.aside.intersection(shapely.box(place, -FAR_M, place + BLADE, FAR_M))
             if below.is_empty or below.bounds[3] < level:
                 return -math.inf
-        beyond = _foremost(part, level) - (first + self.hold + BLADE) - part.flight
+        beyond = _foremost(part, level) - (first + hold + BLADE) - part.flight
         # what rolls cannot tip to its side
         return beyond if part.kind == "rolling" else min(beyond, encounter.astride(first))
 
@@ -168,7 +187,7 @@ class BalanceGap(Gap):
 
     def fate(self, encounter: Encounter) -> str:
         part = encounter.orientation
-        reaches = part.ahead >= self.limit or math.hypot(part.ahead, part.height) > self.limit
+        reaches = part.ahead >= self.limit or part.nose_swing > self.limit
         return STOPPED if reaches else super().fate(encounter)
 
     @classmethod
@@ -179,7 +198,7 @@ class BalanceGap(Gap):
         orientations: Sequence[LyingPart],
         where: str,
     ) -> "list[BalanceGap]":
-        """Return the gap midway between what the wanted ones carry and what the heavy ends swing past.
+        """Return the gap midway between the foot that wanted ones have ahead and the widest swing of a nose.
 
         Parameters
         ----------
@@ -193,7 +212,8 @@ class BalanceGap(Gap):
         Returns
         -------
         list of BalanceGap
-            One; none where no competitor falls at it for sure, or a gap alone does the same.
+            One; none where no competitor falls at it for sure, a gap alone carries what is wanted, or what
+            is wanted hangs or does not pass for sure.
         """
         parts = [one.orientation for one in wanted]
         if any(one.hanging for one in wanted):
@@ -206,13 +226,16 @@ class BalanceGap(Gap):
         gap = _whole_steps(0.5 * (ahead + max(swings)))
         if min(part.behind for part in parts) >= gap:
             return []
-        clear = max(part.height + max(LEAST_PLAY_M, part.hop + LEAST_WAY_M) for part in parts)
+        clear = max(part.height + part.hop + LEAST_WAY_M for part in parts)
         clearance = -_whole_steps(-clear)
         top = min(_foremost(part, part.height) - (gap - part.behind) for part in parts)
-        hold = _whole_steps(top - BLADE - way)
+        below = top - BLADE - way  # from the far edge to the hold-down where the weight goes
+        radius, off = parts[0].track.radius, min(part.distance for part in parts)
+        plain = cls(where, gap, clearance=clearance)
+        hold = _whole_steps(radius * (gap + below) / (radius - off) - plain.bar_place(radius))
         if hold <= 0.0:
             return []
-        device = cls(where, gap, clearance=clearance, hold=hold).rewritten()
+        device = replace(plain, hold=hold).rewritten()
         return [device] if all(device.judged(one).margin > 0.0 for one in wanted) else []
 
 
