@@ -8,6 +8,7 @@ from on_track import device, lying, read
 from feederscrew.base.errors import Faults
 from feederscrew.bowl.devices.kinds import KINDS
 from feederscrew.bowl.devices.silhouettes import PLAY_M
+from feederscrew.sorting.isolating.chain import fewest
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 
 # [mm] an angle of 20 x 12 mm, its long leg 4 mm thick and its short one 5 mm; 15 mm long
@@ -89,6 +90,60 @@ def test_a_blade_is_proposed_that_tells_an_angle_from_its_mirror_pose(angle):
     (first, *_) = proposed([angle["off"]], [angle["at"]])
     assert verdict(first, angle["off"]).margin >= 2.4e-4 and verdict(first, angle["at"]).margin <= -9.9e-4
     assert not proposed([angle["off"]], [])
+
+
+def test_blades_are_proposed_the_highest_first_and_leave_a_third_of_the_way(angle):
+    """Against the mirror pose, 7.5 mm off the wall: a room of 0.5 mm takes 1 mm of 15 mm off the reach."""
+    kind, every = KINDS["silhouette blade"], angle["all"]
+    wanted = angle["off"]
+    met = [[DeviceEncounter(one, every) for one in some] for some in ([wanted], [angle["at"]])]
+    (first, *_) = kind.proposals(*met, every, "test")
+    reach = min(15e-3 - 1e-3, wanted.balcony)
+    assert first.reach == pytest.approx(reach, abs=6e-5)
+    carried = wanted.balcony + PLAY_M
+    least = min(angle["at"].balcony + first.reach, carried + 6.0 * 5e-4)
+    assert first.leaves == pytest.approx(carried + (least - carried) / 3.0, abs=6e-5)
+
+
+def test_of_a_channel_the_highest_blade_is_in_front():
+    """It is 12 x 12 mm and 11 mm high, its walls 2 mm thick, its bottom 4 mm.
+
+    On its sides and ends it is 12 mm high: a blade above 11 mm pushes these off.
+    """
+    outline = [(0, 0), (12, 0), (12, 11), (10, 11), (10, 4), (2, 4), (2, 11), (0, 11)]
+    every, kind = lying(shapes.prism(outline, 12)), KINDS["silhouette blade"]
+    upright = [one for one in every if abs(one.height - 11e-3) < 1e-5 and one.balcony < 6.1e-3]
+    wanted, others = upright[0], [one for one in every if one not in upright]
+    met = [[DeviceEncounter(one, every) for one in some] for some in ([wanted], others)]
+    heights = [one.limit for one in kind.proposals(*met, every, "test")]
+    assert heights == sorted(heights, reverse=True)
+    assert heights[0] == pytest.approx(11.5e-3)  # 0.5 mm above what is wanted
+
+
+def test_what_touches_a_blade_at_its_rim_alone_fails_by_that(angle):
+    """The upright leg ends 12 mm over the track: a blade at 11.7 mm has 0.3 mm of it."""
+    assert verdict(blade(11.7, 12, 15), angle["at"]).margin == pytest.approx(-0.3e-3, abs=1e-6)
+
+
+def test_behind_its_end_a_blade_leaves_room_to_fall(angle):
+    """Its foot half a room in, its end r / tan(a) on, and one room of 1.3 times the longest part."""
+    track, every = angle["at"].track, angle["all"]
+    made = blade(6, 12, 15).features(track, every)
+    longest = max(one.length for one in every)
+    assert made.length == pytest.approx(1.5 * 1.3 * longest + 12e-3 / np.tan(np.radians(30.0)))
+    (plate,), (cut,) = made.blades, made.openings
+    assert plate.foot == (pytest.approx(0.65 * longest), 0.0) and plate.solid.bounds[1] == 6e-3
+    assert plate.solid.bounds[2] == pytest.approx(12e-3 / np.sin(np.radians(30.0)))
+    assert cut.span == (15e-3, track.extent) and cut.end == pytest.approx(made.length)
+
+
+def test_of_chains_as_long_the_one_that_pushes_farther_is_taken():
+    low, high = blade(5, 8, 19), blade(7, 8, 19)
+    margins = {low: np.array([1e-3, -6e-4]), high: np.array([1e-3, -9e-4])}
+    shares = np.array([0.0, 1.0])
+    assert fewest(margins, shares, 5e-4) == (high,)
+    gaps = device("gap", limit=5e-3), device("gap", limit=6e-3)
+    assert fewest(dict(zip(gaps, margins.values())), shares, 5e-4) == gaps[:1]  # else the first one
 
 
 def test_what_a_file_says_of_a_blade_comes_back_as_it_was(tmp_path):

@@ -30,6 +30,7 @@ from feederscrew.bowl.devices.base import (
 )
 from feederscrew.bowl.devices.blades import PROPOSED_SWEEP_RAD, StraightBlade
 from feederscrew.bowl.devices.features import Blade, Features, TrackOpening, box_ring
+from feederscrew.bowl.devices.ledges import SHOP_STEP_M
 from feederscrew.bowl.devices.trade import Action, ProposedBy, Trade, ValueSearch
 from feederscrew.bowl.devices.values import DeviceFields
 
@@ -44,7 +45,6 @@ SILHOUETTE_KEYS = ("clearance", "reach", "leaves")
 SILHOUETTE_EXAMPLE = "{clearance: 5 mm, reach: 3.5 mm, leaves: 8 mm, sweep: 30 deg}"
 MIN_SWEEP_RAD = math.radians(5.0)  # [rad] the least of a blade
 HIGHEST_M = 10.0  # [m] above any part
-SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
 MOST_LEFT = 6.0  # rooms beyond what carries the wanted ones, from which the width is taken at most
 # [1] of the way from what carries the wanted ones to what the others need: with 100 push buttons in a full
 # track 4 others left at a half of it (reach 3 mm, 7.45 mm left), 1 at 3.25 and 7.2 mm, none at 3.6 and 7.2 mm
@@ -66,7 +66,8 @@ class SilhouetteBlade(StraightBlade):
     Its lower edge lies ``limit`` over the track, and it ends ``reach`` off the wall. Of a part that has
     material above that edge and nearer to the wall, it pushes this out as far as it reaches. The track below
     is only ``leaves`` wide: a part that is pushed so far that its weight lies beyond this falls off. A part
-    whose silhouette leaves the blade room travels on along the wall. Unlike a profile gate it stops nothing.
+    whose silhouette leaves the blade room travels on along the wall. Nothing stands before it as before a
+    profile gate, but where its face pushes at the rim of a tall part alone, that may tip and stand.
     """
 
     reach: float = 0.0  # [m] off the wall, up to which the blade stands out
@@ -187,10 +188,7 @@ class SilhouetteBlade(StraightBlade):
             return encounter.verdict(min(room, carried) if kept >= 0.0 and room > 0.0 else min(kept, -UNSURE))
         near, _, _, top = in_way.bounds
         pushed = min(self.reach - near, top - self.limit, self.reach - near - kept)
-        fails = max(-kept, pushed)
-        if fails <= 0.0:
-            return encounter.verdict(-UNSURE)
-        return encounter.verdict(-fails)
+        return encounter.verdict(-max(-kept, pushed, UNSURE))
 
     @classmethod
     def proposals(

@@ -364,16 +364,16 @@ def fewest(
             returned_by = -np.array([margins[device] for device in combination])
             is_returned = (returned_by >= margin).any(axis=0)
             held = float(competitors[is_returned].sum())
-            if held < weight - 1e-12 or jams(margins, combination, competitors, margin):
-                continue
-            least = float(
-                np.nanmax(returned_by[:, is_returned & (competitors > 0.0)], axis=0).min(initial=np.inf)
-            )
             # a blade that pushes parts off is the surer, the farther it pushes them
-            is_surer = (
-                len(best) == count and any(one.action is Action.PUSH for one in best) and least > surest
-            )
-            if held > weight + 1e-12 or is_surer:
+            pushes = len(best) == count and any(one.action is Action.PUSH for one in best)
+            returns_more, returns_as_much = held > weight + 1e-12, held >= weight - 1e-12
+            if not (returns_more or (pushes and returns_as_much)):
+                continue
+            if jams(margins, combination, competitors, margin):
+                continue
+            rows = is_returned & (competitors > 0.0)
+            least = float(np.nanmax(returned_by[:, rows], axis=0).min(initial=np.inf))
+            if returns_more or least > surest:
                 best, weight, surest = combination, held, least
     return best
 
