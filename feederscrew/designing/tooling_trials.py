@@ -136,7 +136,8 @@ def try_designs(
 ) -> ToolingStudy:
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
-    Of an orientation that was asked for, classes are tried in the order of cost, until the trial confirms a
+    Where the trial denies every one that it tries of a table, the search of ``feeder design`` looks for a chain
+    of the best one. Of an orientation that was asked for, classes are tried in the order of cost, until the trial confirms a
     chain: that of the static rule, what the search of ``feeder design`` finds, and what the static rule has
     without some kinds of devices. Chains of the static rule that isolate nothing are not tried.
 
@@ -171,16 +172,61 @@ def try_designs(
         interrupt from the keyboard it is ``partial``, with the trials that ended.
     """
     run = RunSettings(seed, jobs, before=before)
-    if study.wanted is None or propose is None:
-        return _try_table(study, run, until)
     classes = tuple(CostClass) if cost_class is None else (CostClass(cost_class),)
     may_use = tuple(without), OutcomeKind(outcome), heading_given
+    if study.wanted is None:
+        tried = _try_table(study, run, until)
+        if propose is None or tried.partial or not _is_all_denied(tried):
+            return tried
+        return _look_further(tried, classes, run, until, frozenset(kept_keys), may_use)
+    if propose is None:
+        return _try_table(study, run, until)
     asked = AskedOrientation(study, propose, run, until, frozenset(kept_keys), *may_use)
     for one in classes:
         asked.try_class(one)
         if asked.is_over or any(share >= efficiency for share in asked.confirmed):
             break
     return asked.answer(efficiency)
+
+
+def _is_all_denied(study: ToolingStudy) -> bool:
+    """Whether designs of a table were tried, and the trial denied every one."""
+    return bool(study.trials) and all(trial.faults for trial in study.trials)
+
+
+def _look_further(
+    study: ToolingStudy,
+    classes: Sequence[CostClass],
+    run: RunSettings,
+    until: float,
+    kept_keys: frozenset[str],
+    may_use: tuple[tuple[str, ...], OutcomeKind, bool],
+) -> ToolingStudy:
+    """A table whose designs were all denied, with what the search finds for its best orientation.
+
+    As where that is asked for by its aspect alone, so that both give one answer. Orientations that left in
+    its trial too, hanging, have the same chain.
+    """
+    place = study.trials[0].wanted
+    asked = AskedOrientation(replace(study, wanted=place), None, run, until, kept_keys, *may_use)
+    for one in classes:
+        asked.try_class(one)
+        if asked.is_over or asked.confirmed:
+            break
+    if not asked.confirmed:
+        return replace(study, partial=asked.is_stopped)
+    found = asked.answer(0.0)
+    design, first = found.design, found.trials[0]
+    if design is None:
+        return study
+    places, designs = [place], list(study.designs)
+    if any(device.action is Action.HANG for device in design.devices):
+        places += [k for k, one in enumerate(study.orientations) if k != place and one.name in first.left]
+    for k in places:
+        designs[k] = replace(design, wanted=k)
+    others = tuple(trial for trial in study.trials if trial.wanted not in places)
+    trials = tuple(replace(first, name=study.orientations[k].name, wanted=k) for k in places)
+    return replace(study, designs=tuple(designs), trials=(*trials, *others))
 
 
 def _try_table(study: ToolingStudy, run: RunSettings, until: float) -> ToolingStudy:
@@ -208,7 +254,7 @@ class AskedOrientation:
     def __init__(
         self,
         study: ToolingStudy,
-        propose: Propose,
+        propose: Propose | None,
         run: RunSettings,
         until: float,
         kept_keys: frozenset[str],
@@ -287,10 +333,12 @@ class AskedOrientation:
         is_twisted = any(device.on_side for device in self.study.bowl.devices)
         if is_twisted and own is not cost_class:  # nothing stands behind a twist: the file has one chain
             return
-        if own is not cost_class and own.number < cost_class.number:
+        if self.propose is not None and own is not cost_class and own.number < cost_class.number:
             first = self.propose((), cost_class)
             design = first.design
-        is_static = own.number <= cost_class.number and _may_isolate(design, cost_class)
+        # without a way to propose others the design was denied before
+        is_static = self.propose is not None and own.number <= cost_class.number
+        is_static = is_static and _may_isolate(design, cost_class)
         if is_static and design is not None and not self._try(first, design).faults:
             return
         if is_twisted:
@@ -300,20 +348,20 @@ class AskedOrientation:
                 return
             if self.is_over:
                 return
-        if is_static and design is not None:
-            self._try_ways_on(cost_class, design)
+        if is_static and design is not None and self.propose is not None:
+            self._try_ways_on(cost_class, design, self.propose)
 
     def _try(self, study: ToolingStudy, design: Design) -> TriedDesign:
         tried = _try_design(study, design, self.run)
         self.tried.append((study, tried))
         return tried
 
-    def _try_ways_on(self, cost_class: CostClass, design: Design) -> None:
+    def _try_ways_on(self, cost_class: CostClass, design: Design, propose: Propose) -> None:
         """Try chains without one or more kinds of devices of one that the trial denies."""
         pending, searched, begun = _ways_on((), design), 0, len(self.tried)
         while pending and searched < SEARCHES and len(self.tried) - begun < TRIES - 1 and not self.is_over:
             kinds, searched = pending.pop(0), searched + 1
-            other = self.propose(kinds, cost_class)
+            other = propose(kinds, cost_class)
             if other.partial:
                 raise KeyboardInterrupt
             changed = other.design

@@ -64,7 +64,7 @@ SURE_M = 1e-6  # [m] a smaller margin stands for a verdict that is not sure
 TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
-    ("height_mm", "track_width_mm"),
+    ("height_mm", "track_width_mm", "track_bank_deg"),
     ("length_mm", "width_mm"),
     ("steady",),
     ("status",),
@@ -146,7 +146,7 @@ def _rows(study: ToolingStudy) -> list[Cells]:
             "share": float(share),
             **values(ORIENTATION_SIZE_COLUMNS, item),
         }
-        names = ("isolated", "status", "class", "devices", "track_width_mm", "margin_mm", "steady")
+        names = ("isolated", "status", "class", "devices", *(one.name for one in DESIGN_COLUMNS), "steady")
         row |= dict.fromkeys((*names, *LEAVING, "left_over", "reasons"))
         if design is not None:
             row |= {
@@ -404,7 +404,10 @@ def trials(study: ToolingStudy) -> tuple[list[str], list[str]]:
     for trial in study.trials if study.design is None else study.trials[1:]:
         chain = "; ".join(trial.devices_words or trial.devices)
         lead = "" if study.design is None else f"tried as well, {chain}: "
-        sentences[not trial.faults].append(f"{lead}{trial.sentence}")
+        further = ""
+        if study.design is None and trial.faults:
+            further = f"; --aspect {study.orientations[trial.wanted].name} tries other chains"
+        sentences[not trial.faults].append(f"{lead}{trial.sentence}{further}")
     return sentences
 
 

@@ -225,6 +225,44 @@ def test_only_what_the_trial_does_not_deny_is_tried_with_more_and_purity_denies(
     assert document["purity"] == one.purity
 
 
+@pytest.mark.parametrize("hangs", [False, True])
+def test_a_table_whose_designs_are_all_denied_has_what_the_search_finds(monkeypatch, study, hangs):
+    """The search is that of --aspect: a table said no of the README's bolt, and --aspect A said yes."""
+    place, found = study.wanted, study.design
+    other = next(k for k in range(len(study.orientations)) if k != place)
+    designs = [None] * len(study.orientations)
+    designs[place] = designs[other] = found
+    designs[other] = replace(found, wanted=other, efficiency=0.5 * found.efficiency)
+    table = replace(study, wanted=None, designs=tuple(designs))
+    first = Verdicts(2)
+
+    def tried(one_study, one, *_):
+        return replace(first(one_study, one), left=(study.orientations[other].name,))
+
+    asked = []
+
+    def chains(one, cost_class):
+        asked.append((one.study.orientations[one.study.wanted].name, one.heading_given, cost_class))
+        rails = make_device("rails", "test", span=(1e-3, 2e-3))
+        cuts = (replace(found.cuts[0], device=rails),) if hangs else found.cuts
+        own = list(designs)
+        own[place] = replace(found, cuts=cuts)
+        yield replace(table, designs=tuple(own), wanted=place)
+
+    monkeypatch.setattr(tooling_trials, "_try_design", tried)
+    monkeypatch.setattr(tooling_trials, "search_chains", chains)
+    result = tooling_trials.try_designs(table, lambda *_: pytest.fail("nothing static is proposed"))
+    assert asked[0] == (study.orientations[place].name, False, CostClass.STEEL) and len(asked) == 1
+    assert result.isolates(place) and result.isolates(other) is hangs
+    assert result.wanted is None and {trial.wanted for trial in result.trials} == {place, other}
+    denied, agreed = tables.trials(result)
+    assert (len(denied), len(agreed)) == ((0, 2) if hangs else (1, 1))
+    assert all(f"--aspect {study.orientations[other].name} tries" in line for line in denied)
+    monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(9))
+    again = tooling_trials.try_designs(table, lambda *_: None)
+    assert not any(again.isolates(k) for k in (place, other)) and len(again.trials) == 2
+
+
 def test_no_trial_begins_after_the_limit(monkeypatch, study, single):
     """Parts were sent through three proposals after the time was over: a limit of 25 s took 40."""
     calls = single[0]

@@ -728,6 +728,7 @@ class Design:
 
 DESIGN_COLUMNS: tuple[Column[Design], ...] = (
     Column("track_width_mm", lambda design: design.width, "mm"),
+    Column("track_bank_deg", lambda design: design.bank, "deg"),
     Column("margin_mm", lambda design: design.margin, "mm"),
 )
 
