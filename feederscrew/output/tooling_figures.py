@@ -82,27 +82,27 @@ def chain(
     wide = max(900, FATE_COLUMN_PX + room * len(placed) + OUT)  # the lines over the rows need 900
     panels = 2 if len(rows) > MAX_ROWS_OF_ONE_PANEL and 2 * wide <= MAX_TWO_PANELS_PX else 1
     high = -(-len(rows) // panels)
-    page = style.page(panels * wide, PAGE_HEAD_PX + ROW * high + PAGE_FOOT_PX)
     column = (wide - FATE_COLUMN_PX - OUT) / count
+    heads = [_device_head(place, device, column) for place, device in enumerate(placed, start=1)]
+    # more than two lines would run into the notes below the title
+    lines = max([0, *map(len, heads)])
+    begin = PAGE_HEAD_PX + (TEXT_LINE_PX * (lines - 2) + 6 if lines > 2 else 0)
+    page = style.page(panels * wide, begin + ROW * high + PAGE_FOOT_PX)
     title = "Each orientation where each device supports it least"
     if wanted_row is not None:
         title = f"What lets {orientations[wanted_row].name} leave: {title[0].lower()}{title[1:]}"
     _heading(page, title, orientations, rows)
     for panel in range(panels):
-        for place, device in enumerate(placed):
+        for place, head in enumerate(heads):
             left = panel * wide + FATE_COLUMN_PX + place * column + 8
-            value = f" {device.text}" if np.isfinite(device.limit) else ""
-            value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
-            value += f" {device.like[2] / MM:.3g} mm" if device.like else ""
-            head = textwrap.wrap(f"{place + 1}  {device.kind}{value}", int((column - 16) / HEAD_LETTER_PX))
             for above, text in enumerate(reversed(head)):
-                write_text(page, left, PAGE_HEAD_PX - 22 - above * TEXT_LINE_PX, text, weight="bold")
-        write_text(page, (panel + 1) * wide - OUT + 8, PAGE_HEAD_PX - 22, "as it leaves", weight="bold")
+                write_text(page, left, begin - 22 - above * TEXT_LINE_PX, text, weight="bold")
+        write_text(page, (panel + 1) * wide - OUT + 8, begin - 22, "as it leaves", weight="bold")
     size = _scale(orientations, rows, column)
     _draw_scale_bar(page, panels * wide - 16, 66, size)  # below the title, which may be as long
     for place, k in enumerate(rows):
         panel, line = divmod(place, high)
-        left, top = panel * wide, PAGE_HEAD_PX + line * ROW
+        left, top = panel * wide, begin + line * ROW
         orientation = orientations[k]
         passages = device_passages.until_returned(placed, orientation, orientations)
         if panel == 0:
@@ -137,6 +137,14 @@ def chain(
             _draw_from_above(_axes(page, cell, size, True), orientation, None, None, colour)
             write_text(page, cell[0] + 8, top + ROW - 12, "before it meets a device", colour=colour)
     return page
+
+
+def _device_head(number: int, device: Device, column: float) -> list[str]:
+    """The lines of the head of a device's column, which is so many pixels wide."""
+    value = f" {device.text}" if np.isfinite(device.limit) else ""
+    value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
+    value += f" {device.like[2] / MM:.3g} mm" if device.like else ""
+    return textwrap.wrap(f"{number}  {device.kind}{value}", int((column - 16) / HEAD_LETTER_PX))
 
 
 def left_words(rule: str) -> str:
@@ -240,7 +248,7 @@ def _cell(page: Figure, box: Box, passage: Passage, size: float, *, leaves: bool
         _draw_ahead(
             axes,
             passage.after if passage.device.action.leans else passage.orientation,
-            passage.opening,
+            passage.plate,
             colour,
         )
     write_text(page, box[0] + 8, box[1] + ROW - 12, words, colour=colour)
@@ -296,14 +304,14 @@ def _draw_from_above(
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
 
-def _draw_ahead(axes: Axes, orientation: Orientation, opening: shapely.Geometry | None, colour: str) -> None:
-    """The part seen along the track, the wall at the left, in the opening of a gate."""
+def _draw_ahead(axes: Axes, orientation: Orientation, plate: shapely.Geometry | None, colour: str) -> None:
+    """The part seen along the track, the wall at the left, at the plate of a blade or gate."""
     top = axes.get_ylim()[1]
     long = max(orientation.length, orientation.width)
     right = min(axes.get_xlim()[1], orientation.track.width / MM, 1.5 * long / MM)
-    if opening is not None:
-        plate = shapely.box(0.0, 0.0, right, top).difference(in_mm(opening))
-        _fill_area(axes, plate, "#c3ccd4", "#8593a0", 2)
+    if plate is not None:
+        seen = in_mm(plate).intersection(shapely.box(0.0, 0.0, right, top))
+        _fill_area(axes, seen, "#c3ccd4", "#8593a0", 2)
     profile, line = _profile_along_track(orientation, top, right)
     axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
     _fill_area(axes, profile, f"{PART_FACE}b0", "none", 4)

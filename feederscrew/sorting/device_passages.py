@@ -39,7 +39,7 @@ class Passage:
     hole: shapely.Geometry | None  # [m] what is cut away
     supported: Points  # (K, 2) [m] hull of what still touches
     weight: tuple[float, float]  # [m] where the weight meets the track
-    opening: shapely.Geometry | None  # [m] of a gate, in distances from the wall and heights
+    plate: shapely.Geometry | None  # [m] of blades and gates, in distances from the wall and heights
 
     def angle(self, placed: PlacedDevice) -> float:
         """Return where the part is on a tooled track, from the tangent at its datum.
@@ -97,7 +97,7 @@ def worst_passage(device: Device, orientation: Orientation, orientations: Sequen
     else:
         rails = device.action is Action.HANG and outcome.passes > 0.0
         after = stand_astride(orientation, device.span) if rails else device.onward(orientation)
-    gates = [shapely.Polygon(ring) for blade in features.blades for ring in blade.opening()]
+    plates = [blade.view_ahead for blade in features.blades]
     return Passage(
         device=device,
         orientation=orientation,
@@ -110,7 +110,7 @@ def worst_passage(device: Device, orientation: Orientation, orientations: Sequen
         hole=holes[worst],
         supported=shapely.get_coordinates(hulls[worst]),
         weight=weight,
-        opening=shapely.union_all(gates) if gates else None,
+        plate=shapely.union_all(plates) if plates else None,
     )
 
 

@@ -172,7 +172,10 @@ def test_pages_are_read_in_panels_and_no_text_lies_on_another(lying, isolated, t
     path = tmp_path / "swept.yaml"  # its last head takes two lines
     path.write_text("devices: [gap: 8 mm, canyon: 9.7 mm, wiper: {clearance: 4.95 mm, sweep: 30 deg}]\n")
     last = tooling_figures.chain(bowls.read(path).devices, every, even(every))
-    for figure in (page, last, tooling_figures.limits(isolated[0], "")):
+    silhouette = "{clearance: 5.8 mm, reach: 3.5 mm, leaves: 7.15 mm, sweep: 30 deg}"  # three lines of head
+    path.write_text(f"devices: [silhouette blade: {silhouette}, narrowed track: 9 mm]\n")
+    long = tooling_figures.chain(bowls.read(path).devices, every, even(every))
+    for figure in (page, last, long, tooling_figures.limits(isolated[0], "")):
         renderer = figure.canvas.get_renderer()
         boxes = [text.get_window_extent(renderer) for text in figure.texts if text.get_text()]
         width, height = figure.canvas.get_width_height()
@@ -189,6 +192,19 @@ def test_pages_are_read_in_panels_and_no_text_lies_on_another(lying, isolated, t
     chains = [tooling_figures.chain(bowl.devices[:count], few, even(every)) for count in (1, 2, 3)]
     first, second, third = (figure.get_size_inches()[0] for figure in chains)
     assert first < second <= third  # no wider than what it shows
+
+
+@pytest.mark.parametrize("sweep", [30.0, 50.0])
+def test_a_blade_is_drawn_where_it_stands_and_no_farther(lying, sweep):
+    """Beyond what a silhouette blade reaches a part is free: all of that was drawn as plate."""
+    sizes = {"limit": 5e-3, "reach": 3.5e-3, "leaves": 8e-3, "sweep": np.radians(sweep)}
+    every = lying[1]
+    plate = device_passages.worst_passage(make_device("silhouette blade", "", **sizes), every[0], every).plate
+    near, low, far, _ = plate.bounds
+    assert (near, low, far) == pytest.approx((0.0, 5e-3, 3.5e-3), abs=1e-9)
+    assert plate.area == pytest.approx(shapely.box(*plate.bounds).area)
+    bar = device_passages.worst_passage(make_device("wiper", "", limit=4e-3), every[0], every).plate
+    assert bar.bounds[1] == pytest.approx(4e-3) and bar.bounds[2] >= lying[0].track.width
 
 
 def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying, at_gates):

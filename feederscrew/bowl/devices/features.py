@@ -316,8 +316,16 @@ class Blade:
         near, _, far, top = self.solid.bounds
         free = shapely.box(max(near, 0.0), 0.0, far, top).difference(self.solid)
         parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon"]
-        across = np.array([math.sin(self.heading), 1.0])
-        return [shapely.get_coordinates(part.exterior)[:-1] * across + [self.foot[1], 0.0] for part in parts]
+        return [self._seen_ahead(shapely.get_coordinates(part.exterior)[:-1]) for part in parts]
+
+    @property
+    def view_ahead(self) -> "shapely.Geometry":
+        """The plate as seen along the track [m]: off the wall, upwards."""
+        return shapely.transform(self.solid, self._seen_ahead)
+
+    def _seen_ahead(self, points: Points) -> Points:
+        """Points (K, 2) [m] of its face, as seen along the track."""
+        return points * [math.sin(self.heading), 1.0] + [self.foot[1], 0.0]
 
 
 @dataclass(frozen=True, eq=False)
