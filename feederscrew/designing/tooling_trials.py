@@ -136,10 +136,11 @@ def try_designs(
 ) -> ToolingStudy:
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
-    Where the trial denies every one that it tries of a table, the search of ``feeder design`` looks for a chain
-    of the best one. Of an orientation that was asked for, classes are tried in the order of cost, until the trial confirms a
-    chain: that of the static rule, what the search of ``feeder design`` finds, and what the static rule has
-    without some kinds of devices. Chains of the static rule that isolate nothing are not tried.
+    Where the trial denies every one that it tries of a table, the search of ``feeder design`` looks for a
+    chain of the best one. Of an orientation that was asked for, classes are tried in the order of cost, until
+    the trial confirms a chain: that of the static rule, what the search of ``feeder design`` finds, and what
+    the static rule has without some kinds of devices. Chains of the static rule that isolate nothing are not
+    tried.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ def test_within_its_play_off_the_wall_no_verdict_is_sure(angle):
 
 
 def test_material_below_the_edge_is_twice_as_far_off_as_the_blade_is_higher(angle):
-    """The broad leg is 4 mm high: a blade 5 mm over the track has 1 mm of room above it, which counts twice."""
+    """The broad leg is 4 mm high: a blade 5 mm over the track has 1 mm of room above it; it counts twice."""
     own = verdict(blade(5, 8, 19), angle["off"])
     assert own.margin == pytest.approx(2e-3, abs=2e-5)
 

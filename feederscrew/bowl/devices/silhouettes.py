@@ -57,8 +57,8 @@ PLAY_M = 5e-4
 # [m] that wanted ones lie below the edge, and others stand above it at least: push buttons 1 mm taller than
 # those that are wanted stood at a blade 0.5 mm above these, and at none 0.2 or 0.25 mm above
 HEIGHT_ROOM_M = 2.5e-4
-# [1] times a height as a distance from the blade: parts come off the wall and askew by more than they hop. Push
-# buttons, thrown 0.06 mm high, passed below edges 0.2 to 0.5 mm above them alike
+# [1] times a height as a distance from the blade: parts come off the wall and askew by more than they hop.
+# Push buttons, thrown 0.06 mm high, passed below edges 0.2 to 0.5 mm above them alike
 HEIGHT_WEIGHT = 2.0
 # [m] rooms beside the play, of which a design tries the blades that return most
 ROOMS_M = (5e-4, 2.5e-4)
@@ -167,11 +167,11 @@ class SilhouetteBlade(StraightBlade):
 
         A part comes up to a play off the wall. With d the distance of the blade, longer by that play, from
         the part's outline seen along the track, heights counting twice, b the width of track that carries the
-        part and w the width that is left, less the play, it passes by min(d, w - b). One that is not carried fails by b - w. One
-        with material in the way of the blade, up to h above the clearance and from n off the wall on, is
-        pushed by r - n, r being the reach. It fails by min(h, r - n, b + r - n - w): it has to be in the way,
-        and to lose its support. Where that is not positive it is not sure. What the blade lays over falls off
-        too: there is no track beside it.
+        part and w the width that is left, less the play, it passes by min(d, w - b). One that is not carried
+        fails by b - w. One with material in the way of the blade, up to h above the clearance and from n off
+        the wall on, is pushed by r - n, r being the reach. It fails by min(h, r - n, b + r - n - w): it has
+        to be in the way, and to lose its support. Where that is not positive it is not sure. What the blade
+        lays over falls off too: there is no track beside it.
 
         Parameters
         ----------
