@@ -335,10 +335,12 @@ def _change_by_proof(
             return exploring.try_livelier(search, candidate)
         changed = proposals.mend_proposal(proposal, candidate.trial, lying, worst)
     else:
-        # what may hang leaves lying over the slot: a livelier drive shakes it down
-        lively = exploring.try_livelier(search, candidate) if _leaves_over_slot(study, candidate) else None
-        if lively is not None and lively.attempt.clean:
-            return lively
+        if _leaves_over_slot(study, candidate):
+            # a livelier drive shakes down what may hang, and at a calmer one it comes over the slot slower
+            for at_other_drive in (exploring.try_livelier, exploring.try_calmer):
+                other = None if search.is_spent else at_other_drive(search, candidate)
+                if other is not None and other.attempt.clean and other.attempt.rate >= search.request.target:
+                    return other
         # what a full track lets past a sensor meets a second one; past steel, parts come apart
         ways = (
             proposals.add_second_sensor(candidate),

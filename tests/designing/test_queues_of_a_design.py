@@ -46,7 +46,7 @@ from feederscrew.output import design_pages, designs
 from feederscrew.output import tables as tables_of
 from feederscrew.resting.aspects import find
 from feederscrew.trials import fills
-from feederscrew.trials.fills import FillLevel, share_interval
+from feederscrew.trials.fills import FillLevel, LeavingPose, PoseKind, share_interval
 from feederscrew.trials.queue_counts import QueuedParts
 from feederscrew.trials.supply import PARTS_IN_SHARES as BLOCK
 from feederscrew.trials.wanted import aspects_at_any_heading
@@ -384,6 +384,36 @@ def test_what_one_device_more_loses_is_tried_at_a_calmer_drive(monkeypatch, prov
     seen.loses_wanted = False  # it lets something else through: no drive changes that
     monkeypatch.setattr(loop.exploring, "try_calmer", lambda *_: pytest.fail("nothing was lost"))
     assert len(prove(first, second, {BOWL: impure})[0]) == 1
+
+
+@pytest.mark.parametrize(
+    ("lively_rate", "calm_rate", "taken"), [(2.0, 2.0, 0), (0.0, 2.0, 1), (0.0, 0.5, None)]
+)
+def test_what_may_hang_and_leaves_lying_is_tried_at_a_livelier_drive_and_at_a_calmer_one(
+    monkeypatch, prove, lively_rate, calm_rate, taken
+):
+    """Of pan heads 3 of 33 left lying over the slot at 0.18 mm, none of 23 at 0.155 mm; 1/s is asked for."""
+    first, second = candidates_of(BOWL, replace(BOWL.drive, amplitude=0.8 * BOWL.drive.amplitude))
+    lying = SimpleNamespace(lying=(SimpleNamespace(name="A@347"),))
+    first = SimpleNamespace(**vars(first) | {"orientations": lying, "shown": {0: 1.0}})
+
+    def at_rate(rate, frequency):
+        attempt = SimpleNamespace(clean=rate > 0.0, rate=rate, faults=())
+        bowl = replace(BOWL, drive=replace(BOWL.drive, frequency=frequency))
+        return SimpleNamespace(**vars(second) | {"attempt": attempt, "bowl": bowl})
+
+    drives = at_rate(lively_rate, 60.0), at_rate(calm_rate, 70.0)
+    over_slot = LeavingPose(PoseKind.ORIENTATION, "A", "A@347")
+    impure = study(queue(150, 200, 0, left_instead=((over_slot, 50),)))
+    monkeypatch.setattr(loop.exploring, "try_livelier", lambda *_: drives[0])
+    monkeypatch.setattr(loop.exploring, "try_calmer", lambda *_: drives[1])
+    for name in ("add_second_sensor", "spread_apart"):
+        monkeypatch.setattr(loop.proposals, name, lambda *_: None)
+    monkeypatch.setattr(loop.proposals, "purify", lambda *_: ())
+    proved, _ = prove(first, second, {BOWL: impure} | {one.bowl: study() for one in drives})
+    assert len(proved) == (1 if taken is None else 2)
+    other = None if taken is None else drives[taken]
+    assert loop._change_by_proof(Search.begin(None, DesignRequest(1.0), BOWL), impure, first) is other
 
 
 @pytest.mark.parametrize(
