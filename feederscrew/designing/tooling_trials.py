@@ -34,6 +34,7 @@ from feederscrew.feeding import stream
 from feederscrew.sorting.isolating import chain as static
 from feederscrew.sorting.isolating.chain import Design, DesignConstraints, OutcomeKind
 from feederscrew.sorting.tooling import ToolingStudy
+from feederscrew.trials.fills import require_room
 from feederscrew.trials.wanted import aspects_at_any_heading
 
 PARTS_OF_EACH = 2  # parts of each orientation
@@ -584,13 +585,14 @@ def _try_design(study: ToolingStudy, design: Design, run: RunSettings) -> TriedD
         any_heading=free,
     )
     try:
+        require_room(bowl, oriented.lying)  # its queues have to follow
         trial = single(rows=rows, count=PARTS_OF_EACH, run=run)
         further = further_parts(shares[rows])
         if not list(find_denials(trial)) and further.any():
             further_run = replace(run, seed=run.seed + 1, before=None)
             more = [row for row, count in zip(rows, further) if count]
             trial = trial.join(single(rows=more, count=further[further > 0], run=further_run))
-    except FeederError as fault:  # the bowl does not convey
+    except FeederError as fault:  # the bowl does not convey, or is too small
         return TriedDesign(
             name,
             design.wanted,

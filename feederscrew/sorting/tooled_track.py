@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from feederscrew.base.arrays import Floats, Points, Values
+from feederscrew.base.arrays import Floats, Points, Reals, Values
 from feederscrew.bowl.devices.base import Device, room_of, size_of
 from feederscrew.bowl.devices.features import Drop, Features, ShopWork, TrackOpening
 from feederscrew.bowl.record import Track
@@ -634,6 +634,30 @@ def bend_ring(ring: Points, radius: float, shift: float = 0.0, sagitta: float = 
     fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(8.0 * radius * sagitta)))[:-1]
     theta, r = fine[:, 0] / radius + shift, radius - fine[:, 1]
     return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
+
+
+def along_wall(places: Floats, radius: float, middle: Reals = 0.0) -> Floats:
+    """Return how far along the wall places of the bowl are: the inverse of ``bend_ring``.
+
+    A place alone does not say how often a track has gone round before it comes there.
+
+    Parameters
+    ----------
+    places : (..., 2) float [m]
+        From the point where the wall is tangent to X, the bowl's axis at (0, radius).
+    radius : float [m]
+        Of the wall.
+    middle : float or (...) float [m], optional
+        Of the stretch of track that is meant: a turn long, half of it to either side.
+
+    Returns
+    -------
+    (...) float [m]
+        Within half a turn of ``middle``. All lengths may be in another unit.
+    """
+    turn = 2.0 * np.pi * radius
+    along = radius * np.arctan2(places[..., 0], radius - places[..., 1])
+    return along - turn * np.round((along - middle) / turn)
 
 
 def track_at_entry(track: Track, devices: Sequence[Device], orientations: Sequence[Orientation]) -> Track:

@@ -25,7 +25,7 @@ from feederscrew.motion import conveying as answer
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.orientations import Hanging, Orientation
-from feederscrew.sorting.tooled_track import lay_out
+from feederscrew.sorting.tooled_track import along_wall, lay_out
 from feederscrew.trials import part_poses, runs, staging
 from feederscrew.trials.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trials.part_poses import State, States
@@ -203,11 +203,11 @@ def course(
         seconds[rows] += ride.seconds
         depths[rows], gains[rows] = np.maximum(depths[rows], ride.depths), np.maximum(gains[rows], ride.gains)
         if place == 0:
-            speeds[rows] = velocities(ride, bowl.track.radius)
+            speeds[rows] = velocities(ride, bowl.track.radius, station.middle)
         passed = ride.outcomes == runs.PASSED
         end_stations[rows] = np.where(passed, place + 1, place)
         unit = bowl.track.radius / looks.radius
-        ends[rows] = part_poses.ways_along_wall(ride.states, looks.radius) * bowl.track.radius / looks.radius
+        ends[rows] = part_poses.ways_along_wall(ride.states, looks.radius, station.middle / unit) * unit
         lost = [fate_at(station, *row, looks, unit) for row in zip(ride.outcomes, ride.states)]
         fates[rows] = np.where(passed, PASSED, lost)
         own_looks = looks_on_side if station.on_side else looks
@@ -357,14 +357,15 @@ def fate_at(station: Stage, outcome: int, state: State, looks: Looks, length: fl
     """
     if outcome in (runs.RETURNED, runs.ROLLED):
         return RETURNED if outcome == runs.RETURNED else ROLLED_BACK
-    rear, front, low = part_poses.reaches(state[None], looks.corners, looks.radius)[0] * length
+    wall = looks.radius, station.middle / length
+    rear, front, low = part_poses.reaches(state[None], looks.corners, *wall)[0] * length
     if outcome == runs.RUNNING and station.leaves_hanging and low < -HANGING_DEPTH_M - station.drop:
         return HANGING
     first, last = station.cut
     return STOPPED if front > first - AT_DEVICE_M and rear < last + AT_DEVICE_M else STUCK
 
 
-def velocities(ride: runs.Runs, radius: float) -> Floats:
+def velocities(ride: runs.Runs, radius: float, middle: float = 0.0) -> Floats:
     """Return mean velocities along the wall, over the second half of each path.
 
     Parameters
@@ -373,6 +374,8 @@ def velocities(ride: runs.Runs, radius: float) -> Floats:
         Of N parts.
     radius : float [m]
         Of the wall.
+    middle : float [m], optional
+        Of the track, as of ``Stage``.
 
     Returns
     -------
@@ -384,7 +387,7 @@ def velocities(ride: runs.Runs, radius: float) -> Floats:
         count = int(np.isfinite(path[:, 0]).sum())
         if count < 4 or ride.outcomes[n] == runs.RETURNED:
             continue
-        along = radius * np.arctan2(path[:count, 1], radius - path[:count, 2])
+        along = along_wall(path[:count, 1:3], radius, middle)
         first = count // 2
         means[n] = (along[-1] - along[first]) / (path[count - 1, 0] - path[first, 0])
     return means

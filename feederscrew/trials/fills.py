@@ -6,7 +6,7 @@ A fill says how closely parts come. ``feeder design`` proves a bowl at each of t
 
 import enum
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -19,8 +19,9 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.feeding.stream import Orientations
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
-from feederscrew.sorting.orientations import Hanging
-from feederscrew.trials.queue import PartsQueue
+from feederscrew.sorting.orientations import Hanging, Orientation
+from feederscrew.sorting.tooled_track import lay_out, size_of_part
+from feederscrew.trials.queue import PartsQueue, bare_track, room_within_turn
 from feederscrew.trials.queue_counts import QueuedParts
 from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 from feederscrew.trials.wanted import find_poses, wanted_rows
@@ -45,6 +46,47 @@ class FillLevel(enum.StrEnum):
     def parts(self) -> int:
         """Return how many parts are in a row that is as long as ``TOUCHING_PARTS`` parts."""
         return round(TOUCHING_PARTS / (1.0 + self.gaps))
+
+
+def plan_of_fill(fill: FillLevel, seconds: float, *, parts: int | None = None, frames: int = 0) -> QueuePlan:
+    """Return the plan of a queue at a fill.
+
+    Parameters
+    ----------
+    fill : FillLevel
+    seconds : float [s]
+        For which it is followed.
+    parts : int, optional
+        In the row; those of the fill without it.
+    frames : int, optional
+        Poses of all parts that are noted for a film.
+
+    Returns
+    -------
+    QueuePlan
+    """
+    is_apart = fill.gaps > 0.0
+    return QueuePlan(parts or fill.parts, seconds, fill.gaps, frames, is_balanced=True, is_ridden=is_apart)
+
+
+def require_room(bowl: Bowl, orientations: Sequence[Orientation]) -> None:
+    """Make sure that a turn of a bowl has room for its devices and for a row of parts at any fill.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its devices.
+    orientations : sequence of Orientation
+        In which parts come.
+
+    Raises
+    ------
+    FeederError
+        If it has none.
+    """
+    tooled, size = lay_out(bowl.track, bowl.devices, orientations, whole=True), size_of_part(orientations)
+    for fill in FillLevel:
+        room_within_turn(tooled, size, *bare_track(bowl, orientations, plan_of_fill(fill, 1.0)))
 
 
 class PoseKind(enum.Enum):
@@ -249,11 +291,8 @@ class FedRow:
         PartsQueue
         """
         poses = find_poses(self.orientations, self.states, self.any_heading)
-        is_apart = fill.gaps > 0.0
-        shares = self.shares if is_apart or self.touching is None else self.touching
-        plan = QueuePlan(
-            parts or fill.parts, seconds, fill.gaps, frames, is_balanced=True, is_ridden=is_apart
-        )
+        plan = plan_of_fill(fill, seconds, parts=parts, frames=frames)
+        shares = self.shares if plan.is_ridden or self.touching is None else self.touching
         supply = self.orientations.lying, shares
         return PartsQueue(self.part, self.bowl, self.aspects, supply, poses, plan, seed)
 

@@ -14,6 +14,7 @@ from feederscrew.base.arrays import Floats, Ints, Points
 from feederscrew.base.geometry import vectors
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.sorting.orientations import Orientation
+from feederscrew.sorting.tooled_track import along_wall
 from feederscrew.trials.kernel.workspace import TrueSolid
 
 State = Floats  # (13,)
@@ -274,23 +275,26 @@ def matrix(state: State) -> Floats:
     )
 
 
-def ways_along_wall(states: Floats, radius: float) -> Floats:
-    """Return how far along the wall parts are, within half a turn to either side of the place 0.
+def ways_along_wall(states: Floats, radius: float, middle: float = 0.0) -> Floats:
+    """Return how far along the wall parts are.
 
     Parameters
     ----------
     states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
     radius : float [L]
         Of the wall.
+    middle : float [L], optional
+        Of the track that they are on, as of ``Stage``.
 
     Returns
     -------
     (N,) float [L]
+        Within half a turn of it.
     """
-    return radius * np.arctan2(states[:, 0], radius - states[:, 1])
+    return along_wall(states[:, :2], radius, middle)
 
 
-def reaches(states: Floats, corners: Points, radius: float) -> Floats:
+def reaches(states: Floats, corners: Points, radius: float, middle: float = 0.0) -> Floats:
     """Return how far parts reach along the wall and down.
 
     Parameters
@@ -300,6 +304,8 @@ def reaches(states: Floats, corners: Points, radius: float) -> Floats:
         Of the part, in its own axes.
     radius : float [L]
         Of the wall.
+    middle : float [L], optional
+        As of ``ways_along_wall``.
 
     Returns
     -------
@@ -308,7 +314,8 @@ def reaches(states: Floats, corners: Points, radius: float) -> Floats:
     """
     turns = np.ascontiguousarray(matrix(states.T).transpose(2, 0, 1))
     x, y, z = states[:, :3].T[:, :, None] + np.einsum("nij,cj->inc", turns, corners)
-    along = radius * np.arctan2(x, radius - y)
+    ways = ways_along_wall(states, radius, middle)[:, None]  # no part is torn where a turn begins anew
+    along = along_wall(np.stack([x, y], axis=-1), radius, ways)
     return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)
 
 

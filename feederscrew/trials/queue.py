@@ -11,6 +11,7 @@ import numpy as np
 from feederscrew.arrivals.kernel import body
 from feederscrew.base import check
 from feederscrew.base.arrays import Floats, Ints
+from feederscrew.base.errors import FeederError
 from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.compiled import zero_rows
 from feederscrew.base.running import RunSettings
@@ -21,7 +22,7 @@ from feederscrew.feeding import stream
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.sorting.orientations import Hanging, Orientation
-from feederscrew.sorting.tooled_track import lay_out, size_of_part
+from feederscrew.sorting.tooled_track import TooledTrack, lay_out, size_of_part
 from feederscrew.trials import course, part_poses, runs, staging
 from feederscrew.trials.kernel import travel, workspace
 from feederscrew.trials.kernel.steps import BEHIND, BELOW
@@ -44,6 +45,7 @@ PITCHES_BEFORE = 2.0  # greatest pitches of parts that come with room for a sens
 SEEN_AGAIN_WAY = 0.5  # [L] back from a sensor: a part that comes again from there is seen again
 SPEED_PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
 TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
+APART = 1.2  # of the part's size: from the end of what is drawn on to its begin, round the bowl, at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +74,15 @@ class CrowdedTrack:
 
 
 def lay_out_track(
-    bowl: Bowl, orientations: Sequence[Orientation], devices: Sequence[Device], room: float
+    bowl: Bowl,
+    orientations: Sequence[Orientation],
+    devices: Sequence[Device],
+    room: float,
+    least: float | None = None,
 ) -> CrowdedTrack:
     """Return the track for a row of parts: bare up to the place 0, then the devices one behind the other.
+
+    All of it lies within one turn of the bowl: in its plane a second turn would lie on the first.
 
     Parameters
     ----------
@@ -85,15 +93,23 @@ def lay_out_track(
     devices : sequence of Device
         In the order parts meet them; one that is a measured yield is left out.
     room : float [m]
-        Length of the bare track.
+        Length of the bare track; it is shorter where the devices leave less of a turn.
+    least : float [m], optional
+        Length of it that a row needs; ``room`` without it.
 
     Returns
     -------
     CrowdedTrack
+
+    Raises
+    ------
+    FeederError
+        If devices and row need more than a turn of the bowl.
     """
     track, size = bowl.track, size_of_part(orientations)
     tooled = lay_out(track, devices, orientations, whole=True)
-    end = tooled.length + TAIL * size
+    end, room = tooled.length + TAIL * size, room_within_turn(tooled, size, room, least)
+    ends = -room - size, end
     placed = staging.place_all(tooled, end, size)
     levels, changes = [0.0], []
     for item in placed:
@@ -105,18 +121,78 @@ def lay_out_track(
     blown = staging.place_air(placed, track, orientations)
     stage = Stage(
         staging.BARE_TRACK,
-        *staging.build_track(placed, track, size, (-room - size, end)),
+        *staging.build_track(placed, track, size, ends),
         begin=-room,
         exit=np.inf,
         air=replace(blown, slopes=(*staging.slopes_before(first), *blown.slopes)),
         size=size,
         width=track.extent,
         on_side=staging.on_side(devices),
+        middle=0.5 * sum(ends),
     )
     windows = [(item.start, item.end) for item in tooled.devices]
     spans = check.frozen(np.reshape(windows, (-1, 2)).astype(float))
     heights = check.frozen(np.array(levels)), check.frozen(np.array(changes, float))
     return CrowdedTrack(stage, -room, spans, *heights, tooled.length)
+
+
+def room_within_turn(tooled: TooledTrack, size: float, room: float, least: float | None = None) -> float:
+    """Return how long the bare track before devices is, of which a turn of the bowl has room.
+
+    Parameters
+    ----------
+    tooled : TooledTrack
+    size : float [m]
+        Of the part, as ``size_of_part`` returns it.
+    room : float [m]
+        As long as it is at the most.
+    least : float [m], optional
+        As long as a row needs it; ``room`` without it.
+
+    Returns
+    -------
+    float [m]
+
+    Raises
+    ------
+    FeederError
+        If devices and row need more than a turn of the bowl.
+    """
+    turn, least = 2.0 * np.pi * tooled.track.radius, room if least is None else least
+    left = turn - tooled.length - (1.0 + TAIL + APART) * size
+    if least > left:
+        takes, needs = f"take {1e3 * tooled.length:.4g} mm of track", f"{1e3 * least:.4g} mm before them"
+        what = f"{takes}, and a row of parts needs {needs}: a turn of the bowl has {1e3 * turn:.4g} mm"
+        raise FeederError("devices", what, "take fewer, or a larger track.radius")
+    return min(room, left)
+
+
+def bare_track(bowl: Bowl, orientations: Sequence[Orientation], plan: QueuePlan) -> tuple[float, float]:
+    """Return how long the bare track before the devices of a bowl is for a row of parts.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its devices.
+    orientations : sequence of Orientation
+        In which parts come.
+    plan : QueuePlan
+        Of the row.
+
+    Returns
+    -------
+    room, least : float [m]
+        As long as it is where a turn of the bowl leaves so much, and as short as it may be.
+    """
+    longest = max(orientation.length for orientation in orientations)
+    spacing = stream.needed_spacing(bowl.devices, orientations, bowl)
+    turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
+    room = min(1.5 * longest * plan.parts + 2.0 * longest, max(turn, 2.0 * longest))
+    pitch = spacing + (1.0 + 2.0 * (plan.gaps or 0.0)) * longest  # the greatest
+    if plan.is_ridden and spacing > 0.0:  # parts that come with room do not push each other
+        room = min(room, PITCHES_BEFORE * pitch)
+    room = max(room, pitch)  # or no part ever enters
+    return room, min(room, max(pitch, 2.0 * longest))
 
 
 Reaches = dict[int, list[float]]  # [L] by part: rear and front along the wall, and its lowest point
@@ -147,7 +223,7 @@ class PartsOnTrack:
     def __init__(self, part_in_bowl: runs.BowlOfPart, track: CrowdedTrack, count: int) -> None:
         self.part_in_bowl, self.solid, self.stage = part_in_bowl, part_in_bowl.solid, track.stage
         self.hull = part_in_bowl.solid.corners[part_in_bowl.solid.outer]
-        self.track = track
+        self.track, self.middle = track, track.stage.middle / part_in_bowl.length
         self.surface = runs.surface_of(part_in_bowl, track.stage)
         self.arrays = runs.workspace_of(part_in_bowl.solid, self.surface, count)
         self.is_on = np.zeros(count, bool)
@@ -282,6 +358,10 @@ class PartsOnTrack:
         """Return (N, 2) mean forces of others in the last period, from behind and below, over the weight."""
         return self.arrays.strains / self.period
 
+    def ways(self) -> Floats:
+        """Return (N,) how far along the wall the centre of mass of each part is [L]."""
+        return part_poses.ways_along_wall(self.arrays.states, self.part_in_bowl.radius, self.middle)
+
     def reaches(self, rows: Iterable[int]) -> Reaches:
         """Return, by part, how far it reaches along the wall and down.
 
@@ -296,7 +376,8 @@ class PartsOnTrack:
             Rear and front along the wall, and the height of the lowest point.
         """
         states = self.arrays.states[list(rows)]
-        return dict(zip(rows, part_poses.reaches(states, self.hull, self.part_in_bowl.radius).tolist()))
+        wall = self.part_in_bowl.radius, self.middle
+        return dict(zip(rows, part_poses.reaches(states, self.hull, *wall).tolist()))
 
 
 def queue_of(
@@ -338,7 +419,7 @@ def queue_of(
     KeyboardInterrupt
         If the user stops it before the first period is done.
     FeederError
-        If the part has no shape or too many facets.
+        If the part has no shape or too many facets, or devices and row need more than a turn of the bowl.
     """
     run.begin()
     queue = PartsQueue(part, bowl, aspects, (orientations, shares), poses, plan, run.seed)
@@ -383,7 +464,8 @@ class PartsQueue:
         solid = round_circles(solid, course.roll_axes(self.orientations, principal))
         self.part_in_bowl = runs.setting(solid, length, bowl)
         count, spacing = plan.parts, stream.needed_spacing(bowl.devices, self.orientations, bowl)
-        self.track = lay_out_track(bowl, self.orientations, bowl.devices, self._room(spacing))
+        rooms = bare_track(bowl, self.orientations, plan)
+        self.track = lay_out_track(bowl, self.orientations, bowl.devices, *rooms)
         self.devices = [device for device in bowl.devices if device.action.has_place]
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
         self.stretches = self.windows.tolist()
@@ -403,16 +485,6 @@ class PartsQueue:
         self.poses: list[Floats] = []
         self.moments: list[tuple[float, int, int]] = []
         self.enter()
-
-    def _room(self, spacing: float) -> float:
-        """The length of the bare track [m] before the devices, which need a spacing [m]."""
-        longest = max(orientation.length for orientation in self.orientations)
-        turn = PART_OF_TURN * 2.0 * np.pi * self.bowl.track.radius - 2.0 * longest  # some rolls back
-        room = min(1.5 * longest * self.plan.parts + 2.0 * longest, max(turn, 2.0 * longest))
-        pitch = spacing + (1.0 + 2.0 * (self.plan.gaps or 0.0)) * longest  # the greatest
-        if self.plan.is_ridden and spacing > 0.0:  # parts that come with room do not push each other
-            room = min(room, PITCHES_BEFORE * pitch)
-        return max(room, pitch)  # or no part ever enters
 
     @property
     def time(self) -> float:
@@ -503,10 +575,10 @@ class PartsQueue:
         """
         lying, radius = np.flatnonzero(self.crowd.is_on), self.part_in_bowl.radius
         counts = self.counts
-        before = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
+        before = self.crowd.ways()
         counts.depth = max(counts.depth, self.crowd.ride(turn))
         self.periods += 1
-        after = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
+        after = self.crowd.ways()
         self.crowd.watch(lying, before, after, turn + 1)
         # Blown off: so far beyond the free edge that the track holds them no more. Fallen: those, and what is
         # below the track's lowest level.

@@ -301,6 +301,7 @@ def surface_of(part_in_bowl: BowlOfPart, station: Stage) -> Surface:
     slopes = station.air.slopes
     return Surface(
         radius=part_in_bowl.radius,
+        middle=station.middle / length,
         slopes=staging.tabulate_leans(slopes, part_in_bowl.climb, part_in_bowl.bank, station.size, length),
         plates=plates,
         borders=borders,

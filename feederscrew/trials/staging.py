@@ -31,6 +31,7 @@ from feederscrew.sorting.tooled_track import (
     CLEAR_SIZES,
     PlacedDevice,
     TooledTrack,
+    along_wall,
     bend_ring,
     clear_behind,
     lay_out,
@@ -169,6 +170,7 @@ class Stage:
     size: float = 0.0  # [m] of the part, the greatest length of its orientations
     width: float = np.inf  # [m] of the track
     on_side: float = 0.0  # [rad] by which parts that leave are on their side, as the track is twisted
+    middle: float = 0.0  # [m] of the track that is drawn: a way along the wall is within half a turn of it
 
 
 def stage_device(
@@ -253,6 +255,7 @@ def stage_placed(
         size=size,
         width=track.extent,
         on_side=on_side([item.device for item in tooled.devices[: number + 1]]),
+        middle=0.5 * sum(ends),
     )
 
 
@@ -348,9 +351,17 @@ def stage_bare_track(
     Stage
     """
     size = size_of_part(orientations)
-    bare = build_track((), track, size, (-DRAWN_BEFORE * size, length + DRAWN_AFTER * size))
-    blows = replace(STILL_AIR, slopes=tuple(slopes))
-    return Stage(BARE_TRACK, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
+    ends = -DRAWN_BEFORE * size, length + DRAWN_AFTER * size
+    return Stage(
+        BARE_TRACK,
+        *build_track((), track, size, ends),
+        begin=0.0,
+        exit=length,
+        size=size,
+        width=track.extent,
+        air=replace(STILL_AIR, slopes=tuple(slopes)),
+        middle=0.5 * sum(ends),
+    )
 
 
 def entry_slopes(
@@ -512,7 +523,7 @@ def _floor(
     def ends_drawing(a: Floats, b: Floats) -> bool:
         """Tell whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
         off = [np.hypot(x, radius - y) for x, y in (a, b)]
-        place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
+        place = along_wall(np.array([a, b]), radius, 0.5 * sum(ends))
         is_behind = min(off) > radius - aside + near
         return bool(is_behind or max(place) < ends[0] + near or min(place) > ends[1] - near)
 

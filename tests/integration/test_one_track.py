@@ -136,9 +136,8 @@ def draw_chain(seed, every):
 @functools.cache
 def drawn(seed, radius):
     """Everything that is made of the chain of a seed on a bowl of a radius [m]."""
-    track = Track(
-        climb=np.radians(3.5), bank=np.radians(4.0 * (seed % 5 in (1, 2))), radius=radius, width=24e-3
-    )
+    bank = np.radians(4.0 * (seed % 5 in (1, 2)))
+    track = Track(climb=np.radians(3.5), bank=bank, radius=radius, width=24e-3)
     every = orientations(part(), find(part()), track)
     chain = draw_chain(seed, every)
     return track, every, chain, lay_out(track, chain, every)
@@ -191,7 +190,7 @@ def differences(seed, radius, consumers):
     track, every, chain, tooled = drawn(seed, radius)
     flat = bowl_of(tooled, every) if "bowl" in consumers else None
     strip = views.unrolled_section(tooled) if "print" in consumers else None
-    crowd = queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1).stage
+    crowd = queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1, 1e-3).stage
     assert [placed.device for placed in tooled.devices] == chain
     slopes, wide = [], lay_out(track, chain, every, whole=True)
     for number, placed in enumerate(tooled.devices):
@@ -264,11 +263,13 @@ def differences(seed, radius, consumers):
                     beside = BORDER + height * np.tan(bank)
                     room = shapely.box(ends[0], beside, ends[1], track.width - BORDER)
                     # a flat plate that reaches ahead along a banked track cannot stand square to all of it
-                    reach = blade.solid.bounds[2] * np.cos(blade.heading) + blade.thickness
-                    ahead = reach / track.radius
+                    reach = blade.solid.bounds[2] * np.cos(blade.heading)
+                    # its back is seen as lengths of the wall: the longer the nearer it is to the bowl's axis
+                    back = blade.thickness * (track.radius / (track.radius - track.width)) ** 2
+                    ahead = (reach + back) / track.radius
                     sure = height * np.sin(bank + track.climb * (name == "bowl")) * ahead
                     if name == "queue":  # what is lower lies further out, on a longer arc
-                        sure = -placed.level * np.sin(bank) * reach / track.radius
+                        sure = -placed.level * np.sin(bank) * ahead
                     off = apart_over(tried.over, view.over, height, room)
                     yield device.kind, name, f"blade {1e3 * height:.2f}", max(off - sure, 0.0)
                 if least > 0.0:
@@ -330,6 +331,30 @@ def test_a_chain_is_the_same_in_trial_queue_print_bowl_and_drawing(seed):
     found = list(differences(seed, 0.15, dict.fromkeys(("queue", "print", "bowl", "drawing"))))
     wrong = [(*names, f"{1e3 * size:.3f} mm") for *names, size in found if size > NEAR]
     assert not wrong
+
+
+@pytest.mark.parametrize(
+    ("seed", "share"), [(0, 0.46), (0, 0.49), (3, 0.52), (4, 0.56), (1, 0.5), (2, 0.64), (7, 0.6)]
+)
+def test_a_queue_has_its_track_however_far_that_goes_round_the_bowl(seed, share):
+    """A chain on a bowl of which it takes such a share of a turn: its track ends beyond half of one.
+
+    An angle does not say the turn: beyond half of one borders of cuts once counted as ends of the drawing,
+    which hold nothing.
+    """
+    radius = drawn(seed, 0.15)[-1].length / (2.0 * np.pi * share)
+    found = list(differences(seed, radius, ("queue",)))
+    assert found and [(*names, f"{1e3 * size:.3f} mm") for *names, size in found if size > NEAR] == []
+    track, every, chain, tooled = drawn(seed, radius)
+    line = queue.lay_out_track(SimpleNamespace(track=track), every, chain, 0.1, 1e-3)
+    floors = [row for row in line.stage.plates if row["front_z"] == 1.0]
+    borders = np.concatenate([line.stage.borders[row["begin"] : row["end"]] for row in floors])
+    off = np.hypot(borders["end_x"], radius - borders["end_y"])
+    ends = borders[borders["drawn_end"] & (off < radius - 0.02 * radius)]
+    angles, size = np.arctan2(ends["end_x"], radius - ends["end_y"]), line.stage.size
+    drawn_to = np.array([line.start - size, tooled.length + queue.TAIL * size]) / radius
+    off = np.abs(np.exp(1j * angles[:, None]) - np.exp(1j * drawn_to)).min(axis=1)
+    assert len(ends) and off.max() * radius < 1e-6 and np.ptp(drawn_to) < 2.0 * np.pi
 
 
 @pytest.mark.parametrize(

@@ -37,14 +37,25 @@ class View:
     ramp: Callable | None = None  # level [m] -> what of ramps is above it
 
 
-def unbent(area, radius):
-    """An area of the bowl's plan, the wall tangent to X at the origin, as lengths and distances [m]."""
+def unbent(area, radius, middle=0.0):
+    """An area of the bowl's plan, the wall tangent to X at the origin, as lengths and distances [m].
+
+    Lengths are within half a turn of ``middle`` [m].
+    """
 
     def laid(points):
         x, y = points.T
-        return np.column_stack([radius * np.arctan2(x, radius - y), radius - np.hypot(x, radius - y)])
+        return np.column_stack(
+            [around(np.arctan2(x, radius - y), radius, middle), radius - np.hypot(x, radius - y)]
+        )
 
     return shapely.make_valid(shapely.transform(shapely.segmentize(area, FINE), laid))
+
+
+def around(angles, radius, middle):
+    """Lengths [m] along a wall at some angles [rad], those that are within half a turn of a length."""
+    first = middle / radius - np.pi
+    return radius * (first + (np.asarray(angles) - first) % (2.0 * np.pi))
 
 
 def trial(stage, start, track, bank):
@@ -55,7 +66,8 @@ def trial(stage, start, track, bank):
     blades = [one for one in plates if abs(one[1][2, 2]) <= 0.5]
 
     def laid(areas):
-        return affinity.translate(unbent(shapely.union_all(areas), track.radius), -start, 0.0)
+        laid = unbent(shapely.union_all(areas), track.radius, stage.middle)
+        return affinity.translate(laid, -start, 0.0)
 
     def floor(level):
         # a drop is upright: what is lower lies further out in the plane of the track, as the wall does
@@ -72,8 +84,8 @@ def trial(stage, start, track, bank):
         return laid(areas)
 
     jets = stage.air.jets
-    theta = [_out_of_wall(j, track.radius) for j in jets]
-    bores = [(track.radius * t - start, j["mouth_z"], 2.0 * j["radius"]) for t, j in zip(theta, jets)]
+    out = [around(_out_of_wall(j, track.radius), track.radius, stage.middle) for j in jets]
+    bores = [(s - start, j["mouth_z"], 2.0 * j["radius"]) for s, j in zip(out, jets)]
     faces = []
     for origin, axes, _, area in blades:
         inwards = np.array([-origin[0], track.radius - origin[1]])

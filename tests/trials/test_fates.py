@@ -63,7 +63,7 @@ def test_a_part_hangs_where_it_reaches_below_the_track_it_has_come_to(drop, low,
         (False, (3e-3, 9e-3), runs.RUNNING, course.STOPPED),
         (False, (13e-3, 19e-3), runs.STANDS, course.STUCK),  # it reaches as far as 12 mm
     ):
-        station = SimpleNamespace(leaves_hanging=below, drop=1e-3 * drop, cut=cut)
+        station = SimpleNamespace(leaves_hanging=below, drop=1e-3 * drop, cut=cut, middle=0.0)
         assert course.fate_at(station, outcome, state, looks, 4e-3) == expected
 
 

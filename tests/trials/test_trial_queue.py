@@ -24,6 +24,7 @@ from block_rides import (
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.kernel import body
+from feederscrew.base.errors import FeederError
 from feederscrew.base.running import USUAL_RUN, RunSettings
 from feederscrew.bowl.devices.kinds import KINDS, make_device
 from feederscrew.bowl.devices.trade import Action
@@ -34,7 +35,7 @@ from feederscrew.resting import profiles
 from feederscrew.sorting import fates
 from feederscrew.sorting.orientations import add_travel
 from feederscrew.sorting.verdicts import verdict
-from feederscrew.trials import part_poses, queue, result, runs
+from feederscrew.trials import fills, part_poses, queue, result, runs
 from feederscrew.trials.kernel.steps import BEHIND, BELOW
 from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 
@@ -422,3 +423,28 @@ def test_blocks_that_lie_leave_a_twisted_track_on_their_edge():
     found = queue.queue_of(PART, bowl, ASPECTS, every, flow.states, shares, plan, run)
     assert found.leaving_counts[edge] == found.leaving_counts.sum() >= 2 and found.returned == found.jams == 0
     assert found.aspects[ASPECTS.names.index(flow.states[edge].aspect)] == found.leaving_counts.sum()
+
+
+@pytest.mark.parametrize("radius", [66.0, 52.0])  # [mm] of bowls: devices take 0.46 and 0.58 of a turn
+def test_parts_leave_devices_that_go_round_more_than_half_the_bowl(radius):
+    """A part that leaves reaches beyond half a turn from where the devices begin."""
+    own = [f"track.radius={radius} mm", "drive.amplitude=0.1647 mm", "drive.frequency=100 Hz",
+           "drive.vibration_angle=20 deg", "track.bank=0 deg", "friction.static=0.6", "restitution=0",
+           "track.width=15 mm"]  # fmt: skip
+    gaps = tuple(make_device("gap", f"gap {k}", limit=2e-3) for k in range(6))
+    row = row_of(replace(bowls.read(None, own), devices=gaps), 3, 5.0, 0.0)
+    row.follow(5.0)
+    outcome = row.result()
+    assert outcome.returned == outcome.jams == 0 and outcome.velocity > 0.04
+    assert outcome.whole.sum() >= 3 and outcome.left_by_entry.sum() == outcome.whole.sum()
+    assert row.track.outlet + LENGTH < 2.0 * np.pi * 1e-3 * radius
+
+
+def test_devices_that_leave_no_room_for_a_row_in_a_turn_are_refused():
+    gaps = tuple(make_device("gap", f"gap {k}", limit=2e-3) for k in range(6))
+    own = replace(bowls.read(None, ["track.radius=40 mm", "track.width=15 mm"]), devices=gaps)
+    with pytest.raises(FeederError, match=r"devices: take .* mm of track, and a row of parts needs .*radius"):
+        row_of(own, 3, 5.0, None)
+    with pytest.raises(FeederError):
+        fills.require_room(own, lying(PART, own))
+    fills.require_room(replace(own, devices=gaps[:2]), lying(PART, own))

@@ -9,6 +9,7 @@ from matplotlib.patches import Polygon
 from feederscrew.base.arrays import Floats, Points
 from feederscrew.base.units import MM
 from feederscrew.output import style
+from feederscrew.sorting.tooled_track import along_wall
 from feederscrew.trials import course, runs
 from feederscrew.trials.course import Fate
 from feederscrew.trials.result import TrialRun
@@ -85,7 +86,10 @@ def paths(run: TrialRun) -> Figure:
     matplotlib.figure.Figure
     """
     sent, radius = run.course, run.bowl.track.radius
-    flat_paths = [[unroll_path(path, radius) for path in ride.paths] for ride in sent.rides]
+    flat_paths = [
+        [unroll_path(path, radius, station.middle) for path in ride.paths]
+        for station, ride in zip(sent.stations, sent.rides)
+    ]
     widest = 1e3 * max(off.max(initial=0.0) for rides in flat_paths for _, off in rides)
     longest = 1e3 * max(station.exit - station.begin for station in sent.stations[: len(sent.rides)])
     span, high = longest + 2.0 * SIDE_MARGIN_MM, 1.1 * widest + 2.0 * WALL_MARGIN_MM
@@ -97,14 +101,14 @@ def paths(run: TrialRun) -> Figure:
     for axes, station, ride, riders, flat in stations:
         axes.set_facecolor("white")
         for place, ring in enumerate(solids(station)):
-            x, y = ring[:, 0], radius - ring[:, 1]
-            outline = np.column_stack([radius * np.arctan2(x, y), radius - np.hypot(x, y)]) / MM
+            off = radius - np.hypot(ring[:, 0], radius - ring[:, 1])
+            outline = np.column_stack([along_wall(ring, radius, station.middle), off]) / MM
             after = np.roll(ring, -1, axis=0)
             hole = place > 0 and (ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]).sum() < 0.0
             face = "white" if hole else TRACK
             axes.add_patch(Polygon(outline, facecolor=face, edgecolor=style.INK, linewidth=0.6, zorder=0.5))
         for plate in station.plates[1:]:
-            begin = radius * np.arctan2(plate.origin_x, radius - plate.origin_y)
+            begin = along_wall(np.array([plate.origin_x, plate.origin_y]), radius, station.middle)
             axes.axvline(begin / MM, color=style.INK, linewidth=2.0)
         for watch in station.air.watches:  # where a sensor looks and where its nozzles are, in the wall
             axes.axvline(watch.place / MM, color=AIR_COLOUR, linewidth=0.9, linestyle="--")
@@ -151,7 +155,7 @@ def label_of(fate: Fate | None) -> str:
     return "blown off" if fate is BLOWN_OFF else fate.word.replace("_", " ")
 
 
-def unroll_path(path: Floats, radius: float) -> tuple[Floats, Floats]:
+def unroll_path(path: Floats, radius: float, middle: float = 0.0) -> tuple[Floats, Floats]:
     """Return a path unrolled, as far as it goes.
 
     Parameters
@@ -160,6 +164,8 @@ def unroll_path(path: Floats, radius: float) -> tuple[Floats, Floats]:
         As of ``Runs.paths``.
     radius : float [m]
         Of the wall.
+    middle : float [m], optional
+        Of the track, as of ``Stage``.
 
     Returns
     -------
@@ -167,8 +173,8 @@ def unroll_path(path: Floats, radius: float) -> tuple[Floats, Floats]:
         Lengths along the wall, and distances from it.
     """
     followed = path[np.isfinite(path[:, 0])]
-    x, y = followed[:, 1], radius - followed[:, 2]
-    return radius * np.arctan2(x, y), radius - np.hypot(x, y)
+    off = radius - np.hypot(followed[:, 1], radius - followed[:, 2])
+    return along_wall(followed[:, 1:3], radius, middle), off
 
 
 def solids(station: Stage, plate: int = 0) -> list[Points]:

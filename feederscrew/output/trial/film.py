@@ -18,10 +18,11 @@ from feederscrew.output import DPI, shading, style
 from feederscrew.output.shading import STEEL_COLOUR, Camera, Mesh, Rays, join_meshes
 from feederscrew.output.tooling_views import camera_at
 from feederscrew.output.trial import rides as shown
-from feederscrew.output.trial.figures import LOOKS, solids, unroll_path
+from feederscrew.output.trial.figures import LOOKS, solids
 from feederscrew.output.trial.rides import WALL, DeviceRide
 from feederscrew.part.record import Part
 from feederscrew.sorting import solid
+from feederscrew.sorting.tooled_track import along_wall
 from feederscrew.trials.course import Fate
 from feederscrew.trials.queue_counts import QueuedParts
 from feederscrew.trials.result import TrialRun
@@ -168,7 +169,7 @@ class FilmSet:
         self.part = Rays(np.asarray(part.vertices), np.asarray(part.faces), part.centre_of_mass)
         self.principal = Rotation.from_matrix(np.array(run.course.principal)).inv()
         radius = run.bowl.track.radius
-        angles = np.arctan2(places[:, 0], radius - places[:, 1])
+        angles = along_wall(places[:, :2], radius, stage.middle) / radius
         self.camera = camera_at(0.5 * (angles.min() + angles.max()))
         track = shown.section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
         pot = _bowl_around(stage, run, WALL_HEIGHT * self.part.size, FLOOR_DEPTH * self.part.size)
@@ -283,7 +284,7 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     """The rest of the bowl as a mesh: bare track and wall over the rest of the turn, a floor below."""
     radius, width = run.bowl.track.radius, run.bowl.track.width
     corners = np.concatenate(solids(stage))
-    along, _ = unroll_path(np.column_stack([np.zeros(len(corners)), corners]), radius)
+    along = along_wall(corners, radius, stage.middle)
     first, last = along.min() / radius, along.max() / radius
     middle = shapely.Point(0.0, radius)
     inner, full, outer = (middle.buffer(r, quad_segs=64) for r in (radius - width, radius, radius + WALL))

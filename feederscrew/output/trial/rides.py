@@ -17,7 +17,7 @@ from feederscrew.output.shading import Mesh, encode_base64, join_meshes, short
 from feederscrew.output.trial.figures import solids, unroll_path
 from feederscrew.part.record import Part
 from feederscrew.sorting import solid
-from feederscrew.sorting.tooled_track import bend_ring
+from feederscrew.sorting.tooled_track import along_wall, bend_ring
 from feederscrew.trials import course, looks, runs
 from feederscrew.trials.course import Fate
 from feederscrew.trials.result import TrialRun
@@ -109,7 +109,7 @@ def _air_at(
     """When [s] a sensor looks at a part on its path, NaN without one; when jets blow, or None."""
     if not stage.air.watches:
         return np.nan, ALWAYS if len(stage.air.jets) else None
-    watch, along = stage.air.watches[0], unroll_path(path, run.bowl.track.radius)[0]
+    watch, along = stage.air.watches[0], unroll_path(path, run.bowl.track.radius, stage.middle)[0]
     if not (along >= watch.place).any():
         return np.nan, None
     first = int(np.argmax(along >= watch.place))
@@ -150,7 +150,7 @@ def section(station: Stage, track: Track, height: float) -> Mesh:
         meshes.append((_vector(row, "origin") + np.einsum("vi,ij->vj", vertices, axes), faces))
     # the wall behind the track, stretch by stretch: upright, or leaning back as the other face of a groove
     corners = np.concatenate(solids(station))
-    along, _ = unroll_path(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
+    along = along_wall(corners, track.radius, station.middle)
     low, high = along.min(), along.max()
     turns = [
         (slope.place, slope.wall and slope.wall - (slope.bank or 0.0))

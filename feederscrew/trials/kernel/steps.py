@@ -42,6 +42,16 @@ def reach_ahead(solid: TrueSolid, state: Floats, dt: float) -> float:
 
 
 @compiled
+def place_along_wall(surface: Surface, state: Floats) -> float:
+    """Return how far along the wall [L] the centre of mass of a state (13,) is."""
+    along = surface.radius * math.atan2(state[X], surface.radius - state[Y])
+    half = math.pi * surface.radius
+    if along > surface.middle + half:
+        return along - 2.0 * half
+    return along + 2.0 * half if along < surface.middle - half else along
+
+
+@compiled
 def begin_step(surface: Surface, work: Workspace, island: Island) -> None:
     """Note where and how an island's parts are as a step begins, and how the track leans there."""
     for m in range(island[0], island[1]):
@@ -54,7 +64,7 @@ def begin_step(surface: Surface, work: Workspace, island: Island) -> None:
         work.tangents[n, 0], work.tangents[n, 1] = y / off, x / off
         # how the track leans there; what is near a wall that turns is looked at anew
         slopes, last, leans = surface.slopes, len(surface.slopes) - 1, work.leans[n]
-        place = surface.radius * math.atan2(state[X], surface.radius - state[Y]) if last else 0.0
+        place = place_along_wall(surface, state) if last else 0.0
         row, before = 0, wall_of(leans)[0]
         while row < last and place > slopes[row, 0]:
             row += 1

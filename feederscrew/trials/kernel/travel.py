@@ -8,6 +8,7 @@ from feederscrew.arrivals.kernel.floor_motion import Floor
 from feederscrew.base.arrays import Bools, Floats, Row
 from feederscrew.base.geometry.compiled import compiled, entry, outlined
 from feederscrew.trials.kernel import pairs, steps
+from feederscrew.trials.kernel.steps import place_along_wall
 from feederscrew.trials.kernel.track_contacts import find_contacts
 from feederscrew.trials.kernel.workspace import (
     Island,
@@ -27,12 +28,6 @@ ROLLED = 4  # went back
 BACKWARDS = 5.0  # times as far as a part must get on: so far back in that time it rolls back
 LEAST_STEP_SHARE = 1e-6  # [1] of a step: less is nothing
 LEAST_FRICTION = 1e-6  # [1] below which a part slides on for good
-
-
-@compiled
-def place_along_wall(surface: Surface, state: Floats) -> float:
-    """Return how far along the wall [L] the centre of mass of a state (13,) is."""
-    return surface.radius * math.atan2(state[X], surface.radius - state[Y])
 
 
 @compiled

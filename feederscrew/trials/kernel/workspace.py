@@ -178,6 +178,7 @@ class Surface(NamedTuple):
     """What a part meets on a stretch of track, in units of its length; P plates, B borders, J jets."""
 
     radius: float  # of the wall
+    middle: float  # way along the wall; all ways are within half a turn of it
     # (K, 8) along the wall, evenly between two: gravity ahead, from the wall inwards and up; the bowl's axis,
     # along which it moves, inwards and up; the same of the wall, that stands along it but beside a groove
     slopes: Floats
