@@ -379,12 +379,12 @@ def walls(plan: BowlPlan, kit: ModuleType) -> list[Body]:
 def _plate(plan: BowlPlan, kit: ModuleType, placed: PlacedDevice, blade: Blade) -> Body:
     """A blade on the track, carried on into the wall; a gate of its own has an ear through that."""
     axes, foot = plan.path.blade_frame(blade, plan.first + placed.begin)
+    s = plan.first + placed.begin + blade.foot[0]
     into = 0.5 * plan.material.wall
     if not blade.is_gate:
-        area = _above_track(plan, blade.carried_into(into, into, BLADE_REACH_M), axes, foot)
+        area = _above_track(plan, blade.carried_into(into, into, BLADE_REACH_M), axes, foot, s)
         plate = kit.plank(shapely.normalize(area), blade.thickness, axes, foot)
         # what leans with a banked track, or is swept back, stays within the wall
-        s = plan.first + placed.begin + blade.foot[0]
         inner = float(plan.path.wall_radius(s)) + into
         low, high = float(foot[2]) - into - BEYOND_PLATE_M, float(foot[2]) + blade.top + BEYOND_PLATE_M
         ring = [(inner, low), (2.0 * inner, low), (2.0 * inner, high), (inner, high)]
@@ -392,18 +392,20 @@ def _plate(plan: BowlPlan, kit: ModuleType, placed: PlacedDevice, blade: Blade) 
     area = blade.carried_into(into, 0.0, BLADE_REACH_M).intersection(
         shapely.box(-into, 0.0, BEYOND_BOWL_M, blade.top)
     )
-    area = _above_track(plan, area, axes, foot)
+    area = _above_track(plan, area, axes, foot, s)
     # it stands on the track: a gate is fixed by its ear
     ear = shapely.box(-plan.material.wall - EARS, 0.0, PIECE_OVERLAP_M - into, blade.top)
     return kit.plank(shapely.normalize(shapely.union_all([area, ear])), blade.thickness, axes, foot)
 
 
-def _above_track(plan: BowlPlan, area: shapely.Geometry, axes: Floats, foot: Vector) -> shapely.Geometry:
+def _above_track(
+    plan: BowlPlan, area: shapely.Geometry, axes: Floats, foot: Vector, begin: float
+) -> shapely.Geometry:
     """The face of a blade, its heights those over the track everywhere, and not over a straight line."""
 
     def lifted(points: Points) -> Points:
         along = np.maximum(points[:, 0], 0.0)
-        return np.column_stack([points[:, 0], points[:, 1] + plan.path.rise_along(axes, foot, along)])
+        return np.column_stack([points[:, 0], points[:, 1] + plan.path.rise_along(axes, foot, begin, along)])
 
     bent = shapely.transform(shapely.segmentize(area, BLADE_STEP_M), lifted)
     return shapely.simplify(bent, BLADE_REACH_M)

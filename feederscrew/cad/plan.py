@@ -309,7 +309,7 @@ class TrackPath:
         behind = (on_track(*(blade.thickness * back)) - foot) / blade.thickness
         return np.column_stack([along, self.normal(s), behind]), foot
 
-    def rise_along(self, axes: Floats, foot: Vector, along: Values) -> Values:
+    def rise_along(self, axes: Floats, foot: Vector, begin: float, along: Values) -> Values:
         """Return by how much the track's surface lies over a straight line along the face of a blade.
 
         A banked track is a cone: a chord of it that reaches ahead along the wall lies below it between its
@@ -320,6 +320,8 @@ class TrackPath:
         axes : (3, 3) float [1]
             Of the blade, as ``blade_frame`` returns them.
         foot : (3,) float [m]
+        begin : float [m]
+            S of the foot.
         along : (...) float [m]
             From the foot.
 
@@ -330,7 +332,9 @@ class TrackPath:
         """
         along = np.asarray(along, float)
         x, y, z = np.moveaxis(foot + along[..., None] * axes[:, 0], -1, 0)
-        s = self.at(np.arctan2(y, x))
+        theta = np.arctan2(y, x)  # of the turn in which the blade stands
+        theta = theta + FULL_TURN_RAD * np.round((float(self.angle(begin)) - theta) / FULL_TURN_RAD)
+        s = self.at(theta)
         off = (self.wall_radius(s) - np.hypot(x, y)) / np.cos(self.bank_at(s))
         return (self.height(s, off) - z) * axes[2, 1]
 

@@ -33,6 +33,8 @@ WALL_HEIGHT = 4e-3  # [m] over the track, where the wall is met
 BORDER = 3e-5  # [m] beside the wall that is not compared: there a seam may be left
 SIZE = (20.0, 12.0, 5.0)  # [mm] of the part
 CHAINS = 5  # of four devices and more: together with one behind them they have every kind
+LONG = 100  # the seed of a chain that is longer than half a turn of its bowl, with blades where it begins
+LONG_RADIUS = 0.09  # [m] of that bowl
 BODIES = ("print", "exact", "bowl")
 RULES = record(effective({})).sizing
 MM = 1e-3
@@ -127,6 +129,9 @@ def draw_chain(seed, every):
     drops = any(KINDS[kind].action.turns for kind in turned)
     if seed == CHAINS:  # a twist ends a chain, and needs a long way
         return [draw_device(kind, rng, every) for kind in ("banked track", "gap", *twist)]
+    if seed == LONG:
+        names = "banked track", "wiper", "silhouette blade", "narrowed track", "gap", "balance gap", *last
+        return [draw_device(kind, rng, every) for kind in names]
     rails = [] if drops or seed % 3 else last
     middle = [] if drops or seed % 4 != 1 else ["banked track"]
     names = [*first, turned[0], *middle, *turned[1:], *rails]
@@ -355,6 +360,17 @@ def test_a_queue_has_its_track_however_far_that_goes_round_the_bowl(seed, share)
     drawn_to = np.array([line.start - size, tooled.length + queue.TAIL * size]) / radius
     off = np.abs(np.exp(1j * angles[:, None]) - np.exp(1j * drawn_to)).min(axis=1)
     assert len(ends) and off.max() * radius < 1e-6 and np.ptp(drawn_to) < 2.0 * np.pi
+
+
+def test_a_chain_that_is_longer_than_half_a_turn_is_the_same_too():
+    """An angle about the bowl's axis does not say the turn: blades stood a pitch too high in the bowl."""
+    *_, tooled = drawn(LONG, LONG_RADIUS)
+    blade = next(item for item in tooled.devices if item.features.blades)
+    assert blade.begin < tooled.length - 1.1 * np.pi * LONG_RADIUS
+    consumers = dict.fromkeys(("queue", "print", "bowl", "drawing"))
+    found = list(differences(LONG, LONG_RADIUS, consumers))
+    wrong = [(*names, f"{1e3 * size:.3f} mm") for *names, size in found if size > NEAR]
+    assert not wrong
 
 
 @pytest.mark.parametrize(
