@@ -41,6 +41,7 @@ class FillLack(enum.Enum):
     """Criterion that a fill does not meet; one that holds meets all of them."""
 
     JAM = enum.auto()
+    OVERLAP = enum.auto()  # parts stood deeper in something than ``MAX_QUEUE_DEPTH_M``: no evidence of a jam
     RATE = enum.auto()  # the low end of the rate is too low
     PURITY = enum.auto()  # too little of what left is wanted
     PURITY_NOT_SHOWN = enum.auto()  # too few parts left to show that it is pure
@@ -142,6 +143,8 @@ def lacks_of_fill(queue: FilledQueue, least_rate: float) -> tuple[FillLack, ...]
     lacks = list[FillLack]()
     if queue.jams:
         lacks.append(FillLack.JAM)
+    if queue.overlaps:
+        lacks.append(FillLack.OVERLAP)
     if not shows_rate(queue, least_rate):
         lacks.append(FillLack.RATE)
     test = sequential_test(queue)
@@ -159,13 +162,14 @@ def lacks_of_fill(queue: FilledQueue, least_rate: float) -> tuple[FillLack, ...]
 def judge_fill(queue: FilledQueue, least_rate: float, longest: float) -> FillState:
     """Return what the queue at a fill has shown.
 
-    It holds where it meets every criterion of ``lacks_of_fill``: nothing has jammed, the lower end of its
-    rate is the least that is asked for, at least ``PURE`` of what left is right, the lower bound of that
-    share (one-sided, 95 %) is above ``SHOWN_PURITY``, and the sequential test says so too. It is refused
-    where more parts cannot meet one any more: where a part has jammed; where the upper end of the rate is
-    less; where the upper bound of the purity (one-sided, ``REFUSED_CONFIDENCE``) is below
-    ``PURE``; where the sequential test refuses it; and where so many parts were wrong that it would not hold
-    even if all others until the end were right.
+    It holds where it meets every criterion of ``lacks_of_fill``: nothing has jammed, nothing stood while it
+    was too deep in something, the lower end of its rate is the least that is asked for, at least ``PURE`` of
+    what left is right, the lower bound of that share (one-sided, 95 %) is above ``SHOWN_PURITY``, and the
+    sequential test says so too. It is refused where more parts cannot meet one any more: where a part has
+    jammed; where the upper end of the rate is less; where the upper bound of the purity (one-sided,
+    ``REFUSED_CONFIDENCE``) is below ``PURE``; where the sequential test refuses it; and where so many parts
+    were wrong that it would not hold even if all others until the end were right. A fill with parts that
+    stood too deep is open: the trial's fault neither refuses a device nor shows that it works.
 
     Parameters
     ----------

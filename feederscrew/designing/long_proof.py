@@ -77,6 +77,7 @@ class RunCounts:
     delivered: float  # parts that left
     jams: int
     climbs: int
+    overlaps: int  # faults of the trial
     left: Ints  # (M, S + 1, A + 1) whole parts that left, as of ``QueuedParts``
     returned: Ints  # (M, D + 1) parts that fell back, and where
 
@@ -98,6 +99,7 @@ class RunCounts:
             outcome.delivered,
             outcome.jams,
             outcome.climbs,
+            outcome.overlaps,
             outcome.left_by_entry,
             outcome.returned_at,
         )
@@ -146,9 +148,9 @@ class RunCounts:
             if not (is_right and np.isfinite(array).all() and (array >= 0).all()):
                 raise ValueError(each.name)
         seconds, counted, delivered = (float(arrays[name]) for name in ("seconds", "counted", "delivered"))
-        jams, climbs = (int(arrays[name]) for name in ("jams", "climbs"))
+        jams, climbs, overlaps = (int(arrays[name]) for name in ("jams", "climbs", "overlaps"))
         left, returned = (np.asarray(arrays[name], int) for name in ("left", "returned"))
-        counts = cls(seconds, counted, delivered, jams, climbs, left, returned)
+        counts = cls(seconds, counted, delivered, jams, climbs, overlaps, left, returned)
         # as long as it was to be, and whole parts beside those that are just leaving
         is_whole = 0.0 <= counts.seconds - run.seconds <= 1.0 / row.bowl.drive.frequency + 1e-6
         leaving = abs(counts.delivered - counts.left.sum()) if counts.counted else counts.delivered
@@ -189,8 +191,10 @@ class RunCounts:
             gap=np.nan,
             touching=np.nan,
             pressure=np.full(self.returned.shape[1] - 1, np.nan),
-            depth=np.nan,
+            depth_in_track=np.nan,
+            depth_in_part=np.nan,
             partial=partial,
+            overlaps=self.overlaps,
         )
 
 

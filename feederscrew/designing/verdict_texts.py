@@ -9,6 +9,7 @@ from feederscrew.designing.evidence import rate_at_most, share_at_least
 from feederscrew.designing.fill_verdicts import GOOD_PURITY, FillLack
 from feederscrew.designing.verdict import Blame, BlameGround, Shortage, Shortfall
 from feederscrew.trials.fills import FilledQueue
+from feederscrew.trials.queue_counts import MAX_QUEUE_DEPTH_M
 
 if TYPE_CHECKING:
     from feederscrew.designing.record import DesignStudy
@@ -107,6 +108,11 @@ def _text_of_fill(study: "DesignStudy", kind: Shortage | FillLack, queue: Filled
     minute, (low, high), target = 60.0, queue.ends, study.request.target
     at = f"at {queue.fill} fill"
     match kind:
+        case FillLack.OVERLAP:
+            return (
+                f"{at} {counted(queue.overlaps, 'part')} stood more than {1e3 * MAX_QUEUE_DEPTH_M:g} mm deep "
+                "in another part or in the track: a fault of the trial, neither a jam nor evidence of none"
+            )
         case FillLack.RATE:
             return (
                 f"{at} {minute * queue.rate:.3g}/min are delivered (95 % interval {minute * low:.3g} to "

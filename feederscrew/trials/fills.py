@@ -170,6 +170,7 @@ class FilledQueue:
     # where parts that came as wanted fell back: names of devices, '' the bare track, and how many, most first
     wanted_returned_at: tuple[tuple[str, int], ...] = ()
     jammed: tuple[JammedParts, ...] = ()  # what was taken out, the most first
+    overlaps: int = 0  # stood too deep in another part or in the track: faults of the trial, no jams
 
     @property
     def rate(self) -> float:
@@ -208,6 +209,7 @@ FILL_COUNT_COLUMNS: tuple[Column[FilledQueue], ...] = (
     Column("right", lambda filled: filled.right),
     Column("returned", lambda filled: filled.returned),
     Column("jams", lambda filled: filled.jams),
+    Column("overlaps", lambda filled: filled.overlaps),
     Column("climbs", lambda filled: filled.climbs),
 )
 
@@ -399,4 +401,5 @@ class FedRow:
             counts_by_entry=tuple(zip(offered.tolist(), as_wanted.tolist(), strict=True)),
             wanted_returned_at=tuple((name, n) for name, n in lost.most_common() if n),
             jammed=tuple(JammedParts(*key, n) for key, n in stood.most_common()),
+            overlaps=outcome.overlaps,
         )

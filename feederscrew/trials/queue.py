@@ -25,10 +25,10 @@ from feederscrew.sorting.orientations import Hanging, Orientation
 from feederscrew.sorting.tooled_track import TooledTrack, lay_out, size_of_part
 from feederscrew.trials import course, part_poses, runs, staging
 from feederscrew.trials.kernel import travel, workspace
-from feederscrew.trials.kernel.steps import BEHIND, BELOW
+from feederscrew.trials.kernel.steps import BEHIND, BELOW, IN_PART, IN_TRACK
 from feederscrew.trials.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trials.part_poses import State
-from feederscrew.trials.queue_counts import QueueCounts, QueuedParts
+from feederscrew.trials.queue_counts import MAX_QUEUE_DEPTH_M, QueueCounts, QueuedParts
 from feederscrew.trials.shape import round_circles, solid_of
 from feederscrew.trials.staging import Stage
 from feederscrew.trials.supply import PartSupply, QueuePlan
@@ -207,6 +207,7 @@ class QueueOutcome(Enum):
     STANDS = auto()  # held, by a device or by the part before it
     BACKED_UP = auto()  # stood at a pressure break, and was pushed off there
     JAMS = auto()  # stands at a device so long that somebody takes it out
+    OVERLAPS = auto()  # the same, but too deep in another part or in the track: a fault of the trial
 
 
 class PartsOnTrack:
@@ -361,6 +362,11 @@ class PartsOnTrack:
     def ways(self) -> Floats:
         """Return (N,) how far along the wall the centre of mass of each part is [L]."""
         return part_poses.ways_along_wall(self.arrays.states, self.part_in_bowl.radius, self.middle)
+
+    @property
+    def depths(self) -> Floats:
+        """Return (N, 2) [L] the deepest of each in the last period: in the track, and in another part."""
+        return self.arrays.depths
 
     def reaches(self, rows: Iterable[int]) -> Reaches:
         """Return, by part, how far it reaches along the wall and down.
@@ -576,7 +582,8 @@ class PartsQueue:
         lying, radius = np.flatnonzero(self.crowd.is_on), self.part_in_bowl.radius
         counts = self.counts
         before = self.crowd.ways()
-        counts.depth = max(counts.depth, self.crowd.ride(turn))
+        self.crowd.ride(turn)
+        counts.depths = np.maximum(counts.depths, self.crowd.depths[lying].max(axis=0, initial=0.0))
         self.periods += 1
         after = self.crowd.ways()
         self.crowd.watch(lying, before, after, turn + 1)
@@ -640,7 +647,10 @@ class PartsQueue:
         # Whether it is what holds the others up: nothing stands close before it.
         ahead = [reach[m][0] - front for m in reach if m != n and self.crowd.is_on[m] and reach[m][1] > front]
         is_first = min(ahead, default=np.inf) > JAM_CLEARANCE
-        return QueueOutcome.JAMS if stood >= JAM_SECONDS and is_first else QueueOutcome.STANDS
+        if stood < JAM_SECONDS or not is_first:
+            return QueueOutcome.STANDS
+        deep = self.crowd.depths[n].max() * self.part_in_bowl.length
+        return QueueOutcome.OVERLAPS if deep > MAX_QUEUE_DEPTH_M else QueueOutcome.JAMS
 
     def _count(self, n: int, outcome: QueueOutcome, place: float, reach: Reaches) -> None:
         """Count what has become of a part, and take it off the track where it is no longer on it."""
@@ -657,12 +667,15 @@ class PartsQueue:
                 self._take_off(n)
             case QueueOutcome.GOES_ON:
                 self.mark[n], self.since[n] = place, self.time
-            case QueueOutcome.STANDS | QueueOutcome.JAMS:
+            case QueueOutcome.STANDS | QueueOutcome.JAMS | QueueOutcome.OVERLAPS:
                 devices = self._devices_at(front)[:1]
                 for device in devices:
                     self.counts.note_pressure(device, self.crowd.forces[n, BEHIND])
-                if outcome is QueueOutcome.JAMS:
-                    self.counts.note_jam(self.entry_rows[n], devices[0] + 1)
+                if outcome is not QueueOutcome.STANDS:
+                    if outcome is QueueOutcome.JAMS:
+                        self.counts.note_jam(self.entry_rows[n], devices[0] + 1)
+                    else:
+                        self.counts.overlaps += 1
                     self._take_off(n)
                     for other, (_, end, _) in reach.items():  # what it held up has not stood by itself
                         if end <= front:
@@ -745,7 +758,9 @@ class PartsQueue:
             gap=float(np.mean(counts.free_ways)) * length if counts.free_ways else 0.0,
             touching=float(np.mean(counts.touch_shares)),
             pressure=check.frozen(counts.pressure * self.part.mass * self.bowl.gravity),
-            depth=counts.depth * length,
+            depth_in_track=float(counts.depths[IN_TRACK]) * length,
+            depth_in_part=float(counts.depths[IN_PART]) * length,
+            overlaps=counts.overlaps,
             partial=partial,
             relieved=counts.relieved,
             poses=check.frozen(np.reshape(self.poses, (len(self.poses), self.plan.parts, 7))),

@@ -8,6 +8,11 @@ from feederscrew.base.arrays import Floats, Ints
 from feederscrew.base.columns import Column
 from feederscrew.trials.staging import Stage
 
+# [m] by which a part of a queue may be in another part or in the track. It is what is asked of single parts:
+# a sixth of the thinnest wall among the parts of docs/method/trial.md, which come to 0.03 mm at most. A part
+# that is deeper and stands is held by the trial's contacts, not by the device.
+MAX_QUEUE_DEPTH_M = 1e-4
+
 
 @dataclass(frozen=True, eq=False)
 class QueuedParts:
@@ -25,18 +30,21 @@ class QueuedParts:
     left_by_entry: Ints  # (M, S + 1, A + 1) the same by the orientation in which they came
     returned_by_entry: Ints  # (M,)
     returned: int  # fell back into the bowl
-    jams: int  # stood at a device and were taken out
+    jams: int  # stood at a device and were taken out, no deeper in anything than ``MAX_QUEUE_DEPTH_M``
     climbs: int  # times that a part came to lie on others
     velocity: float  # [m/s] mean of all parts
     gap: float  # [m] mean free way between neighbours
     touching: float  # [1] share of the parts that are pushed from behind
     pressure: Floats  # (D,) [N] greatest mean force of a period on a part that stands at a device
-    depth: float  # [m] the deepest that anything was in anything
+    # [m] the deepest that a part was in the track, its wall or a device, and in another part
+    depth_in_track: float
+    depth_in_part: float
     partial: bool  # stopped by the user: of the seconds until then
     # (M, D + 1) where those that were returned fell: on the bare track before the devices, at each device
     returned_at: Ints = field(default_factory=lambda: np.zeros((0, 0), int))
     # (M, D + 1) where those stood that were taken out, columns as of ``returned_at``
     jammed_at: Ints = field(default_factory=lambda: np.zeros((0, 0), int))
+    overlaps: int = 0  # stood as a jam does, deeper in something: faults of the trial, taken out as well
     relieved: int = 0  # of those returned, backed up at a pressure break and pushed off there
     # (F, N, 7) position [m] and attitude w x y z (principal axes to bowl), evenly over the time; NaN of a
     # part that waits to enter
@@ -49,6 +57,11 @@ class QueuedParts:
     def rate(self) -> float:
         """Return delivered parts [1/s]; 0 where none came to the outlet."""
         return self.delivered / self.counted_seconds if self.counted_seconds > 0.0 else 0.0
+
+    @property
+    def depth(self) -> float:
+        """Return the deepest that a part was in anything [m]."""
+        return max(self.depth_in_track, self.depth_in_part)
 
     @property
     def leaving_counts(self) -> Ints:
@@ -71,10 +84,14 @@ QUEUED_COLUMNS: tuple[Column[QueuedParts], ...] = (
     Column("returned", lambda queue: queue.returned),
     Column("backed_up", lambda queue: queue.relieved),
     Column("jams", lambda queue: queue.jams),
+    Column("overlaps", lambda queue: queue.overlaps),
     Column("climbs", lambda queue: queue.climbs),
     Column("velocity_mm_s", lambda queue: queue.velocity, "mm/s"),
     Column("mean_gap_mm", lambda queue: queue.gap, "mm"),
     Column("touching", lambda queue: queue.touching),
+    Column("penetration_in_track_mm", lambda queue: queue.depth_in_track, "mm"),
+    Column("penetration_in_part_mm", lambda queue: queue.depth_in_part, "mm"),
+    Column("largest_penetration_mm", lambda queue: queue.depth, "mm"),
 )
 
 
@@ -90,10 +107,10 @@ class QueueCounts:
     def __init__(self, orientations: int, poses: int, aspects: int, devices: int) -> None:
         self.left = np.zeros((orientations, poses + 1, aspects + 1), int)  # as ``QueuedParts.left_by_entry``
         self.returned_at, self.jammed_at = np.zeros((2, orientations, devices + 1), int)
-        self.returned = self.jams = self.climbs = self.relieved = self.whole = 0
+        self.returned = self.jams = self.climbs = self.relieved = self.whole = self.overlaps = 0
         self.max_on_track = 0
         self.pressure = np.zeros(devices)  # (D,) of the part's weight
-        self.depth = 0.0  # [L]
+        self.depths = np.zeros(2)  # [L] the deepest in the track, and in another part
         self.ways: list[float] = []  # [L] mean of all parts, a period each
         self.free_ways: list[float] = []  # [L] between neighbours
         self.touch_shares: list[float] = []  # [1] of the parts that are pushed, a period each

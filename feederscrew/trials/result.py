@@ -26,7 +26,7 @@ from feederscrew.sorting.tipping import is_surely_gone, steady
 from feederscrew.trials import course
 from feederscrew.trials.course import Landing
 from feederscrew.trials.fills import FilledQueue
-from feederscrew.trials.queue_counts import QueuedParts
+from feederscrew.trials.queue_counts import MAX_QUEUE_DEPTH_M, QueuedParts
 
 CLEAR_MARGIN_M = 2.5e-4  # [m] margin from which a static verdict should hold
 VERDICT_SHARE = 0.95  # [1] of the trials in which it should
@@ -248,6 +248,12 @@ class TrialRun:
             yield (
                 f"{names[k]}: up to {1e3 * self.depths[k]:.2g} mm deep in the track or a device, where "
                 "corners and edges slipped past each other's contacts: do not go by this row"
+            )
+        if self.queue is not None and self.queue.depth > MAX_QUEUE_DEPTH_M:
+            yield (
+                f"queue: parts were up to {1e3 * self.queue.depth_in_part:.2g} mm deep in each other and "
+                f"{1e3 * self.queue.depth_in_track:.2g} mm in the track or a device, "
+                f"{1e3 * MAX_QUEUE_DEPTH_M:g} mm at most are asked for: do not go by what stood there"
             )
         if not self.velocity > 0.0:
             yield "the part does not travel up the track: see feeder convey"

@@ -394,6 +394,7 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
         near_crossings=records(workspace.PAIR_NEAR, lists, MAX_CROSSINGS),
         faces_of_corner=zero_rows(len(solid.triangles) if lists else 0, workspace.PAIR_NEAR),
         strains=numbers(2),
+        depths=numbers(2),
         order=places(),
         islands=np.zeros(count + 1, np.int64),
         least=np.array(solid.vertices.min(axis=0)),
@@ -428,11 +429,11 @@ def move_crowd(part_in_bowl: BowlOfPart, surface: Surface, work: Workspace, crow
     part_in_bowl : BowlOfPart
     surface : Surface
     work : Workspace
-        Its states move; ``strains`` are filled.
+        Its states move; ``strains`` and ``depths`` are filled.
     crowd : QueueSteps
         Which parts, from when on and how many steps; its journal is filled.
     """
-    work.strains[:] = 0.0
+    work.strains[:] = work.depths[:] = 0.0
     travel.ride(surface, part_in_bowl.solid, part_in_bowl.floor, work, NO_PARTS_SENT, crowd)
 
 

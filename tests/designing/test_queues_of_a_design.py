@@ -15,6 +15,7 @@ from feederscrew import bowl as bowls
 from feederscrew.base.running import RunSettings
 from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.bowl.devices.trade import Action
+from feederscrew.bowl.verified import Status
 from feederscrew.designing import (
     calm_drive,
     evidence,
@@ -23,6 +24,7 @@ from feederscrew.designing import (
     proposals,
     queues,
     short_trials,
+    verdict_texts,
 )
 from feederscrew.designing.fill_verdicts import (
     DifferenceKind,
@@ -260,6 +262,20 @@ def test_what_the_sequential_test_alone_decides_is_said_to_be_its():
     assert evidence.share_at_most(184, 191, fill_verdicts.REFUSED_CONFIDENCE) > fill_verdicts.PURE
     assert sequential_test(refused) is judge_fill(refused, 0.0, 1e6) is FillState.REFUSED
     assert sequential_test(queue(194, 201)) is judge_fill(queue(194, 201), 0.0, 1e6) is FillState.OPEN
+
+
+def test_a_fill_with_parts_that_stood_too_deep_neither_holds_nor_is_refused():
+    """A fault of the trial refuses no device, and shows of none that it works."""
+    good = queue(400, 400, seconds=600.0)
+    assert judge_fill(good, 0.0, 1e6) is FillState.HOLDS
+    deep = replace(good, overlaps=1)
+    assert lacks_of_fill(deep, 0.0) == (FillLack.OVERLAP,)
+    assert judge_fill(deep, 0.0, 1e6) is FillState.OPEN
+    made = study(deep)
+    assert made.status is Status.FALLS_SHORT and made.proof.jams == 0
+    assert "fault of the trial" in verdict_texts.why_text(made) and "jammed" not in verdict_texts.why_text(
+        made
+    )
 
 
 def test_how_long_a_fill_is_followed_follows_from_the_rate_that_is_asked_for():
@@ -703,7 +719,7 @@ def left_queue(block, *rows):
         parts=12, on_track=9, is_poured=False, seconds=60.0, counted_seconds=50.0, returned=3,
         whole=whole, left_by_entry=whole[None], returned_by_entry=np.array([3]), delivered=float(whole.sum()),
         jams=0, climbs=0, velocity=0.05,
-        gap=0.01, touching=0.2, pressure=np.zeros(0), depth=0.0, partial=False,
+        gap=0.01, touching=0.2, pressure=np.zeros(0), depth_in_track=0.0, depth_in_part=0.0, partial=False,
     )  # fmt: skip
 
 

@@ -1,5 +1,6 @@
 """What a trial tells of the parts that were counted in it, against sums done by hand."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.motion import conveying as answer
 from feederscrew.trials import course, result, runs
 from feederscrew.trials.course import HANGING, PASSED, RETURNED, STOPPED, STUCK, TURNED
+from feederscrew.trials.queue_counts import MAX_QUEUE_DEPTH_M
 from feederscrew.trials.result import TrialRun
 
 UNKNOWN, GONE = -1, -2  # orientations a part left in
@@ -88,6 +90,16 @@ def test_a_user_is_told_what_is_odd_what_is_deep_and_that_nothing_travels(speed,
     assert odd == "A: 0 of 1 do what the static verdict says (passes, margin 1.00 mm)"
     assert deep.startswith("A: up to 0.5 mm deep in the track or a device")
     assert more == ([] if speed > 0.0 else ["the part does not travel up the track: see feeder convey"])
+
+
+def test_a_user_is_told_of_a_queue_that_was_deeper_than_its_limit(monkeypatch):
+    monkeypatch.setattr(result, "steady", lambda devices, lying, bowl, margin: np.ones(len(lying), bool))
+    run = trial([(0, PASSED, 0, 0.04, 1, 0.0)] * 60)
+    for deep, told in ((0.99, 0), (1.01, 1)):
+        for where in ("depth_in_track", "depth_in_part"):
+            depths = {"depth_in_track": 0.0, "depth_in_part": 0.0, where: deep * MAX_QUEUE_DEPTH_M}
+            crowd = SimpleNamespace(**depths, depth=max(depths.values()))
+            assert sum("deep in each other" in said for said in replace(run, queue=crowd).remarks) == told
 
 
 @pytest.mark.parametrize("way", [30e-3, 900e-3])

@@ -35,8 +35,8 @@ from feederscrew.resting import profiles
 from feederscrew.sorting import fates
 from feederscrew.sorting.orientations import add_travel
 from feederscrew.sorting.verdicts import verdict
-from feederscrew.trials import fills, part_poses, queue, result, runs
-from feederscrew.trials.kernel.steps import BEHIND, BELOW
+from feederscrew.trials import fills, part_poses, queue, queue_counts, result, runs
+from feederscrew.trials.kernel.steps import BEHIND, BELOW, IN_PART, IN_TRACK
 from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 
 STILL = still(climb=0.0)
@@ -102,6 +102,7 @@ def test_parts_in_each_other_are_pushed_apart():
     on = parts_on(STILL, -0.10, -0.0801)
     before = np.array(on.arrays.states[:, body.X]) * LENGTH
     ride(on, 4)
+    assert on.depths.max() * LENGTH < 1e-4  # of the last period
     moved = on.arrays.states[:, body.X] * LENGTH - before
     assert moved[0] < -2e-5 and moved[1] > 2e-5
     assert np.diff(moved)[0] == pytest.approx(1e-4, abs=2e-5)
@@ -333,6 +334,45 @@ def test_what_stands_close_behind_another_part_is_no_jam(gap, outcome):
     assert row.outcome_of(1, front - 0.5, reach, False) is queue.QueueOutcome.STANDS
 
 
+def test_what_stands_too_deep_in_something_is_a_fault_of_the_trial_and_no_jam(monkeypatch):
+    """On either side of the limit, in the track or in another part; it is taken out as a jam is."""
+    row, limit = row_of(slope(), 1, 3.0, 0.0), queue_counts.MAX_QUEUE_DEPTH_M / LENGTH
+    front = row.windows[0].mean()
+    row.mark[:], row.since[:] = front, -2.0
+    for where in (IN_TRACK, IN_PART):
+        for share, outcome in ((1.01, queue.QueueOutcome.OVERLAPS), (0.99, queue.QueueOutcome.JAMS)):
+            row.crowd.arrays.depths[:] = 0.0
+            row.crowd.arrays.depths[0, where] = share * limit
+            assert row.outcome_of(0, front - 0.5, {0: [front - 1.0, front, 0.0]}, False) is outcome
+    counted = []
+    for limit in (queue_counts.MAX_QUEUE_DEPTH_M, -1.0):
+        monkeypatch.setattr(queue, "MAX_QUEUE_DEPTH_M", limit)
+        row = row_of(slope(), 1, 2.0, 0.0)
+        while row.time < 2.0 and row.crowd.is_on[0]:
+            row.ride(row.periods)
+            row.waiting_parts = []
+        made = row.result()
+        counted.append((made.jams, made.jammed_at.sum(), made.overlaps, made.returned))
+    assert counted == [(1, 1, 0, 0), (0, 0, 1, 0)]
+
+
+def test_a_queue_says_how_deep_its_parts_were_in_the_track_and_in_each_other():
+    """Blocks laid 0.1 mm into each other, then one 0.05 mm into the track: each depth where it is."""
+    row = row_of(STILL, 2, 1.0, 0.0)
+    state = row.crowd.arrays.states[1]
+    first, second = ways(row)
+    state[body.X] += (first - second - FLAT.length + 1e-4) / LENGTH
+    row.ride(0)
+    found = row.result()
+    assert found.depth_in_part == pytest.approx(1e-4, abs=2e-5) and found.depth_in_track < 1e-5
+    assert found.depth == found.depth_in_part
+    row = row_of(STILL, 1, 1.0, 0.0)
+    row.crowd.arrays.states[0, body.Z] -= 5e-5 / LENGTH
+    row.ride(0)
+    found = row.result()
+    assert found.depth_in_track == pytest.approx(5e-5, abs=5e-6) and found.depth_in_part == 0.0
+
+
 def test_poured_parts_come_to_lie_and_travel():
     row = row_of(BOWL, 3, 2.0, None)
     ride(row, 60)
@@ -344,7 +384,7 @@ def test_poured_parts_come_to_lie_and_travel():
     assert velocities[onwards] == pytest.approx(answer.answer(BOWL).velocity, rel=0.05)
     heights = row.crowd.arrays.states[onwards, body.Z] * LENGTH
     assert np.abs(heights[:, None] - [2.5e-3, 6e-3, 10e-3]).min(axis=1).max() < 1e-5  # on a face
-    assert row.counts.depth * LENGTH < 1e-4
+    assert row.result().depth < queue_counts.MAX_QUEUE_DEPTH_M
 
 
 @pytest.mark.parametrize("ledge, stop, leaves", [(6.5, True, True), (14.0, True, False), (6.5, False, False)])

@@ -20,7 +20,7 @@ from feederscrew.sorting.orientations import ORIENTATION_TRIED_COLUMNS
 from feederscrew.trials import course
 from feederscrew.trials.course import LANDING_COLUMNS, Fate
 from feederscrew.trials.fills import FILL_COLUMNS, FILL_COUNT_COLUMNS, FilledQueue
-from feederscrew.trials.queue_counts import QUEUED_COLUMNS
+from feederscrew.trials.queue_counts import MAX_QUEUE_DEPTH_M, QUEUED_COLUMNS
 from feederscrew.trials.result import OUTLET_COLUMNS, RUN_COLUMNS, RUN_DRIVE_COLUMNS, Outlet, TrialRun
 from feederscrew.trials.trial import ENGINE, TRIAL_COLUMNS, TrialStudy
 
@@ -116,7 +116,6 @@ def _run(study: TrialStudy, run: TrialRun) -> Document:
         whole, apart = int(queued.leaving_counts.sum()), outlet.distances.items()
         queue = values(QUEUED_COLUMNS, queued) | {
             "pressure_mn": queued.pressure * 1e3,
-            "largest_penetration_mm": queued.depth / MM,
             "profile": {name: n / whole for name, n in _leaving_counts(run, queued.leaving_counts)},
             "outlet": _outlet_table(outlet),
             "apart": {name: {"deviation": d, "total_variation": total} for name, (d, total) in apart},
@@ -318,12 +317,15 @@ def summary(study: TrialStudy) -> Iterator[str]:
             )
         if (queued := run.queue) is not None and (left := study.outlet(run)) is not None:
             how, force = "poured" if queued.is_poured else "in a row", 1e3 * queued.pressure.max(initial=0.0)
+            deep = MAX_QUEUE_DEPTH_M / MM
+            faults = f"{queued.overlaps} stood more than {deep:g} mm deep, which is no jam, "
+            faults = faults if queued.overlaps else ""
             relieved = f" ({queued.relieved} backed up at a pressure break)" if queued.relieved else ""
             yield (
                 f"queue of {queued.parts} {how}, {queued.on_track} on the track at a time: "
                 f"{queued.delivered:.4g} delivered in the last {queued.counted_seconds:.4g} of "
                 f"{queued.seconds:.4g} s, {queued.returned} returned{relieved}, {queued.jams} jams, "
-                f"{queued.climbs} climbed on others; gap {queued.gap / MM:.3g} mm, "
+                f"{faults}{queued.climbs} climbed on others; gap {queued.gap / MM:.3g} mm, "
                 f"{100.0 * queued.touching:.3g} % pushed, "
                 f"up to {force:.3g} mN on a part that stands at a device"
             )

@@ -29,6 +29,9 @@ UPWARD = 0.5  # [1] of the normal: a part that is held so by another is carried
 # columns of the strains
 BEHIND = 0
 BELOW = 1
+# columns of the depths
+IN_TRACK = 0
+IN_PART = 1
 STILL_SLIP = 1e-5  # speed along a contact below which it sticks while static friction holds
 IMPACT_GAP = 2e-5  # [1] of the unit of length: what is further off takes no part in an impact
 SPEED_ROUNDING = 1e-9  # speed that is rounding
@@ -116,6 +119,7 @@ def _want_no_strike(surface: Surface, work: Workspace, n: int, dt: float) -> tup
         deepest = min(deepest, gap)
         row.target_speed = -max(gap, 0.0) / dt - max(fall, 0.0)
         share = min(share, _strikes_after(surface, gap, fall, dt))
+        work.depths[n, IN_TRACK] = max(work.depths[n, IN_TRACK], -gap)
         if math.isnan(row.friction):
             slides = math.hypot(along_speed(moves, row), aside_speed(moves, row)) > STILL_SLIP
             row.friction_ahead = surface.friction[int(slides)]
@@ -240,6 +244,9 @@ def push_island(
         row = work.pairs[k]
         fall = pair_speed(work.starts, work, k)
         deepest = min(deepest, row.gap)
+        for m in range(2):
+            n = work.owners[k + m]
+            work.depths[n, IN_PART] = max(work.depths[n, IN_PART], -row.gap)
         row.target_speed = -max(row.gap, 0.0) / dt
         first = min(first, _strikes_after(surface, row.gap, fall, dt))
         along, aside = pair_slip(work.starts, work, k)

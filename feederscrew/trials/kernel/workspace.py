@@ -282,6 +282,7 @@ class Workspace(NamedTuple):
     near_crossings: Rows  # (N, S, R) its edges, and those of the other that they may cross
     faces_of_corner: Rows  # (T,) a corner, and the faces that it may touch
     strains: Floats  # (N, 2) impulse from behind along the track, and from below, of other parts
+    depths: Floats  # (N, 2) the deepest that each was in the track, and in another part
     order: Ints  # (N,) parts by islands: those that may touch each other
     islands: Ints  # (N + 1,) where each begins
     least: Floats  # (3,) box of the part in its own axes
