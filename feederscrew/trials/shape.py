@@ -17,11 +17,10 @@ from feederscrew.base.geometry import vectors
 from feederscrew.base.geometry.compiled import frozen_rows
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part, refuse_many_facets
-from feederscrew.trials.kernel.plate_views import BLOCK
+from feederscrew.trials.kernel.plate_views import BLOCK, EDGE_EXTENSION
 from feederscrew.trials.kernel.workspace import CIRCLE, TrueSolid
 
 FLAT_ANGLE = 2e-3  # [rad] facets that meet at a smaller angle are one face
-EDGE_EXTENSION = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
 FINE_CORNERS_ANGLE = np.radians(6.0)  # between corners of a circle, for the borders of cuts that it touches
 COARSE_CORNERS_ANGLE = np.radians(45.0)  # further apart they belong to a polygon, as of a hexagon's head, ...
 CLOSE_CORNERS_ANGLE = np.radians(10.0)  # ... and about an axis on which the part does not roll, these

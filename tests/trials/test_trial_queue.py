@@ -21,10 +21,13 @@ from block_rides import (
     lying,
     still,
 )
+from scipy.spatial.transform import Rotation
 
 from feederscrew import bowl as bowls
 from feederscrew.arrivals.kernel import body
 from feederscrew.base.errors import FeederError
+from feederscrew.base.geometry import vectors
+from feederscrew.base.geometry.compiled import zero_rows
 from feederscrew.base.running import USUAL_RUN, RunSettings
 from feederscrew.bowl.devices.kinds import KINDS, make_device
 from feederscrew.bowl.devices.trade import Action
@@ -37,6 +40,8 @@ from feederscrew.sorting.orientations import add_travel
 from feederscrew.sorting.verdicts import verdict
 from feederscrew.trials import fills, part_poses, queue, queue_counts, result, runs
 from feederscrew.trials.kernel.steps import BEHIND, BELOW, IN_PART, IN_TRACK
+from feederscrew.trials.kernel.workspace import JOURNAL, QueueSteps
+from feederscrew.trials.shape import solid_of
 from feederscrew.trials.supply import MEAN_GAP_SHARE, QueuePlan
 
 STILL = still(climb=0.0)
@@ -371,6 +376,53 @@ def test_a_queue_says_how_deep_its_parts_were_in_the_track_and_in_each_other():
     row.ride(0)
     found = row.result()
     assert found.depth_in_track == pytest.approx(5e-5, abs=5e-6) and found.depth_in_part == 0.0
+
+
+@pytest.mark.parametrize(("beyond", "deep"), [(1.9e-5, (0.0, 1e-6)), (-5e-5, (5e-5, 2.1e-4))])
+def test_a_corner_beside_a_part_is_not_taken_for_deep_in_it(beyond, deep):
+    """A block on end leans by 3 % over one that lies; its lower corner is 0.2 mm below the top of that one.
+
+    Beyond the end of it by 13 um the corner is in the air. It was taken for 0.2 mm deep under the top, since
+    a corner may lie up to 21 um outside the face that it touches. 50 um within the end it is in the part.
+    """
+    on, lean = parts_on(STILL, -0.10, -0.05), np.arctan(0.03)
+    first, second = on.arrays.states
+    upright = Rotation.from_euler("y", -0.5 * np.pi - lean) * Rotation.from_matrix(part_poses.matrix(first))
+    second[body.Q : body.Q + 4] = np.roll(upright.as_quat(), 1)
+    spots = vectors.product(SOLID.corners, upright.as_matrix().T) * LENGTH
+    low = spots[np.argmin(spots[:, 2])]
+    assert np.ptp(spots[:, 2]) > 0.02 * np.cos(lean)  # on end
+    first[body.X : body.Z + 1] = np.array([-0.1, 7e-3, 2.5e-3]) / LENGTH
+    second[body.X : body.Z + 1] = (first[:3] * LENGTH + [10e-3 + beyond, 3e-3, 2.3e-3] - low) / LENGTH
+    one_step = QueueSteps(on.is_on, 0.0, 1, zero_rows(1, JOURNAL))
+    runs.move_crowd(on.part_in_bowl, on.surface, on.arrays, one_step)
+    least, most = deep
+    assert least <= on.depths[:, IN_PART].min() * LENGTH <= on.depths[:, IN_PART].max() * LENGTH <= most
+
+
+def test_an_edge_that_comes_to_the_end_of_a_hollow_edge_is_held_there():
+    """An edge of a T nut comes 20 um deep into another one, where its hollow edge ends in its end face.
+
+    There two convex edges begin. The edge that comes crosses neither: it passes before both beginnings, by
+    half its depth. Against either it is 20 um / sqrt(2) deep, the angle between the normals being 60 deg.
+    """
+    part, deep = shapes.part(shapes.t_nut()), 2e-5
+    solid, length, principal = solid_of(part)
+    on = queue.PartsOnTrack(runs.setting(solid, length, STILL), queue.lay_out_track(STILL, EVERY, (), 0.5), 2)
+    along, middle = np.array([1.0, 1.0, -1.0]) / np.sqrt(3.0), np.array([2.0, -1.0, 1.0]) / np.sqrt(6.0)
+    across = np.cross(along, middle)
+    sides = (middle + across) / np.sqrt(2.0), (middle - across) / np.sqrt(2.0)
+    # rotation of each from its file, the place [m] in its file that comes to one place in the air
+    held = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([2.5e-3, 0.0, -10e-3])
+    comes = np.column_stack([*sides, np.cross(*sides)]), np.array([5e-3, 3e-3, 0.0])
+    for n, (turn, spot) in enumerate((held, comes)):
+        state = np.zeros(body.STATE)
+        state[body.Q : body.Q + 4] = np.roll(Rotation.from_matrix(turn @ principal).as_quat(), 1)
+        state[:3] = (np.array([-0.1 + deep * n, 0.04, 0.06]) - turn @ (spot - part.centre_of_mass)) / length
+        on.lay(n, state)
+    one_step = QueueSteps(on.is_on, 0.0, 1, zero_rows(1, JOURNAL))
+    runs.move_crowd(on.part_in_bowl, on.surface, on.arrays, one_step)
+    assert on.depths[:, IN_PART] * length == pytest.approx(deep / np.sqrt(2.0), rel=1e-3)
 
 
 def test_poured_parts_come_to_lie_and_travel():

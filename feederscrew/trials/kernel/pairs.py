@@ -13,6 +13,7 @@ from feederscrew.trials.kernel.contact import set_axes, set_levers
 from feederscrew.trials.kernel.plate_views import (
     BLOCK,
     CROSSING_SINE,
+    EDGE_EXTENSION,
     MAX_DEPTH,
     NORMAL_SLACK,
     box_is_off,
@@ -31,6 +32,7 @@ from feederscrew.trials.kernel.plate_views import (
 from feederscrew.trials.kernel.workspace import IntPair, TrueSolid, Vec3, Workspace
 
 FACE_MARGIN = 2e-3  # by which a corner may lie outside the face it touches
+CHECKED_DEPTH = 2e-3  # a deeper contact is one only where the place between the two is in the body
 ROUNDING = 1e-9  # more than rounding moves a box
 # how far around two parts their lists look
 LEAST_LIST_MARGIN = 0.05  # at least
@@ -201,9 +203,38 @@ def _touched_face(
         off = height_over_face(solid, m, p[0], p[1], p[2])
         if not gap < off < reach or not is_over_face(solid, m, p[0], p[1], p[2], FACE_MARGIN):
             continue
-        if _is_lowest(work, solid, k, m, p, NORMAL_SLACK):
+        if not _is_lowest(work, solid, k, m, p, NORMAL_SLACK):
+            continue
+        if off > -CHECKED_DEPTH or is_inside(solid, p, solid.normals[m], FACE_MARGIN - off):
             gap, face = off, m
     return face, gap
+
+
+@outlined
+def is_inside(solid: TrueSolid, p: Vec3, out: Vec3, length: float) -> bool:
+    """Return whether a place (3,) [L] in a body's axes is inside it, by a line ``length`` [L] along ``out``.
+
+    ``out`` (3,) [1] leads to a surface that is so near. A place behind the plane of a face need not be in the
+    body: it may lie beside it, before another face, or behind a thin wall. The line from a place inside
+    leaves the body once more than it enters it.
+    """
+    q, crossings = point_along(p, length, out), 0
+    for block in range(len(solid.face_blocks)):
+        if box_is_off(solid.face_blocks[block], p, q, 0.0):
+            continue
+        for m in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.triangles))):
+            lean = dot(solid.normals[m], out)
+            fall = -height_over_face(solid, m, p[0], p[1], p[2])
+            if lean == 0.0 or not 0.0 <= fall / lean <= length:
+                continue
+            rows, side = solid.triangles[m], 1.0 if lean > 0.0 else -1.0
+            a, b = subtract(solid.vertices[rows[0]], p), subtract(solid.vertices[rows[1]], p)
+            c = subtract(solid.vertices[rows[2]], p)
+            if min(dot(out, cross(a, b)) * side, dot(out, cross(b, c)) * side) < 0.0:
+                continue
+            if dot(out, cross(c, a)) * side >= 0.0:
+                crossings += int(side)
+    return crossings > 0
 
 
 @compiled
@@ -405,19 +436,20 @@ def _near_edges(work: Workspace, solid: TrueSolid, reach: float) -> int:
 @compiled
 def _list_edges(work: Workspace, solid: TrueSolid, reach: float, near: Rows) -> int:
     """Write which edges may cross which to ``near`` (R,); how many, R where there are more."""
-    edges, count = _near_edges(work, solid, reach), 0
-    blocks = _near_blocks(solid.edge_blocks, work.box, reach, work.second_blocks) if edges else 0
+    far = reach + EDGE_EXTENSION
+    edges, count = _near_edges(work, solid, far), 0
+    blocks = _near_blocks(solid.edge_blocks, work.box, far, work.second_blocks) if edges else 0
     for m in range(edges):
         k = work.first_edges[m]
         p = place_of(work.frame, solid.corners[solid.edges[k, 0]])
         q = place_of(work.frame, solid.corners[solid.edges[k, 1]])
         for f in range(blocks):
             block = work.second_blocks[f]
-            if box_is_off(solid.edge_blocks[block], p, q, reach):
+            if box_is_off(solid.edge_blocks[block], p, q, far):
                 continue
             for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
                 r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
-                if count == len(near) or _edges_are_apart((p, q), (r, s), reach):
+                if count == len(near) or _edges_are_apart((p, q), (r, s), far):
                     continue
                 off = _distance_to_crossing(work, solid, (k, n), (p, q), reach)
                 if off < reach:
@@ -488,15 +520,16 @@ def _touch_edges(
 @compiled
 def _add_edges(work: Workspace, solid: TrueSolid, i: int, j: int, reach: float, count: int) -> int:
     """Add contacts of convex edges of part i, as ``work.frame`` places it, with those of j, without lists."""
-    edges = _near_edges(work, solid, reach)
-    blocks = _near_blocks(solid.edge_blocks, work.box, reach, work.second_blocks) if edges else 0
+    far = reach + EDGE_EXTENSION
+    edges = _near_edges(work, solid, far)
+    blocks = _near_blocks(solid.edge_blocks, work.box, far, work.second_blocks) if edges else 0
     for m in range(edges):
         k = work.first_edges[m]
         p = place_of(work.frame, solid.corners[solid.edges[k, 0]])
         q = place_of(work.frame, solid.corners[solid.edges[k, 1]])
         for f in range(blocks):
             block = work.second_blocks[f]
-            if box_is_off(solid.edge_blocks[block], p, q, reach):
+            if box_is_off(solid.edge_blocks[block], p, q, far):
                 continue
             for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
                 count = _add_edge(work, solid, (i, j), (k, n), (p, q), reach, count)
@@ -525,11 +558,13 @@ def _add_edge(
 ) -> int:
     """Add the contact of two edges (2,) of two parts (2,), if they touch; how many rows there are now.
 
-    ``ends`` are those of the first edge, as the second part sees them.
+    ``ends`` are those of the first edge, as the second part sees them. An edge goes on a little where a
+    hollow edge meets its end, or two parts would pass through each other there: no corner of either is its
+    foremost, and no edge crosses another.
     """
     (ours, theirs), (p, q) = edges, ends
     r, s = solid.corners[solid.edges[theirs, 0]], solid.corners[solid.edges[theirs, 1]]
-    if _edges_are_apart((p, q), (r, s), reach):
+    if _edges_are_apart((p, q), (r, s), reach + EDGE_EXTENSION):
         return count
     a, u = subtract(q, p), subtract(s, r)
     across = cross(a, u)
@@ -540,7 +575,8 @@ def _add_edge(
     way = subtract(r, p)
     pa, pu = dot(way, a), dot(way, u)
     share, place = (pa * uu - pu * au) / size**2, (pa * au - pu * aa) / size**2
-    if not (0.0 <= share <= 1.0 and 0.0 <= place <= 1.0):
+    more, rest = solid.extensions[ours], solid.extensions[theirs]
+    if not (-more[0] <= share <= 1.0 + more[1] and -rest[0] <= place <= 1.0 + rest[1]):
         return count
     own, side = solid.sides[ours], solid.sides[theirs]
     lean = dot(across, (side[0] + side[3], side[1] + side[4], side[2] + side[5]))
@@ -554,4 +590,13 @@ def _add_edge(
         return count
     if dot(side[3:], normal) > NORMAL_SLACK or dot(own[3:], by_first) < -NORMAL_SLACK:
         return count
-    return _add_contact(work, solid, parts, point_along(r, place, u), normal, gap, count)
+    spot = point_along(r, place, u)
+    if gap < -CHECKED_DEPTH:
+        middle = point_along(spot, 0.5 * gap, normal)
+        if not is_inside(solid, middle, normal, FACE_MARGIN - gap):
+            return count
+        move = work.frame
+        middle = rotate_back(move, subtract(middle, (move[9], move[10], move[11])))
+        if not is_inside(solid, middle, (-by_first[0], -by_first[1], -by_first[2]), FACE_MARGIN - gap):
+            return count
+    return _add_contact(work, solid, parts, spot, normal, gap, count)

@@ -10,6 +10,7 @@ from feederscrew.trials.kernel.workspace import Surface, TrueSolid, Vec3
 MAX_DEPTH = 0.04  # how far behind a surface anything may be found, in units of the part's length
 NORMAL_SLACK = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between
 CROSSING_SINE = 1e-3  # [1] of the angle below which two edges do not cross: their ends touch instead
+EDGE_EXTENSION = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
 BORDER_END_SHARE = 1.0 - 1e-9  # a border's end counts for the next border's start
 BLOCK = 16  # corners, edges, or faces, that have a box together
 
