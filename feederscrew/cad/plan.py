@@ -725,12 +725,12 @@ def _track_path(
             bends=tuple((first + at, climb) for at, climb in tooled.climbs),
             leans=tuple((first + a, first + b, bank) for a, b, bank in tooled.banks),
         )
-        if path.bends:
-            _check_bends(path, stepped, tooled.tallest)
+        if path.bends or path.drops:
+            _check_lowest(path, stepped, tooled.tallest)
     return path, float(first)
 
 
-def _check_bends(path: TrackPath, stepped: Stairs | None, tallest: float) -> None:
+def _check_lowest(path: TrackPath, stepped: Stairs | None, tallest: float) -> None:
     """Raise the fault of a track that goes down too near to the floor, or to the turn before."""
     ends = [*(at for at, _ in path.bends), *(at for at, _ in path.drops), path.end]
     lowest = float(path.height(ends).min())
@@ -738,6 +738,8 @@ def _check_bends(path: TrackPath, stepped: Stairs | None, tallest: float) -> Non
         what = f"a device leads the track down to {1e3 * lowest:.3g} mm over the floor"
         least = 1e3 * (float(path.height(path.end)) + MIN_TRACK_HEIGHT_M - lowest)
         raise TrackTooLow("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
+    if not path.bends:  # a drop takes little of the height that a turn gains
+        return
     if stepped is None:
         round_once = FULL_TURN_RAD * path.radius
         free = lowest - float(path.risen(path.end - round_once))

@@ -33,6 +33,7 @@ from solids import (
 
 from feederscrew.base.errors import FeederError
 from feederscrew.bowl.devices.air_assist import AirAssist
+from feederscrew.bowl.devices.kinds import make_device
 from feederscrew.cad import facets, riding, segments
 from feederscrew.cad.closed_body import body
 from feederscrew.cad.measuring import measures, track_heights, track_width, ways_down
@@ -84,6 +85,14 @@ def test_a_separation_leads_the_track_down_from_its_place_on():
     assert low.outlet_height == pytest.approx(0.04, abs=1e-9)
     with pytest.raises(FeederError, match=r"^devices: a device leads the track down to .* over the floor"):
         planned(chain, asked=SolidOptions(outlet_height=0.005))
+
+
+def test_a_drop_leads_no_track_below_the_floor():
+    """A track that rises little: behind a ledge of 10 mm the outlet of such a bowl lay below its floor."""
+    chain = (make_device("tipping ledge", "ledge 7 mm", limit=7e-3),)
+    with pytest.raises(FeederError, match=r"^devices: a device leads the track down to .* over the floor"):
+        planned(chain, replace(TRACK, climb=np.radians(0.5)))
+    assert planned(chain).outlet_height > 0.02
 
 
 def test_a_cut_is_as_large_as_its_device_says_and_rails_are_open_at_their_end():
