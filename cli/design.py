@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import functools
 import os
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
@@ -170,6 +171,7 @@ def design(
         from feederscrew import bowl as bowls
         from feederscrew.bowl.verified import CONDITIONS
         from feederscrew.designing import calls, loop
+        from feederscrew.designing.design import complete_design
         from feederscrew.designing.record import DesignRequest
         from feederscrew.output import designs
 
@@ -192,7 +194,10 @@ def design(
         request = DesignRequest(**values)
         with out.folder_of(solid, inputs, settings=own_settings) as folder:
             with _stoppable(out) as search:
-                study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
+                complete = functools.partial(complete_design, settings=own_settings)
+                study = loop.design(
+                    solid, record, user_keys, request, shares=aspect_shares, complete=complete, **search
+                )
             call = out.arguments if is_shown else calls.call_words(request, solid, own_settings)
             study = dataclasses.replace(study, call=call)
             study = _write(out, folder, study, own_settings)

@@ -42,6 +42,9 @@ LEAST_LIVELY_M = 1e-4  # hop of such a drive at least
 NEXT_LIVELIER_HOP = 1.6  # times the hop, one throw number of the list farther: before another blade is tried
 CALMER_STEP = 0.01  # [1] of the throw number: so much above ``CALM_THROW_NUMBER`` counts as that
 CALMER_SHARE = 0.9  # of the velocity: what is faster is no calmer drive
+# [deg] of the vibration angle, where no springs make the one that holds
+FLATTER_STEP = 5.0  # between two that are tried: nearer ones are alike
+FLATTEST_ANGLE = 5  # flatter drives carry parts by friction alone, and slowly
 HALVINGS = 12  # of the amplitude
 STROKE_STEP = 1e-6  # [m] to which an amplitude is rounded
 LIVELY = (1.2, 1.5)  # throw numbers of two-axis drives without tooling: nearly twice as fast as below 1
@@ -265,6 +268,45 @@ def find_livelier(
     order = sorted(itertools.chain(*_levels(plain_bowl, True)), key=_calmness)
     rows = (other for other in order if hop(other).height >= height and speed(other) > 0.0)
     return next((other for other in rows if _can_build(plain_bowl, other)), None)
+
+
+def find_flatter(plain_bowl: PlainBowl, bowl: Bowl) -> Iterator[Bowl]:
+    """Yield a bowl with drives at flatter vibration angles that leaf springs make, the nearest angle first.
+
+    Each is as fast as the drive of the bowl, at its frequency and at no more than its throw number: the least
+    amplitude that is. Angles are whole degrees, ``FLATTER_STEP`` apart at least. What the user gave of the
+    machine stays; the angle and the stroke of the drive are free.
+
+    Parameters
+    ----------
+    plain_bowl : PlainBowl
+    bowl : Bowl
+        With a leaf-spring drive that its machine does not make.
+
+    Yields
+    ------
+    Bowl
+        With the devices of the bowl.
+    """
+    if is_two_axis(bowl.drive):
+        return
+    free = plain_bowl.kept_keys - {"drive.vibration_angle", *STROKES}
+    velocity, angle = speed(bowl), bowl.drive.vibration_angle
+    steepest = math.ceil(math.degrees(angle) - math.degrees(drive_sizing.SAME_ANGLE)) - 1
+    last = math.inf
+    for degrees in range(steepest, FLATTEST_ANGLE - 1, -1):
+        if last - degrees < FLATTER_STEP:
+            continue
+        drive = replace(bowl.drive, vibration_angle=math.radians(degrees))
+        livelier = _set_throw_number(replace(bowl, drive=drive), float(throw_number(bowl)))
+        under = drive_sizing.machine_on(livelier, free, exact=True)
+        if drive_sizing.can_make(replace(livelier, machine=under)) is not None:
+            continue  # whatever its stroke: the angle is not that of springs
+        flatter = slow_to(livelier, velocity)
+        shortfall = drive_sizing.drive_shortfall(replace(flatter, devices=()), free)
+        if speed(flatter) >= velocity and not shortfall:
+            last = degrees
+            yield flatter
 
 
 def _levels(plain_bowl: PlainBowl, hops: bool) -> list[list[Bowl]]:

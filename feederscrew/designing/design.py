@@ -1,5 +1,6 @@
 """The study of ``feeder design``: from a part and a rate to a bowl that its own trial confirms."""
 
+import functools
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -197,11 +198,30 @@ def design(
         members = (with_machine(member, build_machine(member, kept_settings)) for member in family.members)
         return replace(family, members=tuple(members))
     shared = the_shares(aspect_shares)
-    study = loop.design(arguments.a_part(part), plain, kept_keys, request, shares=shared, tell=progress)
+    complete = functools.partial(complete_design, settings=kept_settings)
+    solid = arguments.a_part(part)
+    study = loop.design(solid, plain, kept_keys, request, shares=shared, tell=progress, complete=complete)
     study = replace(study, call=call_words(request, study.part, kept_settings))
     if request.quick:
         return study
-    return with_machine(study, build_machine(study, kept_settings))
+    return complete_design(study, kept_settings)
+
+
+def complete_design(study: DesignStudy, settings: Iterable[Setting]) -> DesignStudy:
+    """Return a design with the machine below its bowl, sized for it.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    settings : iterable of Setting
+        As the user gave them.
+
+    Returns
+    -------
+    DesignStudy
+        Its status says if that machine cannot be made.
+    """
+    return with_machine(study, build_machine(study, settings))
 
 
 DESIGNED_TEXTS = (
@@ -337,7 +357,7 @@ def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
 
     Where the leaf springs that are drawn do not make the drive that was tried, or its bowl makes no solid,
     its tooling holds and its machine cannot be made: its status says so, and the nearest machine that makes
-    the drive is named.
+    the drive is named. Where none does, a drive at a flatter angle that ``loop.design`` proved stays named.
 
     Parameters
     ----------
@@ -398,7 +418,8 @@ def nearest_machine(bowl: Bowl) -> str:
     """Return the machine nearest to one that does not make its drive, and does: in words, '' without one.
 
     The springs stand on their own circle or as far out as the bowl has room for them, as steep as the drive
-    asks for, on leaves that are chosen anew; each is computed as ``feeder bowl`` computes a machine.
+    asks for and no steeper than ``sizing.steepest_spring_angle``, on leaves that are chosen anew; each is
+    computed as ``feeder bowl`` computes a machine.
 
     Parameters
     ----------
@@ -420,6 +441,8 @@ def nearest_machine(bowl: Bowl) -> str:
     for circle in dict.fromkeys((machine.spring_radius, farthest)):
         on_circle = replace(machine, spring_radius=circle)
         angle = float(np.radians(np.round(np.degrees(needed_angle(on_circle, track.radius, wanted)), 1)))
+        if angle > bowl.sizing.steepest_spring_angle:
+            continue
         turned = replace(bowl, machine=replace(on_circle, spring_angle=angle))
         words = {"spring_angle", "spring_radius", "bowl_mass", "bowl_inertia", "base_mass", "base_inertia"}
         built = replace(turned, machine=drive_sizing.on_leaves(turned, words))

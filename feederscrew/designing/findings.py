@@ -135,6 +135,7 @@ class MoveKind(enum.Enum):
     SPACING = enum.auto()  # a spacing section before the devices, or a steeper one: parts come apart
     CALMER_DRIVE = enum.auto()
     LIVELIER_DRIVE = enum.auto()
+    FLATTER_DRIVE = enum.auto()  # its vibration angle is flatter: leaf springs do not make its own
 
 
 @dataclass(frozen=True)

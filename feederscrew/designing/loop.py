@@ -43,6 +43,7 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.designing.short_trials import robust_run
+from feederscrew.machine.drive_sizing import drive_shortfall, is_two_axis
 from feederscrew.motion.hop import hop
 from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.sorting.isolating import chain as static
@@ -67,6 +68,7 @@ def design(
     before: Callable[[], None] | None = None,
     progress: Progress | None = None,
     with_nearest: bool = True,
+    complete: Callable[[DesignStudy], DesignStudy] | None = None,
 ) -> DesignStudy:
     """Design a bowl that brings a part at a rate, and try it.
 
@@ -92,6 +94,9 @@ def design(
         guess of those to go if what is tried holds.
     with_nearest : bool, optional
         Whether the nearest that holds is looked for where the design does not.
+    complete : callable, optional
+        Returns a design with its machine. Where no springs make the drive of a design that holds, its chain
+        is tried and proved at a flatter vibration angle; without it, it is not.
 
     Returns
     -------
@@ -153,7 +158,37 @@ def design(
     best = _list_alternatives(search, proofs, classes, chosen)
     if best.partial or any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
-    return best if best.status in HELD else replace(best, nearest=near)
+    if best.status not in HELD:
+        return replace(best, nearest=near)
+    candidate = next((candidate for study, candidate in proofs if study is chosen), None)
+    if complete is None or not with_nearest or candidate is None or not _lacks_springs(search, candidate):
+        return best
+    try:
+        return _with_flatter_drive(search, candidate, best, complete)
+    except KeyboardInterrupt:
+        return replace(best, partial=True)
+
+
+def _lacks_springs(search: Search, candidate: Candidate) -> bool:
+    """Tell whether the machine of a track does not make the leaf-spring drive of a candidate."""
+    bare = replace(candidate.bowl, devices=())
+    return not is_two_axis(bare.drive) and bool(drive_shortfall(bare, search.kept_keys))
+
+
+def _with_flatter_drive(
+    search: Search, candidate: Candidate, best: DesignStudy, complete: Callable[[DesignStudy], DesignStudy]
+) -> DesignStudy:
+    """The design with the nearest drive at a flatter angle, where no springs on any circle make its own."""
+    made = complete(best)
+    if made.status is not Status.NO_MACHINE or made.nearest is not None:
+        return best
+    search.tell(f"no leaf springs make the drive of {candidate.attempt.wanted}: flatter angles are tried")
+
+    def prove(other: Search, flatter: Candidate) -> DesignStudy:
+        return prove_design(other, flatter, whole=False)
+
+    near = nearest.flatter_drive(best, search, candidate, prove, complete)
+    return replace(best, attempts=tuple(search.state.attempts), nearest=near)
 
 
 def _list_alternatives(search: Search, proofs: Proofs, classes: list[int], best: DesignStudy) -> DesignStudy:

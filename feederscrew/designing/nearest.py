@@ -13,7 +13,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT
 from feederscrew.designing import calm_drive, exploring, proposals, queues, texts
 from feederscrew.designing.fill_verdicts import longest_time
-from feederscrew.designing.findings import FaultKind, MoveKind
+from feederscrew.designing.findings import FaultKind, Move, MoveKind
 from feederscrew.designing.record import DesignStudy, NearestDesign
 from feederscrew.designing.search import Candidate, Search
 from feederscrew.motion.hop import hop
@@ -24,6 +24,7 @@ SLIGHT = 1e-9  # of rounding
 SAME_DRIVE = 0.05  # [1] by which drives differ that are one: half of what a draw changes
 RATE_DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
+Complete = Callable[[DesignStudy], DesignStudy]
 Proofs = list[tuple[DesignStudy, Candidate]]
 
 
@@ -199,6 +200,68 @@ def _is_denied(variant: Variant, proved: Sequence[Candidate], drives: float = ma
     )
     # where more of what leaves counts, it is another proof
     return variant.as_requested and (len(alike) >= drives or any(near))
+
+
+def flatter_drive(
+    best: DesignStudy, search: Search, candidate: Candidate, prove: Prove, complete: Complete
+) -> NearestDesign | None:
+    """Return a design at a flatter vibration angle, where no leaf springs make the angle of one that holds.
+
+    Its chain is tried at drives of ``calm_drive.find_flatter``, ``flatter_drives`` of the policy at most. One
+    that is clean in a short trial is proved by draws and queues, and its machine is sized.
+
+    Parameters
+    ----------
+    best : DesignStudy
+        Whose tooling holds.
+    search : Search
+        As it ended.
+    candidate : Candidate
+        Of that design.
+    prove : callable
+        Returns the design of a candidate with its draws and queues.
+    complete : callable
+        Returns a design with its machine.
+
+    Returns
+    -------
+    NearestDesign or None
+        The first that holds with its machine, or what came of those that were tried; None where no flatter
+        drive can be made.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it.
+    """
+    proofs, denials = 0, list[str]()
+    steep = math.degrees(candidate.bowl.drive.vibration_angle)
+    flatter = calm_drive.find_flatter(candidate.plain_bowl(search), candidate.bowl)
+    for bowl in itertools.islice(flatter, search.policy.flatter_drives):
+        search.state.nearest_limit = len(search.state.attempts) + 1
+        angle = f"{math.degrees(bowl.drive.vibration_angle):.3g} deg"
+        change = f"a drive at a flatter angle, {angle} in place of {steep:.3g} deg, {_drive(bowl)}"
+        move = Move(MoveKind.FLATTER_DRIVE, 2.0 * bowl.drive.amplitude)
+        other = exploring.try_again(search, candidate, replace(candidate.proposal, move=move), bowl)
+        if not other.attempt.clean:
+            denials.append(f"{change}: {', '.join(texts.fault_texts(other.attempt.faults, 2))}")
+            continue
+        study = prove(search, other)
+        if study.partial:
+            raise KeyboardInterrupt
+        proofs, made = proofs + 1, complete(study)
+        if made.status in HELD:
+            near = nearest_from_study(
+                made, search.request.target, change, trials=len(search.state.attempts), proofs=proofs
+            )
+            stroke = f"{1e3 * bowl.drive.amplitude:.4g} mm"
+            settings = ("drive.vibration_angle", angle), ("drive.amplitude", stroke)
+            return replace(near, denied=tuple(denials), settings=settings)
+        denials.append(f"{change}: {next(iter(made.shortfalls), made.status)}")
+    if not denials:
+        return None
+    trials = len(search.state.attempts)
+    return NearestDesign(None, "", trials=trials, proofs=proofs, denied=tuple(denials))
 
 
 def nearest_from_study(

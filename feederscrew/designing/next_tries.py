@@ -44,6 +44,7 @@ class TryKind(enum.StrEnum):
     ANOTHER_DRIVE = "another drive"
     MORE_TRIALS = "more trials"
     CALMER_DRIVE = "calmer drive"
+    FLATTER_DRIVE = "drive at a flatter angle"
 
 
 class Evidence(enum.StrEnum):
@@ -91,7 +92,7 @@ def next_tries(study: DesignStudy) -> tuple[NextTry, ...]:
         return (NextTry(TryKind.PROOF, replace(study.request, quick=False)),)
     tries: dict[DesignRequest, NextTry] = {}
     for one in _ways(study):
-        if one.request != study.request:
+        if one.request != study.request or one.settings:
             tries.setdefault(one.request, one)
     return tuple(tries.values())[:MOST_TRIES]
 
@@ -159,6 +160,8 @@ def _of_nearest(study: DesignStudy) -> NextTry:
     if near is None or near.rate is None or near.request is None:
         raise ValueError("nothing near it holds")
     other = replace(near.request, target=near.rate, budget=request.budget)
+    if near.settings:
+        return NextTry(TryKind.FLATTER_DRIVE, other, Evidence.HOLDS, rate=near.rate, settings=near.settings)
     aspect = (near.wanted or "").partition("@")[0]
     if other.up != request.up and other.up:
         return NextTry(TryKind.ANY_HEADING, other, Evidence.HOLDS, aspect=other.up[-1], rate=near.rate)

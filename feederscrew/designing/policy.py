@@ -139,6 +139,7 @@ class SearchPolicy:
     # the nearest that holds
     near_proofs: int = _chosen(3)  # designs beside those of the search that go through draws and queues
     near_drives: int = _chosen(2)  # drives at which one chain is proved, that of the search among them
+    flatter_drives: int = _chosen(2)  # flatter angles at which a chain without a machine is proved
     near_trials: int = _chosen(4)  # short trials beside those of the search
     other_way_trials: int = _chosen(6)  # of other ways up, where only some were asked for
     other_way_calmer_trials: int = _chosen(2)  # of them at a calmer drive

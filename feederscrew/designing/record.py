@@ -252,6 +252,7 @@ class NearestDesign:
     denied: tuple[str, ...] = ()  # what else was tried, and what came of it
     helps: tuple[str, ...] = ()  # what else was seen to help, or may
     request: DesignRequest | None = None  # that it was tried for; None where none holds
+    settings: tuple[tuple[str, str], ...] = ()  # keys of the bowl that it changes, and their values
 
     @property
     def text(self) -> str:

@@ -200,6 +200,8 @@ def move_text(move: Move) -> str:
             return f"calmer drive, {1e3 * move.value:.3g} mm peak to peak"
         case MoveKind.LIVELIER_DRIVE:
             return f"livelier drive, {1e3 * move.value:.3g} mm peak to peak"
+        case MoveKind.FLATTER_DRIVE:
+            return f"drive at a flatter angle, {1e3 * move.value:.3g} mm peak to peak"
 
 
 MOST_JAMMED = 3  # orientations of which it is said where they stood

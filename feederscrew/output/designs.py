@@ -315,6 +315,7 @@ def nearest(study: DesignStudy) -> Document | None:
         "wanted": near.wanted,
         "chain": list(near.chain),
         **values(NEAREST_COLUMNS, near),
+        "settings": dict(near.settings),
         "tried": tried | {"denied": list(near.denied)},
         "helps": list(near.helps),
         "text": near.text,

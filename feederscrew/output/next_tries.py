@@ -92,6 +92,9 @@ def reason(one: NextTry) -> str:
             text = "a two-axis drive carries parts without throwing them"
         case TryKind.MORE_TRIALS:
             text = f"{one.request.budget} short trials"
+        case TryKind.FLATTER_DRIVE:
+            keys = listed([f"{key} {text}" for key, text in one.settings])
+            text = f"springs make this drive ({keys}), and it holds at {rate}: its draws and queues were run"
         case TryKind.CALMER_DRIVE:
             keys = listed([f"{key} {text}" for key, text in one.settings])
             asked = f"{one.request.target / PER_MINUTE:.3g}/min were asked for"

@@ -1,8 +1,10 @@
 """The loop of a design: parts that turn on the way to the tooling, and what a stopped one hands over."""
 
+import functools
 from dataclasses import replace
 from types import SimpleNamespace
 
+import design_counts
 import numpy as np
 import pytest
 import shapes
@@ -13,13 +15,25 @@ from feederscrew.arrivals.entry import Shares
 from feederscrew.base.columns import values
 from feederscrew.base.errors import FeederError
 from feederscrew.base.running import RunSettings
-from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
+from feederscrew.bowl.verified import Status
+from feederscrew.designing import (
+    calm_drive,
+    exploring,
+    families,
+    loop,
+    proposals,
+    queues,
+    short_trials,
+)
+from feederscrew.designing.design import complete_design
 from feederscrew.designing.proof import RobustRun
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.short_trials import robust_run
-from feederscrew.output import designs
+from feederscrew.machine.drive_sizing import drive_shortfall
+from feederscrew.output import designs, marking, next_tries
 from feederscrew.resting.aspects import find
 from feederscrew.trials import fills, long_ride
+from feederscrew.trials.fills import FillLevel
 from feederscrew.trials.long_ride import LEFT, RideOfTrack
 from feederscrew.trials.trial import TrialQueue, trial
 from feederscrew.trials.wanted import states_of_name
@@ -155,6 +169,67 @@ def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
     assert found.partial and found.status == "not proved" and why in found.why
     assert (found.bowl is not None) == bowl and len(found.attempts) == bowl
     assert word in said[-1] and said[0] == "trial 1: A@0, no device"
+
+
+STEEP = ("drive.vibration_angle=60 deg", "drive.amplitude=0.2 mm", "drive.frequency=50 Hz")
+
+
+@pytest.fixture
+def steep(monkeypatch):
+    """A cube at a drive that no leaf springs make: its draws sort and its queues hold, at every drive."""
+    drives = []
+
+    def filled(row, **more):
+        drives.append(row.bowl.drive)
+        return tuple(design_counts.queue(fill=level, gaps=level.gaps, seconds=60.0) for level in FillLevel)
+
+    monkeypatch.setattr(loop, "robust_run", lambda *_, **__: RobustRun(2, 2))
+    monkeypatch.setattr(queues, "follow_fills", filled)
+    settings, plain = bowls.settings(None, STEEP), bowls.read(None, STEEP)
+    given = frozenset(line.partition("=")[0] for line in STEEP)
+    complete = functools.partial(complete_design, settings=settings)
+    design = functools.partial(loop.design, CUBE, plain, given, REQUEST, shares=SHARES, complete=complete)
+    return design, drives, settings
+
+
+def test_a_drive_that_no_springs_make_comes_with_a_flatter_one_that_was_proved(steep):
+    design, drives, settings = steep
+    found = complete_design(design(), settings)
+    assert found.status is Status.NO_MACHINE and found.verdict.tooling_status is Status.HOLDS
+    assert found.alternatives[0].status is Status.NO_MACHINE
+    assert marking.of_trial(designs.trial_of(found)) == ""
+    # the chain was proved at two drives, the second flatter and no slower: springs make that one
+    asked, flatter = drives
+    assert flatter.vibration_angle < asked.vibration_angle == pytest.approx(np.radians(60.0))
+    near, bowls_of = found.nearest, [replace(found.bowl, drive=drive) for drive in drives]
+    assert calm_drive.speed(bowls_of[1]) >= calm_drive.speed(bowls_of[0]) > 0.0
+    assert dict(near.settings) == {
+        "drive.vibration_angle": f"{np.degrees(flatter.vibration_angle):.3g} deg",
+        "drive.amplitude": f"{1e3 * flatter.amplitude:.4g} mm",
+    }
+    shortfalls = [drive_shortfall(replace(bowl, devices=()), frozenset()) for bowl in bowls_of]
+    assert shortfalls[0] and not shortfalls[1]
+    # status, JSON and the first call to paste say the same
+    assert "flatter angle" in found.why and near.rate == REQUEST.target and near.proofs == 1
+    written = designs.document(found)["nearest"]
+    assert written["settings"] == dict(near.settings) and "flatter angle" in written["change"]
+    first = next_tries.entries(found)[0]
+    assert first["settings"] == dict(near.settings) and first["evidence"] == "holds"
+    assert all(f"{key}={text}" in first["command"] for key, text in near.settings)
+
+
+def test_a_flatter_drive_whose_queues_do_not_hold_is_named_with_what_denied_it(steep, monkeypatch):
+    design, drives, settings = steep
+    holds = queues.follow_fills
+
+    def jam_if_flatter(row, **more):
+        jams = int(row.bowl.drive.vibration_angle < np.radians(59.0))
+        return tuple(replace(each, jams=jams) for each in holds(row, **more))
+
+    monkeypatch.setattr(queues, "follow_fills", jam_if_flatter)
+    near = complete_design(design(), settings).nearest
+    assert near.rate is None and not near.settings and len(near.denied) == near.proofs == len(drives) - 1 > 0
+    assert all("flatter angle" in text and "jam" in text for text in near.denied)
 
 
 def test_a_family_is_stopped_with_the_parts_that_were_reached(monkeypatch):

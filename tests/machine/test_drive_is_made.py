@@ -230,7 +230,7 @@ def test_longer_leaves_where_none_of_the_usual_length_tunes_a_slow_drive():
 
 
 def test_a_design_whose_drawn_springs_do_not_make_its_angle_holds_but_for_its_machine():
-    steep = (*ONE, "drive.vibration_angle=50 deg", "drive.amplitude=0.15 mm")
+    steep = (*ONE, "drive.vibration_angle=35 deg", "drive.amplitude=0.15 mm")
     one = proved(PART, bowls.read(None, steep))
     assert one.status == "holds"
     settings = bowls.settings(None, steep)
@@ -241,11 +241,13 @@ def test_a_design_whose_drawn_springs_do_not_make_its_angle_holds_but_for_its_ma
     assert found.alternatives[0].status is Status.NO_MACHINE and found.alternatives[0].reasons
     assert found.cause == "drive" and found.nearest.rate == one.request.target
     assert "springs that stand at" in found.nearest.change and found.nearest.draws_held == 20
-    # the machine that is named makes the drive, on leaves that last: its angle and circle are those of words
+    # the machine that is named stands no steeper than the rules let it, and makes the drive, on leaves that
+    # last: its angle and circle are those of words
     angle, circle = (
         float(text)
         for text in re.findall(r"at ([\d.]+) deg on a circle of ([\d.]+)", found.nearest.change)[0]
     )
+    assert np.radians(angle) <= found.bowl.sizing.steepest_spring_angle
     bowl = replace(
         found.bowl,
         machine=replace(found.bowl.machine, spring_angle=np.radians(angle), spring_radius=5e-4 * circle),
@@ -253,6 +255,9 @@ def test_a_design_whose_drawn_springs_do_not_make_its_angle_holds_but_for_its_ma
     assert can_make(bowl) is None and can_make(found.bowl) is not None
     # papers of its tooling bear no mark: its trial holds
     assert marking.of_trial(designs.trial_of(found)) == ""
+    # at 50 deg the springs would stand steeper on every circle
+    steeper = bowls.record(bowls.settings(None, (*steep, "drive.vibration_angle=50 deg")))
+    assert design.nearest_machine(steeper) == "" != design.nearest_machine(bowls.record(settings))
 
 
 @pytest.mark.parametrize("name", [None, "d300-60hz"])
