@@ -9,8 +9,8 @@ from feederscrew.base.columns import Column
 from feederscrew.trials.staging import Stage
 
 # [m] by which a part of a queue may be in another part or in the track. It is what is asked of single parts:
-# a sixth of the thinnest wall among the parts of docs/method/trial.md, which come to 0.03 mm at most. A part
-# that is deeper and stands is held by the trial's contacts, not by the device.
+# a sixth of the thinnest wall among the parts of docs/method/trial.md, of which seven in eight keep it. A
+# part that is deeper and stands is held by the trial's contacts, not by the device.
 MAX_QUEUE_DEPTH_M = 1e-4
 
 
