@@ -160,11 +160,11 @@ def design(
         return replace(best, partial=True)
     if best.status not in HELD:
         return replace(best, nearest=near)
-    own = next((candidate for study, candidate in proofs if study is chosen), None)
-    if complete is None or not with_nearest or own is None or not _lacks_springs(search, own):
+    holding = next((one for study, one in proofs if study is chosen), None)
+    if complete is None or not with_nearest or holding is None or not _lacks_springs(search, holding):
         return best
     try:
-        return _with_flatter_drive(search, own, best, complete)
+        return _with_flatter_drive(search, holding, best, complete)
     except KeyboardInterrupt:
         return replace(best, partial=True)
 
