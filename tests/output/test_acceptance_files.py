@@ -286,10 +286,10 @@ def test_the_page_shows_the_sheet_and_the_fills_as_the_files_have_them(papers):
     for cells, fill in zip(table_of(papers.page, "proof"), FILLS, strict=True):
         assert cells[0] == fill["fill"]
         counts = [fill[name] for name in ("gaps", "parts", "seconds")]
-        after = [fill[name] for name in ("left", "right", "returned", "jams", "climbs")]
+        after = [fill.get(name, 0) for name in ("left", "right", "returned", "jams", "overlaps", "climbs")]
         shares = [100.0 * share for share in purity_of(fill)]
         wanted = [*counts, *rate_of(fill), *shares, *after]
-        assert [float(cell) for cell in cells[1:14]] == pytest.approx(wanted, rel=6e-4)
+        assert [float(cell) for cell in cells[1:15]] == pytest.approx(wanted, rel=6e-4)
 
 
 def test_the_bowl_file_says_what_its_trial_has_shown(papers, tmp_path):
