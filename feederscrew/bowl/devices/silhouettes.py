@@ -228,7 +228,7 @@ class SilhouetteBlade(StraightBlade):
         list of SilhouetteBlade
             None twice. A low blade meets others with more of its face. In a full track of push buttons,
             90 s of each order, none stood with the lower blade in front (89 of 91 left right), and 2 at the
-            higher one where that was in front (82 of 83).
+            higher one where that was in front (82 of 83), before contacts at hollow edges were mended.
         """
         lying = [one.orientation for one in wanted]
         others = [one.orientation for one in competitors]
