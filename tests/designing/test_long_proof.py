@@ -191,7 +191,7 @@ def test_a_fill_ends_where_its_jams_refuse_what_was_agreed(row, monkeypatch):
 
     def follow(row, run, *more):
         made.append(run)
-        return RunCounts(run.seconds, 0.0, 0.0, jams[run.fill], 0, *none)
+        return RunCounts(run.seconds, 0.0, 0.0, jams[run.fill], 0, 0, *none)
 
     monkeypatch.setattr(long_proof, "_follow", follow)
     low, normal, high = follow_long(row, plan, AGREED, RunSettings())
