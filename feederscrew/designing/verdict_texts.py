@@ -111,7 +111,7 @@ def _text_of_fill(study: "DesignStudy", kind: Shortage | FillLack, queue: Filled
         case FillLack.OVERLAP:
             return (
                 f"{at} {counted(queue.overlaps, 'part')} stood more than {1e3 * MAX_QUEUE_DEPTH_M:g} mm deep "
-                "in another part or in the track: a fault of the trial, neither a jam nor evidence of none"
+                "in another part or in the track: a fault of the trial, which shows no jam and excludes none"
             )
         case FillLack.RATE:
             return (

@@ -121,15 +121,15 @@ class LyingPart(Protocol):
 
     @property
     def ahead(self) -> float:
-        """How far its foot reaches ahead of its weight [m]."""
+        """Return how far its foot reaches ahead of its weight [m]."""
 
     @property
     def behind(self) -> float:
-        """How far its foot reaches behind its weight [m]."""
+        """Return how far its foot reaches behind its weight [m]."""
 
     @property
     def nose_swing(self) -> float:
-        """How far from an edge across the track the top of its nose swings as it tips over that edge [m]."""
+        """Return how far from an edge across the track the top of its nose swings as it tips over it [m]."""
 
     @property
     def carry(self) -> float:
@@ -161,11 +161,11 @@ class LyingPart(Protocol):
 
     @property
     def rolls_along(self) -> bool:
-        """Whether the axis about which it rolls lies more along the track than across it."""
+        """Tell whether the axis about which it rolls lies more along the track than across it."""
 
     @property
     def may_roll_back(self) -> bool:
-        """Whether it lies on its round side, not along a climbing track: no verdict is sure."""
+        """Tell whether it lies on its round side, not along a climbing track: no verdict is sure."""
 
     def on_track(self, track: "Track", **changes: Any) -> Self:
         """Return it on another stretch of track, with changes of its own fields."""
