@@ -195,7 +195,7 @@ def design(
             raise ArgumentError("search", "a quick look is at one part", "design each part alone")
         parts = [arguments.a_part(given_part) for given_part in part]
         family = families.family(parts, plain, kept_keys, request, tell=progress)
-        members = (with_machine(member, build_machine(member, kept_settings)) for member in family.members)
+        members = (complete_design(member, kept_settings) for member in family.members)
         return replace(family, members=tuple(members))
     shared = the_shares(aspect_shares)
     complete = functools.partial(complete_design, settings=kept_settings)

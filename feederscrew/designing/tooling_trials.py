@@ -206,8 +206,8 @@ def _look_further(
 ) -> ToolingStudy:
     """A table whose designs were all denied, with what the search finds for its best orientation.
 
-    As where that is asked for by its aspect alone, so that both give one answer. Orientations that left in
-    its trial too, hanging, have the same chain.
+    The search is the one that follows the static rule where that orientation is asked for by its aspect.
+    Other orientations of which a part left hanging in the trial of that chain have it as well.
     """
     place = study.trials[0].wanted
     asked = AskedOrientation(replace(study, wanted=place), None, run, until, kept_keys, *may_use)
@@ -338,9 +338,9 @@ class AskedOrientation:
         if self.propose is not None and own is not cost_class and own.number < cost_class.number:
             first = self.propose((), cost_class)
             design = first.design
-        # without a way to propose others the design was denied before
-        is_static = self.propose is not None and own.number <= cost_class.number
-        is_static = is_static and _may_isolate(design, cost_class)
+        # a table has tried its static design already, and proposes no other
+        may_be_static = self.propose is not None and own.number <= cost_class.number
+        is_static = may_be_static and _may_isolate(design, cost_class)
         if is_static and design is not None and not self._try(first, design).faults:
             return
         if is_twisted:

@@ -54,11 +54,12 @@ HEIGHTS = 12  # clearances that a design tries, evenly up to the tallest orienta
 # [m] that parts come off the wall and askew: draws lost a push button to which blade and edge left 0.5 mm, in
 # 5 of 14
 PLAY_M = 5e-4
-# [m] that wanted ones lie below the edge, and others stand above it at least: push buttons 1 mm taller than
-# those that are wanted stood at a blade 0.5 mm above these, and at none 0.2 or 0.25 mm above
+# [m] that wanted ones lie below the edge, and others stand above it at least: behind a lower blade, push
+# buttons 1 mm taller than those that are wanted did not stand at one 0.2 to 0.3 mm above these
 HEIGHT_ROOM_M = 2.5e-4
-# [1] times a height as a distance from the blade: parts come off the wall and askew by more than they hop.
-# Push buttons, thrown 0.06 mm high, passed below edges 0.2 to 0.5 mm above them alike
+# [1] by which a height over a part counts more than the same way off the wall: parts come askew by more than
+# they hop. Push buttons, thrown 0.06 mm high, passed below edges 0.2 to 0.5 mm above them alike; no other
+# part was tried
 HEIGHT_WEIGHT = 2.0
 # [m] rooms beside the play, of which a design tries the blades that return most
 ROOMS_M = (5e-4, 2.5e-4)

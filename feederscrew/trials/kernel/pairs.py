@@ -1,7 +1,10 @@
 """Compiled search for contacts between two parts of one shape: corners on faces, and edges on edges.
 
-Everything is looked for in the body axes of the part that is touched, the second. A contact is two records of
-`workspace.CONTACT`, one for each part, with the same axes; the normal points towards the first part.
+Everything is looked for in the body axes of the part that is touched, the second: ``work.frame`` (12,) has
+the first part's turn in them, 9 entries by rows, and its place. Which part is the second changes on the way.
+A contact is two records of `workspace.CONTACT`, one for each part, with the same axes; the normal points
+towards the first part. Lengths are in the size L of the part. Grounds and figures: docs/method/trial.md,
+"Depths".
 """
 
 import math
@@ -31,14 +34,16 @@ from feederscrew.trials.kernel.plate_views import (
 )
 from feederscrew.trials.kernel.workspace import IntPair, TrueSolid, Vec3, Workspace
 
-FACE_MARGIN = 2e-3  # by which a corner may lie outside the face it touches
-CHECKED_DEPTH = 2e-3  # a deeper contact is one only where the place between the two is in the body
-ROUNDING = 1e-9  # more than rounding moves a box
-# how far around two parts their lists look
-LEAST_LIST_MARGIN = 0.05  # at least
-LIST_MARGIN_SHARE = 2.0  # times the reach
+FACE_MARGIN = 2e-3  # [L] by which a corner may lie outside the face it touches
+# [L] a deeper contact is one only where the place between the two is in the body: as deep as the band beside
+# a face is wide, in which corners in the air count as over it
+CHECKED_DEPTH = FACE_MARGIN
+ROUNDING = 1e-9  # [L] more than rounding moves a box
+# lists look ahead by the greater of these beyond the reach
+LEAST_LIST_MARGIN = 0.05  # [L]
+LIST_MARGIN_SHARE = 2.0  # [1] times the reach
 MAX_NORMAL_TURN = 0.5  # [1] sine of the angle by which the normal of two edges may turn while lists hold
-LIST_REACH = 0.1  # greater than any reach: what is so near to a part is within its radius and that
+LIST_REACH = 0.1  # [L] greater than any reach: what touches a part is within its radius and that
 
 
 @outlined
@@ -46,10 +51,12 @@ def find_pair_contacts(solid: TrueSolid, work: Workspace, i: int, j: int, reach:
     """Add contacts of two parts with each other, if they come within ``reach`` [L].
 
     Which corners may touch which faces, and which edges cross, is listed once in a while. The lists hold as
-    long as neither part has moved further, as the other sees it, than they look around: L. Verlet, Phys. Rev.
-    159, 98-103, 1967. They never decide what touches: every contact is the same as without them. Left out of
-    them is what no motion for which they hold brings to touch: a corner before which another one lies, edges
-    whose normal is not between their faces. Beside each stands how much nearer it must come.
+    long as neither part has moved further, as the other sees it, than they look ahead: L. Verlet, Phys. Rev.
+    159, 98-103, 1967. They never decide what touches: every contact is the same as without them. Listed is
+    every pair that could touch before that. Not listed are corners that cannot become the lowest, and edges
+    whose normal cannot come between their faces. Beside each pair stands ``off``, a lower bound of how much
+    nearer it must come. Lists that hold more than they have room for have a ``reach`` below 0: then all is
+    looked at in every step. New ones have 0.
     """
     if _balls_are_apart(solid, work, i, j, reach + FACE_MARGIN):
         return
@@ -106,13 +113,18 @@ def _nearest_of(near: Rows, count: int) -> float:
 
 @compiled
 def _shift_of(solid: TrueSolid, now: Floats, before: Floats) -> float:
-    """Return how far [L] at most a point of a part has moved, seen by either part (frames (12,))."""
+    """Return how far [L] at most a point of a part has moved since, seen by the other one.
+
+    Frames (12,) as ``work.frame``. The same bound holds for points of either part: their distances do not
+    depend on whose axes they are seen in.
+    """
     turned = moved = 0.0
     for e in range(9):
         turned += (now[e] - before[e]) ** 2
     for e in range(9, 12):
         moved += (now[e] - before[e]) ** 2
-    # half the squared size of a difference of rotations is that of the longest chord of a unit ball
+    # The root of half the sum of squares of a difference of rotations is the longest chord of a unit ball,
+    # 2 sin(t/2) of a turn by t; a thousandth more than rounding
     return math.sqrt(moved) + 1.001 * math.sqrt(0.5 * turned) * (solid.radius + LIST_REACH)
 
 
@@ -214,9 +226,10 @@ def _touched_face(
 def is_inside(solid: TrueSolid, p: Vec3, out: Vec3, length: float) -> bool:
     """Return whether a place (3,) [L] in a body's axes is inside it, by a line ``length`` [L] along ``out``.
 
-    ``out`` (3,) [1] leads to a surface that is so near. A place behind the plane of a face need not be in the
-    body: it may lie beside it, before another face, or behind a thin wall. The line from a place inside
-    leaves the body once more than it enters it.
+    ``out`` (3,) [1] leads to a surface that is so near, and the line has to end outside. A place behind the
+    plane of a face need not be in the body: it may lie beside it, before another face, or behind a thin wall.
+    The line from a place inside leaves the body once more than it enters it. The mesh has to be closed, its
+    normals outwards.
     """
     q, crossings = point_along(p, length, out), 0
     for block in range(len(solid.face_blocks)):
@@ -474,7 +487,8 @@ def _distance_to_crossing(
     size, most = math.sqrt(dot(across, across)), math.sqrt(dot(a, a) * dot(u, u))
     if turn * most > MAX_NORMAL_TURN * size:  # it may be any direction
         return -math.inf
-    slack = 1.2 * turn * most / size  # chord of an angle whose sine is up to MAX_NORMAL_TURN
+    # more than the chord of an angle whose sine is up to MAX_NORMAL_TURN, 1.04 times the sine
+    slack = 1.2 * turn * most / size
     blur, off = slack * (math.sqrt(dot(way, way)) + wide), math.inf
     own, side = solid.sides[ours], solid.sides[theirs]
     for _ in range(2):
@@ -558,9 +572,9 @@ def _add_edge(
 ) -> int:
     """Add the contact of two edges (2,) of two parts (2,), if they touch; how many rows there are now.
 
-    ``ends`` are those of the first edge, as the second part sees them. An edge goes on a little where a
-    hollow edge meets its end, or two parts would pass through each other there: no corner of either is its
-    foremost, and no edge crosses another.
+    ``ends`` are those of the first edge, as the second part sees them. Where an edge ends at a hollow edge it
+    goes on by its share of ``solid.extensions``. There neither a corner nor another pair of edges touches,
+    and two parts would pass through each other.
     """
     (ours, theirs), (p, q) = edges, ends
     r, s = solid.corners[solid.edges[theirs, 0]], solid.corners[solid.edges[theirs, 1]]
