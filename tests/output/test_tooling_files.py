@@ -203,6 +203,10 @@ def test_a_blade_is_drawn_where_it_stands_and_no_farther(lying, sweep):
     near, low, far, _ = plate.bounds
     assert (near, low, far) == pytest.approx((0.0, 5e-3, 3.5e-3), abs=1e-9)
     assert plate.area == pytest.approx(shapely.box(*plate.bounds).area)
+    # a deflector's pieces stand one behind the other, each farther off the wall
+    bend = make_device("curved deflector", "", limit=4e-3, end=np.radians(55.0))
+    seen = device_passages.worst_passage(bend, every[0], every).plate
+    assert seen.bounds[0] == pytest.approx(0.0, abs=1e-4) and seen.bounds[2] >= 0.9 * lying[0].track.width
     bar = device_passages.worst_passage(make_device("wiper", "", limit=4e-3), every[0], every).plate
     assert bar.bounds[1] == pytest.approx(4e-3) and bar.bounds[2] >= lying[0].track.width
 

@@ -400,7 +400,8 @@ def test_a_corner_beside_a_part_is_not_taken_for_deep_in_it(beyond, deep):
     assert least <= on.depths[:, IN_PART].min() * LENGTH <= on.depths[:, IN_PART].max() * LENGTH <= most
 
 
-def test_an_edge_that_comes_to_the_end_of_a_hollow_edge_is_held_there():
+@pytest.mark.parametrize("comes_first", [False, True])
+def test_an_edge_that_comes_to_the_end_of_a_hollow_edge_is_held_there(comes_first):
     """An edge of a T nut comes 20 um deep into another one, where its hollow edge ends in its end face.
 
     There two convex edges begin. The edge that comes crosses neither: it passes before both beginnings, by
@@ -415,10 +416,12 @@ def test_an_edge_that_comes_to_the_end_of_a_hollow_edge_is_held_there():
     # rotation of each from its file, the place [m] in its file that comes to one place in the air
     held = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([2.5e-3, 0.0, -10e-3])
     comes = np.column_stack([*sides, np.cross(*sides)]), np.array([5e-3, 3e-3, 0.0])
-    for n, (turn, spot) in enumerate((held, comes)):
+    for n, (turn, spot) in enumerate((comes, held) if comes_first else (held, comes)):
         state = np.zeros(body.STATE)
         state[body.Q : body.Q + 4] = np.roll(Rotation.from_matrix(turn @ principal).as_quat(), 1)
-        state[:3] = (np.array([-0.1 + deep * n, 0.04, 0.06]) - turn @ (spot - part.centre_of_mass)) / length
+        state[:3] = (
+            np.array([-0.1 + deep * (n != comes_first), 0.04, 0.06]) - turn @ (spot - part.centre_of_mass)
+        ) / length
         on.lay(n, state)
     one_step = QueueSteps(on.is_on, 0.0, 1, zero_rows(1, JOURNAL))
     runs.move_crowd(on.part_in_bowl, on.surface, on.arrays, one_step)
