@@ -112,9 +112,9 @@ def tooling(
     that passes. Devices of the bowl file stay before the design.
 
     Of the table the best three are tried. Where it denies the chain of one orientation, up to four others
-    are tried, without one or more of its devices. Where it denies all three, chains are looked for as with
-    --aspect for the first of them. --static leaves the trial out. Ctrl-C ends it as not proved, with exit
-    status 130: what was found so far is given, without drawings to build from.
+    are tried, without one or more of its devices. In classes cheaper than what is confirmed, chains are
+    looked for as with --aspect, for the first of the three. --static leaves the trial out. Ctrl-C ends it as
+    not proved, with exit status 130: what was found so far is given, without drawings to build from.
 
     With -o: tooling.csv, tooling.json and tooling.png. An aspect adds tooling.yaml, a bowl file with the
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and

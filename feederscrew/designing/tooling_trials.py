@@ -137,11 +137,11 @@ def try_designs(
 ) -> ToolingStudy:
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
-    Where the trial denies every one that it tries of a table, the search of ``feeder design`` looks for a
-    chain of the best one. Of an orientation that was asked for, classes are tried in the order of cost, until
-    the trial confirms a chain: that of the static rule, what the search of ``feeder design`` finds, and what
-    the static rule has without some kinds of devices. Chains of the static rule that isolate nothing are not
-    tried.
+    Of a table, the search of ``feeder design`` then looks for a chain of its best one in the classes that are
+    cheaper than what the trial confirms, in all where it confirms none. Of an orientation that was asked for,
+    classes are tried in the order of cost, until the trial confirms a chain: that of the static rule, what
+    the search of ``feeder design`` finds, and what the static rule has without some kinds of devices. Chains
+    of the static rule that isolate nothing are not tried.
 
     Parameters
     ----------
@@ -178,9 +178,12 @@ def try_designs(
     may_use = tuple(without), OutcomeKind(outcome), heading_given
     if study.wanted is None:
         tried = _try_table(study, run, until)
-        if propose is None or tried.partial or not _is_all_denied(tried):
+        if propose is None or tried.partial or not tried.trials:
             return tried
-        return _look_further(tried, classes, run, until, frozenset(kept_keys), may_use)
+        confirmed = (tried.class_of(trial.wanted) for trial in tried.trials)
+        cheapest = min((one.number for one in confirmed if one is not None), default=math.inf)
+        cheaper = [one for one in classes if one.number < cheapest]
+        return _look_further(tried, cheaper, run, until, frozenset(kept_keys), may_use)
     if propose is None:
         return _try_table(study, run, until)
     asked = AskedOrientation(study, propose, run, until, frozenset(kept_keys), *may_use)
@@ -191,11 +194,6 @@ def try_designs(
     return asked.answer(efficiency)
 
 
-def _is_all_denied(study: ToolingStudy) -> bool:
-    """Whether designs of a table were tried, and the trial denied every one."""
-    return bool(study.trials) and all(trial.faults for trial in study.trials)
-
-
 def _look_further(
     study: ToolingStudy,
     classes: Sequence[CostClass],
@@ -204,10 +202,10 @@ def _look_further(
     kept_keys: frozenset[str],
     may_use: tuple[tuple[str, ...], OutcomeKind, bool],
 ) -> ToolingStudy:
-    """A table whose designs were all denied, with what the search finds for its best orientation.
+    """A table with the chain that the search finds for its best orientation in some classes, the first first.
 
-    The search is the one that follows the static rule where that orientation is asked for by its aspect.
-    Other orientations of which a part left hanging in the trial of that chain have it as well.
+    The search is the one that follows the static rule where that orientation is asked for by its aspect. Of a
+    chain in which parts hang, other headings of the aspect that left in its trial have it as well.
     """
     place = study.trials[0].wanted
     asked = AskedOrientation(replace(study, wanted=place), None, run, until, kept_keys, *may_use)
@@ -223,7 +221,9 @@ def _look_further(
         return study
     places, designs = [place], list(study.designs)
     if any(device.action is Action.HANG for device in design.devices):
-        places += [k for k, one in enumerate(study.orientations) if k != place and one.name in first.left]
+        aspect = study.orientations[place].aspect
+        same = (k for k, one in enumerate(study.orientations) if one.aspect == aspect and k != place)
+        places += [k for k in same if study.orientations[k].name in first.left]
     for k in places:
         designs[k] = replace(design, wanted=k)
     others = tuple(trial for trial in study.trials if trial.wanted not in places)

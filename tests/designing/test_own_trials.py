@@ -258,11 +258,13 @@ def test_a_table_whose_designs_are_all_denied_has_what_the_search_finds(monkeypa
     denied, agreed = tables.trials(result)
     assert (len(denied), len(agreed)) == ((0, 2) if hangs else (1, 1))
     assert all(f"--aspect {study.orientations[other].name} tries" in line for line in denied)
-    # where the trial denies one alone, nothing is looked for
-    monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(1))
-    asked.clear()
-    one = tooling_trials.try_designs(table, lambda *_: None)
-    assert [bool(trial.faults) for trial in one.trials] == [True, False] and not asked
+    # where the trial confirms one, a cheaper class alone is looked for
+    own = CostClass.of(found.devices)
+    for asked_class, searched_in in ((own, []), (None, [CostClass.STEEL])):
+        monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(1))
+        asked.clear()
+        tooling_trials.try_designs(table, lambda *_: None, cost_class=asked_class)
+        assert [cost for *_, cost in asked] == (searched_in if own is not CostClass.STEEL else [])
     monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(9))
     again = tooling_trials.try_designs(table, lambda *_: None)
     assert not any(again.isolates(k) for k in (place, other)) and len(again.trials) == 2
