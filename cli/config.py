@@ -89,16 +89,21 @@ def materials(out: Output) -> None:
 
 
 @config.command(short_help="Show the values in effect and where each came from.")
+@click.argument("file", type=options.FILE, required=False)
 @options.bowl
 @options.output
-def show(bowl: Values, out: Output) -> None:
-    """Example: feeder config show --config bowl.yaml --set drive.frequency="50 Hz"
+def show(file: str | None, bowl: Values, out: Output) -> None:
+    """Example: feeder config show bowl.yaml --set drive.frequency="50 Hz"
 
-    Show every value in effect and where it came from: the default, a line of the bowl file, or --set.
+    Show every value in effect and where it came from: the default, a line of the bowl file, or --set. The
+    bowl file is given as FILE or by --config.
     """
     from feederscrew.bowl import identity, name, settings, texts
     from feederscrew.output import slide, tables
 
+    if file is not None and options.is_typed("path"):
+        raise click.UsageError(f"{file} is given, and --config as well - leave one of them out")
+    bowl = bowl if file is None else {**bowl, "path": file}
     out.tell_unread(bowl["path"])
     bowl_settings, path = settings(**bowl), bowl["path"]
     frame = slide.settings(bowl_settings)

@@ -33,11 +33,16 @@ def test_show_tells_value_and_origin_of_a_file_or_a_drive_unit_and_refuses_a_str
     assert shown["friction.static"] == ["0.3", "--set"]
     assert shown["friction.wall"] == ["0.3", "as", "friction.kinetic"]
     assert shown["gravity"] == ["9.81", "m/s2", "default"]
+    # the file needs no option; of two files none is guessed
+    assert run("config", "show", "b.yaml", "--set", "friction.static=0.3").stdout.splitlines() == lines
+    twice = run("config", "show", "b.yaml", "--config", "b.yaml")
+    assert twice.exit_code == 2 and "leave one of them out" in twice.stderr and not twice.stdout
     # a stream is refused
     os.mkfifo("pipe.yaml")
     for name in ("-", "pipe.yaml"):
         line = "is a stream, and a bowl file is read more than once - save it and name the file"
-        assert run("config", "show", "--config", name).stderr == f"Error: {name}: {line}\n"
+        for call in (("--config", name), (name,)):
+            assert run("config", "show", *call).stderr == f"Error: {name}: {line}\n"
     # a drive unit instead of all defaults
     listed = run("config", "init", "--machine", "list")
     assert listed.exit_code == 0 and len(listed.output.splitlines()) >= 6
