@@ -4,7 +4,7 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -212,8 +212,9 @@ class SilhouetteBlade(StraightBlade):
         ``judged``). A blade with the reach n - p gives them a room p beside the play. It pushes off another
         one of n', b' up to a width b' + n - p - n' that is left, where n - p - n' >= p; it does not carry it
         up to b'. The width that is left lies a third of the way from b to the least of those widths. Of each
-        room p of ``ROOMS_M`` the blade that returns most is taken, and the one that returns most of the rest;
-        then the same of blades that return by pushing alone.
+        room p of ``ROOMS_M`` the blade that returns most by pushing alone is taken, and the one that returns
+        most of the rest. Then the same is done with what falls without a push as well. Of clearances that
+        do, the one is taken whose edge has most room, as ``_room_of_edge`` says.
 
         Parameters
         ----------
@@ -244,9 +245,13 @@ class SilhouetteBlade(StraightBlade):
                 (height, near, np.array([nearest_above(one, height + HEIGHT_ROOM_M) for one in others]))
             )
         proposed: dict[str, SilhouetteBlade] = {}
+        of_pushing: set[tuple[float, float]] = (
+            set()
+        )  # reach and leaves of blades that return by pushing alone
         for room in ROOMS_M:
+            falls_anyway = frozenset(np.flatnonzero(needed - carried >= 2.0 * room + PLAY_M).tolist())
             for by_pushing in (True, False):
-                made: list[tuple[frozenset[int], float, float, float]] = []
+                made: list[_Candidate] = []
                 for height, near, other in views:
                     farthest = min(near - room - PLAY_M, carried)  # it ends over the track that is left
                     reach = math.floor(farthest / SHOP_STEP_M + 1e-6) * SHOP_STEP_M
@@ -256,17 +261,18 @@ class SilhouetteBlade(StraightBlade):
                     if reach > 0.0 and falls.any():
                         least = min(float(widths[falls].min()), carried + PLAY_M + MOST_LEFT * room)
                         width = carried + PLAY_M + KEPT_SHARE * (least - carried - PLAY_M)
+                        leaves = math.floor(width / SHOP_STEP_M) * SHOP_STEP_M
+                        met = [others[k] for k in np.flatnonzero(falls & (pushed >= room))]
+                        room_of_edge = _room_of_edge(height, reach, lying, met)
                         returned = frozenset(np.flatnonzero(falls).tolist())
-                        made.append((returned, height, reach, math.floor(width / SHOP_STEP_M) * SHOP_STEP_M))
-                left = set(range(len(others)))
-                for _ in range(BLADES):  # the next one returns most of those that the first one leaves
-                    made = [one for one in made if left & one[0]]
-                    if not made:
-                        break
-                    best = max(made, key=lambda one: (len(left & one[0]), one[3], -one[1]))
-                    returned, height, reach, leaves = best
-                    left -= returned
-                    blade = cls(where, limit=height, sweep=PROPOSED_SWEEP_RAD, reach=reach, leaves=leaves)
+                        made.append(_Candidate(returned, height, reach, leaves, room_of_edge))
+                for one in _choose_blades(made, falls_anyway):
+                    if not by_pushing and (one.reach, one.leaves) in of_pushing:
+                        continue  # the same cut, with less room at its edge
+                    if by_pushing:
+                        of_pushing.add((one.reach, one.leaves))
+                    limit, sweep = one.height, PROPOSED_SWEEP_RAD
+                    blade = cls(where, limit=limit, sweep=sweep, reach=one.reach, leaves=one.leaves)
                     if not blade.misfits(lying[0].track.extent):
                         proposed.setdefault(blade.value_text(), blade.rewritten())
         return sorted(proposed.values(), key=lambda blade: blade.limit)
@@ -293,6 +299,57 @@ def nearest_above(orientation: LyingPart, height: float) -> float:
     """
     above = shapely.clip_by_rect(orientation.view_ahead, -HIGHEST_M, height, HIGHEST_M, HIGHEST_M)
     return math.inf if above.is_empty else float(above.bounds[0])
+
+
+class _Candidate(NamedTuple):
+    """A blade that may be proposed."""
+
+    returned: frozenset[int]  # the other orientations that fall at it
+    height: float  # [m] its clearance
+    reach: float  # [m]
+    leaves: float  # [m]
+    room_of_edge: float  # [m] as of ``_room_of_edge``
+
+
+def _choose_blades(made: Sequence[_Candidate], falls_anyway: frozenset[int]) -> list[_Candidate]:
+    """Of candidates the one that returns most, and the one that returns most of the rest.
+
+    Each then gives way to one of no less track whose edge has more room, where what it alone pushes off falls
+    there as well. What no such track carries falls anyway.
+    """
+    chosen: list[_Candidate] = []
+    left = frozenset[int]().union(*(one.returned for one in made))
+    while len(chosen) < BLADES and any(left & one.returned for one in made):
+        best = max(made, key=lambda one: (len(left & one.returned), one.leaves, one.room_of_edge))
+        chosen.append(best)
+        left -= best.returned
+    for k, one in enumerate(chosen):
+        alone = one.returned.difference(
+            falls_anyway, *(other.returned for other in chosen if other is not one)
+        )
+        alike = [other for other in made if other.returned >= alone and other.leaves >= one.leaves]
+        chosen[k] = max(alike, key=lambda other: other.room_of_edge)
+    return chosen
+
+
+@functools.lru_cache(maxsize=8192)
+def _top_within(orientation: LyingPart, reach: float) -> float:
+    """Height over the track [m] up to which an orientation has material nearer to the wall than a reach."""
+    near = shapely.clip_by_rect(orientation.view_ahead, -HIGHEST_M, -HIGHEST_M, reach, HIGHEST_M)
+    return 0.0 if near.is_empty else float(near.bounds[3])
+
+
+def _room_of_edge(
+    clearance: float, reach: float, wanted: Sequence[LyingPart], met: Sequence[LyingPart]
+) -> float:
+    """How far a lower edge lies above what passes below it, or half of how far below the tops of the others.
+
+    The lesser of the two [m]. Low over what passes, the edge holds down a part that comes askew and is about
+    to fall off. A face that pushes at the rim of a part tips it, and does not push it aside.
+    """
+    above = max(_top_within(one, reach) for one in wanted)
+    tops = min((_top_within(one, reach) for one in met), default=HIGHEST_M)
+    return min(clearance - above, 0.5 * (tops - clearance))
 
 
 def _clearances(wanted: Sequence[LyingPart], others: Sequence[LyingPart]) -> list[float]:
