@@ -35,6 +35,7 @@ SIZE = (20.0, 12.0, 5.0)  # [mm] of the part
 CHAINS = 5  # of four devices and more: together with one behind them they have every kind
 LONG = 100  # the seed of a chain that is longer than half a turn of its bowl, with blades where it begins
 LONG_RADIUS = 0.09  # [m] of that bowl
+TWO_DROPS = 101  # the seed of a chain with a step before another one, and a cut between
 BODIES = ("print", "exact", "bowl")
 RULES = record(effective({})).sizing
 MM = 1e-3
@@ -132,6 +133,8 @@ def draw_chain(seed, every):
     if seed == LONG:
         names = "banked track", "wiper", "silhouette blade", "narrowed track", "gap", "balance gap", *last
         return [draw_device(kind, rng, every) for kind in names]
+    if seed == TWO_DROPS:
+        return [draw_device(kind, rng, every) for kind in ("banked track", "step", "gap", "step", "wiper")]
     rails = [] if drops or seed % 3 else last
     middle = [] if drops or seed % 4 != 1 else ["banked track"]
     names = [*first, turned[0], *middle, *turned[1:], *rails]
@@ -306,8 +309,8 @@ def drawn_view(tooled, placed, number):
             beside = shapely.box(x0, y0, x1, tooled.width)
             if placed.features.drop is not None and placed.features.drop.aside > 0.0:
                 return beside if below else track.difference(beside)
-        steps = [one.bounds[0] for one in own.get("STEP", [])]
-        if placed.features.drop is not None and steps:
+        steps = sorted((one.bounds[0] for one in own.get("STEP", [])), key=abs)
+        if placed.features.drop is not None and steps:  # its own is the one where it begins
             upper = track.intersection(shapely.box(-1.0, 0.0, steps[0], 1.0))
             return track.difference(upper) if below else upper
         return track
@@ -373,6 +376,13 @@ def test_a_chain_that_is_longer_than_half_a_turn_is_the_same_too():
     assert not wrong
 
 
+def test_steps_one_after_another_are_the_same_in_all():
+    consumers = dict.fromkeys(("queue", "print", "bowl", "drawing"))
+    found = list(differences(TWO_DROPS, 0.15, consumers))
+    assert sum(what == "lower track" for *_, what, _ in found) == 2 * len(consumers)
+    assert not [(*names, f"{1e3 * size:.3f} mm") for *names, size in found if size > NEAR]
+
+
 @pytest.mark.parametrize(
     "kinds",
     [
@@ -425,7 +435,7 @@ def test_the_track_twists_in_the_trial_as_it_is_drawn(kinds):
 
 
 @pytest.mark.needs("OCP")
-@pytest.mark.parametrize("seed", [0, 1, 2, 4, 5, 6, 18])  # grooves that end in banks, twists, every ledge
+@pytest.mark.parametrize("seed", [*range(7), 18, TWO_DROPS])  # grooves that end in banks, twists, every ledge
 def test_rays_meet_the_step_file_where_they_meet_the_print(seed):
     *_, tooled = drawn(seed, 0.15)
     exact, flat = exact_file.exact_section(tooled), printed.section_body(tooled, facets)
