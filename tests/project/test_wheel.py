@@ -2,10 +2,14 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tarfile
 import venv
+import zipfile
+from email import message_from_bytes
+from email.message import Message
 from pathlib import Path
 
 import numpy
@@ -90,6 +94,44 @@ def test_all_files_of_the_packages_land_in_site_packages_under_our_own_names(pla
             for root in (ROOT / folder, packages / name)
         )
         assert {path for path in ours if path.suffix not in (".pyc", ".nbi", ".nbc", ".kernel")} <= there
+
+
+LINK = re.compile(r"(!?)\[[^\]]*\]\(([^)]*)\)")
+
+
+def metadata_of(place) -> list[Message]:
+    """What an index reads of the sdist and of the wheel."""
+    [sdist], [wheel] = place.glob("*.tar.gz"), place.glob("*.whl")
+    with tarfile.open(sdist) as archive, zipfile.ZipFile(wheel) as packed:
+        [inside] = [name for name in archive.getnames() if name.count("/") == 1 and name.endswith("PKG-INFO")]
+        [beside] = [name for name in packed.namelist() if name.endswith(".dist-info/METADATA")]
+        texts = [archive.extractfile(inside).read(), packed.read(beside)]
+    return [message_from_bytes(text) for text in texts]
+
+
+def test_a_page_of_an_index_has_no_picture_and_no_link_that_leads_nowhere(place):
+    for metadata in metadata_of(place):
+        page = metadata.get_payload()
+        assert metadata["Description-Content-Type"] == "text/markdown"
+        assert "## The main job" in page and page.count("```") >= 8
+        assert [target for _, target in LINK.findall(page) if "://" not in target] == []
+        assert [url for url in metadata.get_all("Project-URL", []) if "https://" not in url] == []
+
+
+def test_with_an_address_of_the_files_pictures_and_links_of_the_page_are_absolute(tmp_path):
+    """The addresses stand in one table of pyproject.toml; as they are there now they are empty."""
+    for name in ("README.md", "LICENSE", "hatch_build.py", "feederscrew/base/version.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes((ROOT / name).read_bytes())
+    project = (ROOT / "pyproject.toml").read_text()
+    for name in ("pages", "pictures"):
+        assert project.count(f'{name} = ""') == 1
+        project = project.replace(f'{name} = ""', f'{name} = "https://host.invalid/{name}/"')
+    (tmp_path / "pyproject.toml").write_text(project)
+    page = ran(sys.executable, "-m", "hatchling", "metadata", "readme", cwd=tmp_path)
+    ours = LINK.findall((ROOT / "README.md").read_text())
+    kinds = {"": "pages", "!": "pictures"}
+    assert LINK.findall(page) == [(of, f"https://host.invalid/{kinds[of]}/{target}") for of, target in ours]
 
 
 def test_every_command_runs_there(place):
