@@ -43,6 +43,7 @@ class Progress:
         is_terminal = sys.stderr.isatty()
         self.lines, self.what = is_shown and not is_terminal, what
         self.begun = self.last_line = time.monotonic()
+        self.first: tuple[float, int] | None = None  # when the first ones were done, and how many
         self.bar: Any = click.progressbar(
             itertools.repeat(None),  # never asked: they are counted by hand
             length=total,
@@ -89,15 +90,24 @@ class Progress:
         """
         now = time.monotonic()
         if self.lines and done < total and now - self.last_line >= LINE_EVERY_S:
-            self.last_line, gone = now, now - self.begun
-            rest = f", about {gone * (total - done) / done:.0f} s to go" if done else ""
+            self.last_line = now
+            gone, rest = now - self.begun, self._rest(now, done, total)
             _write(f"{self.what}: {done} of {total} after {gone:.0f} s{rest}\n")
+        if done and self.first is None:
+            self.first = now, done
         self.bar.length, self.bar.finished = total, False  # more may be found to be needed
         if not self.bar.entered:  # nothing is shown where nothing is waited for
             self._enter()
         self.bar.current_item = widest
         self.bar.make_step(done - self.bar.pos)
         self.bar.render_progress()
+
+    def _rest(self, now: float, done: int, total: int) -> str:
+        """The time to go, by the pace since the first ones: before them a kernel may have been compiled."""
+        since, before = self.first or (now, done)
+        return (
+            f", about {(now - since) * (total - done) / (done - before):.0f} s to go" if done > before else ""
+        )
 
 
 def end_line() -> None:

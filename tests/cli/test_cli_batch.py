@@ -90,14 +90,16 @@ def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
 
 
 def test_a_long_run_says_where_it_is_in_a_file_and_by_a_bar_with_the_time_to_go(monkeypatch, capsys):
-    """A line every 15 s where stderr is no terminal: here at once, after 2 of 4 in 3 s."""
-    clock = iter([100.0, 100.5, 103.0, 120.0])
+    """A line every 15 s where stderr is no terminal, by the pace since the first: they may be compiled for."""
+    clock = iter([100.0, 116.0, 117.0, 119.0, 140.0])
     monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
     monkeypatch.setattr(progress, "LINE_EVERY_S", 2.0)
     with progress.Progress(None, what="orientations") as shown:
         shown.reach(1, 4)
         shown.reach(2, 4)
-    assert capsys.readouterr().err == "orientations: 2 of 4 after 3 s, about 3 s to go\n"
+        shown.reach(3, 4)
+    lines = "orientations: 1 of 4 after 16 s\norientations: 3 of 4 after 19 s, about 2 s to go\n"
+    assert capsys.readouterr().err == lines
     screen = io.StringIO()
     screen.isatty = lambda: True
     monkeypatch.setattr(progress.sys, "stderr", screen)
