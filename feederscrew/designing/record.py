@@ -179,7 +179,8 @@ class WantedTrials:
     aspect: str
     trials: int
     ends: tuple[End, ...]  # where its parts were lost, the place of most trials first
-    others: tuple[Fault, ...]  # what went wrong with other orientations, each once
+    others: tuple[Fault, ...]  # what went wrong with other orientations, else with a trial, each once
+    clean_rate: float | None = None  # [1/s] of the fastest that was clean; None where none was
 
     @classmethod
     def of(cls, attempts: Iterable[Attempt]) -> tuple["WantedTrials", ...]:
@@ -202,10 +203,12 @@ class WantedTrials:
             faults = [fault for attempt in own for fault in attempt.faults]
             lost = [fault for fault in faults if fault.kind is FaultKind.LOST]
             ends = Counter(end for fault in lost for end in dict.fromkeys(fault.ends))
-            others = (fault for fault in faults if fault.kind in (FaultKind.CARRIED, FaultKind.STAYS))
+            others = [fault for fault in faults if fault.kind in (FaultKind.CARRIED, FaultKind.STAYS)]
+            others = others or [fault for fault in faults if fault.kind is not FaultKind.LOST]
             named = {(fault.kind, fault.orientation): fault for fault in others}
             order = tuple(end for end, _ in ends.most_common())
-            made.append(cls(name, own[0].aspect, len(own), order, tuple(named.values())))
+            fastest = max((attempt.rate for attempt in own if attempt.clean), default=None)
+            made.append(cls(name, own[0].aspect, len(own), order, tuple(named.values()), fastest))
         return tuple(sorted(made, key=lambda one: -one.trials))
 
 

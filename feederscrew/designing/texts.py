@@ -103,7 +103,9 @@ def fault_texts(faults: Iterable[Fault], most: int | None = None) -> list[str]:
     return [fault_text(fault) for fault in tuple(faults)[:most]]
 
 
-def wanted_trials_text(wanted: str, trials: int, ends: Iterable[End], others: Iterable[Fault]) -> str:
+def wanted_trials_text(
+    wanted: str, trials: int, ends: Iterable[End], others: Iterable[Fault], clean_rate: float | None
+) -> str:
     """Return what became of one orientation in its trials: 'A@270, 4 trials: lost (returned at gap)'.
 
     Parameters
@@ -115,7 +117,9 @@ def wanted_trials_text(wanted: str, trials: int, ends: Iterable[End], others: It
     ends : iterable of End
         Where its parts were lost.
     others : iterable of Fault
-        What went wrong with other orientations.
+        What went wrong with other orientations, or with a trial as a whole.
+    clean_rate : float [1/s] or None
+        Of the fastest of these trials in which nothing went wrong; None where there was none.
 
     Returns
     -------
@@ -123,7 +127,9 @@ def wanted_trials_text(wanted: str, trials: int, ends: Iterable[End], others: It
     """
     lost = ends_text(ends)
     lines = [f"lost ({lost})"] if lost else fault_texts(others, 2)
-    return f"{wanted}, {counted(trials, 'trial')}: {', '.join(lines) or 'too slow'}"
+    if clean_rate is not None:  # what it lacks is in its draws, its queue or its rate
+        lines.append(f"clean, {60.0 * clean_rate:.3g}/min")
+    return f"{wanted}, {counted(trials, 'trial')}: {', '.join(lines) or 'nothing leaves as wanted'}"
 
 
 def percent(value: float, ends: tuple[float, float]) -> str:

@@ -12,7 +12,7 @@ from feederscrew.trials.fills import FilledQueue
 from feederscrew.trials.queue_counts import MAX_QUEUE_DEPTH_M
 
 if TYPE_CHECKING:
-    from feederscrew.designing.record import DesignStudy
+    from feederscrew.designing.record import DesignStudy, WantedTrials
 
 
 def condition_text(study: "DesignStudy") -> str:
@@ -72,6 +72,11 @@ def shortfall_texts(study: "DesignStudy") -> tuple[str, ...]:
     return tuple(shortfall_text(study, one) for one in study.verdict.shortfalls)
 
 
+def trials_text(one: "WantedTrials") -> str:
+    """Return what became of one orientation in its short trials: 'A@270, 4 trials: lost (...)'."""
+    return texts.wanted_trials_text(one.wanted, one.trials, one.ends, one.others, one.clean_rate)
+
+
 def shortfall_text(study: "DesignStudy", lack: Shortfall) -> str:
     """Return one shortfall of a design as a sentence.
 
@@ -89,8 +94,7 @@ def shortfall_text(study: "DesignStudy", lack: Shortfall) -> str:
         return _text_of_fill(study, lack.kind, lack.queue)
     proof = study.proof
     if lack.kind is Shortage.LOST_IN_TRIALS and lack.trials is not None:
-        one = lack.trials
-        return texts.wanted_trials_text(one.wanted, one.trials, one.ends, one.others)
+        return trials_text(lack.trials)
     if lack.kind is Shortage.NO_QUEUE:
         return "no queue was followed"
     if lack.kind is Shortage.JAMS:

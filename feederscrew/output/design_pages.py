@@ -249,7 +249,7 @@ def first_seen(study: DesignStudy) -> list[tuple[str, str]]:
     tried = study.wanted_trials
     seen = []
     for one in sorted(tried, key=lambda one: one.wanted != wanted)[:2]:
-        words = texts.wanted_trials_text("wanted", one.trials, one.ends, one.others)
+        words = texts.wanted_trials_text("wanted", one.trials, one.ends, one.others, one.clean_rate)
         hangs = one.wanted == HANGING and arrives
         seen.append((arrives, f"arrives so; {words}") if hangs and arrives else (one.wanted, words))
     aspects = {name.partition("@")[0] for name, _ in seen}
@@ -263,9 +263,8 @@ def _what_to_try(study: DesignStudy, d: Mapping[str, Any]) -> Iterator[Block]:
     """Yield what was wanted and where it was lost, then the calls that may hold, to be pasted."""
     tried = study.wanted_trials
     if tried and not study.delivers:
-        lost = (texts.wanted_trials_text(one.wanted, one.trials, one.ends, one.others) for one in tried)
-        yield Text("What was wanted, and where it was lost:")
-        yield Notes(tuple(lost))
+        yield Text("What was wanted, and what its short trials did:")
+        yield Notes(tuple(map(verdict_texts.trials_text, tried)))
     if d["next"]:
         yield Heading("What to try")
     for entry in d["next"]:

@@ -90,7 +90,7 @@ def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
 
 
 def test_a_long_run_says_where_it_is_in_a_file_and_by_a_bar_with_the_time_to_go(monkeypatch, capsys):
-    """A line every 15 s where stderr is no terminal, by the pace since the first: they may be compiled for."""
+    """A line every 15 s where stderr is no terminal, by the pace since the first: compiling is no pace."""
     clock = iter([100.0, 116.0, 117.0, 119.0, 140.0])
     monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
     monkeypatch.setattr(progress, "LINE_EVERY_S", 2.0)

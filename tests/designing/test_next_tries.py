@@ -14,8 +14,9 @@ from command_lines import asked_by
 from design_counts import attempt, design_of_nothing, design_study, heading_off, queue
 
 from feederscrew.bowl.verified import Status
-from feederscrew.designing import calm_drive
+from feederscrew.designing import calm_drive, texts, verdict_texts
 from feederscrew.designing.calls import call_of, call_words
+from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.designing.next_tries import Evidence, TryKind, next_tries, rounded_down
 from feederscrew.designing.record import DesignRequest, NearestDesign
 from feederscrew.output import design_pages, designs, tables
@@ -184,3 +185,21 @@ def test_the_page_begins_with_the_pose_that_was_wanted_where_it_was_lost_and_wha
     assert places == sorted(places)
     for entry in designs.document(study)["next"]:
         assert f"<pre>{entry['command']}</pre>" in page
+
+
+def test_a_trial_in_which_nothing_went_wrong_is_no_loss():
+    """A quick look named one that was clean at 71.9 a minute, 60 asked for, among the lost: 'too slow'."""
+    clean, slower = (attempt("A@270", rate, ()) for rate in (71.9, 20.0))
+    quick = nothing(clean, slower, attempt("C"), request=DesignRequest(1.0, quick=True))
+    [words, other] = verdict_texts.shortfall_texts(quick)
+    assert words == "A@270, 2 trials: clean, 71.9/min" and "lost (returned at gap)" in other
+    assert words in re.sub("<[^>]*>", "", unescape(design_pages.page(quick)))
+    [mixed] = verdict_texts.shortfall_texts(nothing(clean, attempt("A@270")))
+    assert mixed == "A@270, 2 trials: lost (returned at gap), clean, 71.9/min"
+
+
+@pytest.mark.parametrize("kind", [FaultKind.NOT_RUN, FaultKind.IMPURE, FaultKind.NOTHING_LEAVES])
+def test_a_trial_that_fails_as_a_whole_says_how(kind):
+    fault = Fault(kind, reason="the part does not fit", shares=(0.5, 0.4, 0.6, 0.98))
+    [words] = verdict_texts.shortfall_texts(nothing(attempt("A@270", 0.0, (fault,))))
+    assert words == f"A@270, 1 trial: {texts.fault_text(fault)}"
