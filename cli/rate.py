@@ -63,14 +63,13 @@ def rate(
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
     orientation.check_heading(chain_options)
-    from feederscrew.bowl import friction_remarks, verified
+    from feederscrew.bowl import verified
     from feederscrew.feeding.rate import rate as study
     from feederscrew.feeding.well_oriented import fed
     from feederscrew.output import proof
     from feederscrew.output import rate as rate_output
 
     solid, settings, record = out.part_in_bowl(part, bowl)
-    out.warn(*friction_remarks(settings, solid.material))
     aspect_shares = orientation.shares(out, solid, record, share_options, chain_options)
     with out.folder_of(solid, aspect_shares.inputs, settings=settings) as folder:
         sigma = math.hypot(play, tolerance)
@@ -114,13 +113,12 @@ def tune(
 
     With -o: tune.csv and tune.json.
     """
-    from feederscrew.bowl import friction_remarks, verified
+    from feederscrew.bowl import verified
     from feederscrew.feeding.tune import tune as study
     from feederscrew.output import proof
     from feederscrew.output import rate as rate_output
 
     solid, settings, record = out.part_in_bowl(part, bowl)
-    out.warn(*friction_remarks(settings, solid.material))
     progress.tell_compiling(out, "conveying")
     find_shares = orientation.shares_finder(out, solid, share_options, chain_options)
     with out.folder_of(solid, find_shares(record).inputs, settings=settings) as folder:

@@ -54,7 +54,7 @@ def report(part: Values, request_options: Values, share_options: Values, bowl: V
     md writes report.md with its pictures beside it. A chapter that cannot be computed says why.
     """
     orientation.check_heading(request_options)
-    from feederscrew.bowl import read, verified
+    from feederscrew.bowl import friction_remarks, read, verified
     from feederscrew.output import proof
     from feederscrew.output.report import report as study
     from feederscrew.output.report_page import page, write
@@ -70,6 +70,7 @@ def report(part: Values, request_options: Values, share_options: Values, bowl: V
     tried = verified(bowl["path"])
     own = solid, bowl_record, orientation.name(request_options)
     result = replace(result, as_tried=proof.holds(tried, *own))
+    out.warn(*friction_remarks(result.settings, solid.material))
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter
     with out.folder_of(solid, result.inputs, settings=result.settings) as folder:
         built_page = page(result, out.step)

@@ -250,7 +250,7 @@ class Output:
     def part_in_bowl(
         self, part: Mapping[str, Any], bowl: Mapping[str, Any]
     ) -> tuple["Part", tuple["Setting", ...], "Bowl"]:
-        """Read a part and a bowl file.
+        """Read a part and a bowl file; say what the table of friction has for the part's material.
 
         Parameters
         ----------
@@ -263,10 +263,11 @@ class Output:
         settings : tuple of Setting
         bowl : Bowl
         """
-        from feederscrew.bowl import record, with_part_material
+        from feederscrew.bowl import friction_remarks, record, with_part_material
 
         solid, settings = self.part(part), self.settings(bowl)
         settings = with_part_material(settings, solid.material)
+        self.warn(*friction_remarks(settings, solid.material))
         return solid, settings, record(settings)
 
     def show(

@@ -4,11 +4,14 @@ import builtins
 import json
 from pathlib import Path
 
+import pytest
 from command_lines import NUT, names
 
 from feederscrew import __version__
 from feederscrew.arrivals import simulation_cache
 from feederscrew.base import caches
+
+EXACT = ("--rule", "quasistatic")  # nothing is dropped or fed
 
 
 def test_the_version_has_a_short_option_and_help_names_glossary_and_samples(run):
@@ -40,6 +43,22 @@ def test_a_bowl_file_in_the_folder_that_is_not_read_is_said(run):
     assert line not in run("convey", "--config", "bowl.yaml").stderr + run("convey", "-q").stderr
     Path("bowl.yaml").unlink()
     assert line not in run("convey").stderr
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        ("headings", "--aspect", "A"), ("track", "--aspect", "A"), ("rate", "--aspect", "A", *EXACT),
+        ("tooling", "--static", "--aspect", "A", "--class", "steel", *EXACT),
+        ("trial", "--aspect", "A", "--parts", "1", "--seconds", "0.05", *EXACT),
+    ],
+)  # fmt: skip
+def test_each_command_that_takes_a_part_into_a_bowl_says_which_friction_its_material_has(run, call):
+    """tooling and trial of a part of plastic took 0.6 in silence; rate, bowl and design said so."""
+    name, *options = call
+    done = run(name, NUT, "--density", "abs", *options)
+    assert done.exit_code == 0, done.output
+    assert done.stderr.count("for plastic on steel the table has 0.33 static") == 1
 
 
 def test_the_cache_is_listed_and_cleared_of_its_own_files_alone(run, monkeypatch, tmp_path):

@@ -32,8 +32,9 @@ def test_one_file_with_every_chapter(run):
 
 def test_markdown_with_its_pictures_beside_it(run, monkeypatch):
     monkeypatch.setattr(report, "page", functools.partial(report.page, chapters=LIGHT))
-    done = run("report", BRACKET, "--format", "md")
+    done = run("report", BRACKET, "--format", "md", "--density", "abs")
     assert done.exit_code == 0, done.output
+    assert done.stderr.count("for plastic on steel the table has 0.33 static") == 1
     folder = Path("results", BRACKET.stem)
     shown = re.findall(r"\]\((report/[^)]+)\)", (folder / "report.md").read_text())
     assert {"report/aspects.png", "report/headings_A.png", "report/aspects.csv"} <= set(shown)
