@@ -27,6 +27,7 @@ from feederscrew.designing import (
     quick,
     short_trials,
     texts,
+    verdict_texts,
 )
 from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind
@@ -303,6 +304,8 @@ def _prove(search: Search, candidate: Candidate, proofs: Proofs, most: float = m
         proofs.append((study, candidate))
         if study.status in HELD or study.partial:
             return
+        if lacks := verdict_texts.shortfall_texts(study):  # else nobody knows why the search goes on
+            search.tell(f"{study.wanted} does not hold: {'; '.join(lacks)}")
         search.state.denied += study.proof.queue_seconds
         _note_jams(search, study, candidate)
         if search.is_spent or search.state.denied >= most:

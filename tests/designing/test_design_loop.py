@@ -171,6 +171,18 @@ def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
     assert word in said[-1] and said[0] == "trial 1: A@0, no device"
 
 
+def test_what_denies_a_proof_is_told_before_the_search_goes_on(monkeypatch):
+    """After 'clean, 71.9/min' of 60 asked for came the next trial: nothing said that the queue had jammed."""
+    said = []
+    turned = design_counts.lost("A@0", design_counts.TURNED_ON_TRACK).counted_in_draws(2, 2)
+    monkeypatch.setattr(loop, "robust_run", lambda *_, **__: RobustRun(2, 0, turned))
+    own = {"shares": SHARES, "with_nearest": False, "tell": said.append}
+    found = loop.design(CUBE, bowls.default(), frozenset(), REQUEST, **own)
+    first = next(n for n, text in enumerate(said) if text.startswith("A@0 does not hold: "))
+    lack = said[first].removeprefix("A@0 does not hold: ")
+    assert lack in found.shortfalls and "0 of 2 draws" in lack and said[first - 1].startswith("draws:")
+
+
 STEEP = ("drive.vibration_angle=60 deg", "drive.amplitude=0.2 mm", "drive.frequency=50 Hz")
 
 
