@@ -352,9 +352,9 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     -------
     list of str
     """
-    stopped = [STOPPED] if study.partial else []
+    stopped, shares = [STOPPED] if study.partial else [], f"Orientation shares: {study.answer}"
     if study.design is None:
-        return [*stopped, isolation_words(study, efficiency)]
+        return [*stopped, isolation_words(study, efficiency), shares]
     design, wanted_row = _asked_for(study)
     orientation, tried = study.orientations[wanted_row], study.trial_of(wanted_row)
     at_least = "at least " * (design.least < design.efficiency)
@@ -385,7 +385,7 @@ def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     ]
     if design.bank is not None:
         lead = f"{lead}; the track has to lean {np.degrees(design.bank):.3g} deg towards the wall"
-    return [*stopped, lead, *cheaper, *filter(None, [next_class_words(study)]), *reasons]
+    return [*stopped, lead, *cheaper, *filter(None, [next_class_words(study)]), *reasons, shares]
 
 
 def trials(study: ToolingStudy) -> tuple[list[str], list[str]]:

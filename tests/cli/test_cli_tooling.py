@@ -129,3 +129,6 @@ def test_the_nearest_that_a_cut_returns_is_the_one_its_margin_is_of():
     shown = replace(study, designs=tuple(designs))
     assert tables.document(shown)["chain"][place]["margin_reject_mm"] == pytest.approx(3.522, abs=1e-3)
     assert "no chain was tried" in tables.remarks(study)[0]
+    # of all orientations or of one: its shares are not those that feeder aspects prints of a drop
+    for told in (study, replace(study, wanted=None)):
+        assert tables.remarks(told)[-1] == "Orientation shares: csa"
