@@ -293,14 +293,15 @@ def build_machine(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         sheet = machines.machine(own_settings)
     except FeederError as fault:
         return Built(why=str(fault))
-    sheet = replace(sheet, turns=sized.turns)
+    as_tried = bool(study.proof.queues)
+    sheet = replace(sheet, turns=sized.turns, as_tried=as_tried)
     owned = "leaves" in words or is_two_axis(sheet.bowl.drive)
     lacks = "" if owned else drive_sizing.leaf_shortfall(sheet.bowl)
     # what `feeder bowl` with the part and the rate warns of besides: it takes the drive that was tried
     target, warned = study.request.target, {*study.warnings, *checks.remarks(sheet)}
     try:
         sized_again = machines.size_machine(own_settings, study.part, target, as_tried=True)
-        remarks = _new_remarks(sized_again, sheet, warned)
+        remarks = _new_remarks(replace(sized_again, as_tried=as_tried), sheet, warned)
     except FeederError as fault:
         rate = f"{target * units.MINUTE:.4g}/min"
         remarks = (f"feeder bowl finds no machine of this file for {rate}: {fault}",)

@@ -581,6 +581,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
     own = candidate.attempt.aspect.casefold()
     wanted = " or ".join((name, *(aspect for aspect in request.up if aspect.casefold() != own)))
     gain = short_trials.gain(oriented, weights, candidate.trial.states)
+    pitch = float((weights * oriented.lengths).sum()) + candidate.trial.spacing
     tooling = None
     if proposal.cuts:  # its chain as `feeder tooling` would have found it
         row, margin = proposal.row, proposals.MARGINS[-1]
@@ -616,7 +617,7 @@ def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         attempts=tuple(search.state.attempts),
         arrivals=search.aspect_shares,
         source=shares.aspects.source(request.rule),
-        static_rate=calm_drive.speed(bowl) * gain / float((weights * oriented.lengths).sum()),
+        static_rate=calm_drive.speed(bowl) * gain / pitch,
         proof=Proof(slowed=calm_drive.velocity_kept(bowl)),
         trials=tuple(
             TrialRun(bowl, throw_number(bowl), oriented, weights, course)

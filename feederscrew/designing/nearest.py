@@ -5,13 +5,12 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from feederscrew.arrivals.plate_test import throw_number
 from feederscrew.base.units import MINUTE
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT
 from feederscrew.designing import calm_drive, exploring, proposals, queues, texts
+from feederscrew.designing.evidence import rounded_down
 from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind, Move, MoveKind
 from feederscrew.designing.record import DesignStudy, NearestDesign
@@ -22,7 +21,6 @@ from feederscrew.trials.wanted import wanted_states
 
 SLIGHT = 1e-9  # of rounding
 SAME_DRIVE = 0.05  # [1] by which drives differ that are one: half of what a draw changes
-RATE_DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
 Complete = Callable[[DesignStudy], DesignStudy]
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -92,17 +90,9 @@ def rate_that_holds(study: DesignStudy) -> float:
     """
     if study.partial or not study.proof.queues:
         return 0.0
-    rate = min(_rounded_down(MINUTE * study.proof.delivered[1] / RATE_KEPT) / MINUTE, study.request.target)
+    rate = min(rounded_down(MINUTE * study.proof.delivered[1] / RATE_KEPT) / MINUTE, study.request.target)
     slower = replace(study, request=replace(study.request, target=rate))
     return rate if rate > 0.0 and slower.status in HELD else 0.0
-
-
-def _rounded_down(value: float) -> float:
-    """A number rounded down to ``RATE_DIGITS`` digits; 0 where it is not above 0."""
-    if not value > 0.0:
-        return 0.0
-    step = 10.0 ** (np.floor(np.log10(value)) - RATE_DIGITS + 1)
-    return float(np.floor(value / step + SLIGHT) * step)
 
 
 def nearest(
@@ -434,7 +424,7 @@ def _at_a_lower_rate(search: Search) -> Iterator[Variant]:
     state, policy = search.state, search.policy
     target = search.request.target
     promised = min(state.best_rate or target, target)
-    lower = _rounded_down(MINUTE * policy.lower_rate_share * promised) / MINUTE
+    lower = rounded_down(MINUTE * policy.lower_rate_share * promised) / MINUTE
     request = replace(search.request, target=lower, budget=len(state.attempts) + policy.lower_rate_trials)
     free = search.beside(request)
     for candidate in exploring.candidates(free):

@@ -1,7 +1,6 @@
 """Requests to try where a design does not do what was asked, the likeliest first."""
 
 import enum
-import math
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -17,6 +16,7 @@ from feederscrew.designing.calm_drive import (
     speed,
     velocity_kept,
 )
+from feederscrew.designing.evidence import rounded_down
 from feederscrew.designing.findings import Cause
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
 from feederscrew.machine.drive_sizing import is_two_axis
@@ -224,21 +224,3 @@ def _sides(study: DesignStudy) -> list[NextTry]:
         for name, share in order
         if name.casefold() not in named
     ]
-
-
-def rounded_down(rate: float) -> float:
-    """Return a rate [1/min] of two digits that is not above another one.
-
-    Parameters
-    ----------
-    rate : float [1/min]
-
-    Returns
-    -------
-    float [1/min]
-        0 of 0.
-    """
-    if not rate > 0.0:
-        return 0.0
-    step = 10.0 ** (math.floor(math.log10(rate)) - 1)
-    return float(f"{math.floor(rate / step + 1e-9) * step:.6g}")

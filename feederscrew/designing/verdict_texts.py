@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from feederscrew.base.units import HOUR, MINUTE, counted
 from feederscrew.bowl.verified import HELD, PURE, RATE_KEPT, SHOWN_PURITY
 from feederscrew.designing import texts
-from feederscrew.designing.evidence import rate_at_most, share_at_least
+from feederscrew.designing.evidence import rate_at_most, rounded_down, share_at_least
 from feederscrew.designing.fill_verdicts import GOOD_PURITY, FillLack
 from feederscrew.designing.verdict import Blame, BlameGround, Shortage, Shortfall
 from feederscrew.trials.fills import FilledQueue
@@ -216,6 +216,6 @@ def blame_text(study: "DesignStudy", blame: Blame) -> str:
             return (
                 f"at {queue.fill} fill {60.0 * queue.pace:.3g} parts a minute come along, and "
                 f"{100.0 * share:.3g} % of them leave as {study.wanted}: "
-                f"{60.0 * proof.delivered[1] / RATE_KEPT:.2g}/min would hold{other}"
+                f"{rounded_down(MINUTE * proof.delivered[1] / RATE_KEPT):.4g}/min would hold{other}"
             )
     return ""

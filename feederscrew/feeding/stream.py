@@ -107,6 +107,8 @@ def needed_spacing(chain: Sequence[Device], orientations: Sequence[Orientation],
     ----------
     Own; docs/tooling.md, "1. The method".
     """
+    if not chain:
+        return 0.0
     here, gap = orientations[0], 0.0
     first = travel_speed(queueing(bowl, orientations))
     shortest = min(orientation.length for orientation in orientations)

@@ -34,7 +34,7 @@ def remarks(sheet: "MachineSheet") -> tuple[str, ...]:
     order = sheet.order
     faults = [*_springs(sheet), *_limits(sheet), *_emptying(sheet), *_rocking(sheet)]
     faults += [] if order is None else _size(sheet, order)
-    tipping = () if order is None else order.tipping
+    tipping = () if order is None or sheet.as_tried else order.tipping  # else the trial has the last word
     return (*map(str, faults), *tipping, *speed_remark(sheet.answer.velocity, sheet.bowl.sizing))
 
 
@@ -112,11 +112,11 @@ def _limits(sheet: "MachineSheet") -> Iterator[FeederError]:
         there = f"{2.0 * bowl.drive.amplitude / MM:.4g} mm peak to peak at {sheet.stroke.frequency:.4g} Hz"
         what = f"{there} is more than drives are built for"
         yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
-    # devices that a part meets on the track, where it hops higher than their margin
+    # devices that a part meets on the track, where it hops higher than their margin and no trial was run
     over = [
         device.kind
         for device in bowl.devices
-        if device.action.has_place and device.action is not Action.OVERHEAD
+        if device.action.has_place and device.action is not Action.OVERHEAD and not sheet.as_tried
     ]
     for remark in hop.remark(bowl) if over else ():
         names = units.listed(list(dict.fromkeys(over)))

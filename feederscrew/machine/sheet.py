@@ -106,6 +106,7 @@ class MachineSheet(ReadableRecord, view="machine.MACHINE_VIEW"):
     controlled: Floats  # (M,) [m/s] the same under amplitude control
     order: Order | None
     solid: BowlSolid | None = None  # where it was asked for
+    as_tried: bool = False  # whether a trial has run its devices at its drive
 
     def angles_table(self) -> Frame:
         """Return the direction of the motion over the radius: ``bowl_angles.csv``."""
@@ -452,7 +453,8 @@ def size_machine(
         static_drive=note,
         on_track=orientations_at(driven),
     )
-    return replace(_sheet(driven, settings, size.depth, (search.bulk, PART), order), solid=body)
+    sheet = _sheet(driven, settings, size.depth, (search.bulk, PART), order)
+    return replace(sheet, solid=body, as_tried=as_tried)
 
 
 def _read_path(given: Keywords, path: object) -> None:

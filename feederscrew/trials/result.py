@@ -130,12 +130,16 @@ class TrialRun:
 
     @property
     def parts(self) -> float:
-        """Return delivered parts [1/s]: counted in the queue, else what is offered times the efficiency."""
+        """Return delivered parts [1/s]: counted in the queue, else what is offered times the efficiency.
+
+        Parts are offered as far apart as the devices need, as in ``feeder rate``.
+        """
         if self.queue is not None:
             return self.queue.rate
         if self.main_row is None or not self.velocity > 0.0:
             return 0.0
-        offered = self.velocity / float((self.shares * self.orientations.lengths).sum())
+        gap = stream.needed_spacing(self.bowl.devices, self.orientations.lying, self.bowl)
+        offered = self.velocity / (float((self.shares * self.orientations.lengths).sum()) + gap)
         most = self.velocity / self.orientations.states[self.main_row].length
         return float(min(offered * self.efficiency, most))
 

@@ -454,6 +454,16 @@ def test_the_page_is_true(run, monkeypatch):
                 np.testing.assert_allclose(after, before, rtol=NEAR, atol=1e-9)
 
 
+def test_of_devices_that_were_tried_no_sheet_says_that_feeder_trial_tries_them():
+    """The page of a design of 25 minutes of trials sent its reader to feeder trial with each device."""
+    drive = "amplitude: 0.6 mm, frequency: 50 Hz, vibration_angle: 25 deg"
+    text = f"drive: {{{drive}}}\ndevices:\n  - narrowed_track: 18 mm\n"
+    sheet = machines.machine(settings_of_text(text, "bowl.yaml"))
+    for as_tried in (False, True):
+        remarks = replace(sheet, as_tried=as_tried).remarks
+        assert any("feeder trial" in remark for remark in remarks) != as_tried
+
+
 def test_a_bowl_that_was_tried_is_sized_though_the_static_rule_lets_nothing_through():
     """The rule warns, and names what it finds; it refuses the same file where nothing was tried."""
     text = BOWL.replace("gap: 5 mm", "narrowed_track: 1 mm")
@@ -464,5 +474,6 @@ def test_a_bowl_that_was_tried_is_sized_though_the_static_rule_lets_nothing_thro
     assert sheet.bowl.drive.amplitude == pytest.approx(0.42e-3) and sheet.order.target == 0.5
     assert sheet.remarks[0].startswith("the drive is the one that was tried, 0.84 mm peak to peak")
     assert "static rule finds none for 30/min" in sheet.remarks[0]
+    assert sheet.as_tried and not machines.machine(settings).as_tried
     # it is sized for the parts that the track carries, and filled with them
     assert sheet.order.flow.parts > 0.0 and sheet.filled_with == machines.PART

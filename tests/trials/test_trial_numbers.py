@@ -46,7 +46,7 @@ def driven(*velocities):
     return trial([(*one[:3], velocity, *one[4:]) for one, velocity in zip(PARTS, velocities)])
 
 
-def test_what_leaves_is_weighed_by_the_shares_in_which_orientations_come():
+def test_what_leaves_is_weighed_by_the_shares_in_which_orientations_come(monkeypatch):
     """Half of 0.5 leaves as 0; a quarter of 0.5 and half of 0.3 as 1; all of 0.2 as none that is known."""
     found = trial()
     np.testing.assert_allclose(found.leaving_shares, [0.25, 0.275, 0.0, 0.2], rtol=1e-12)
@@ -62,6 +62,9 @@ def test_what_leaves_is_weighed_by_the_shares_in_which_orientations_come():
     # 40 mm/s over a mean of 16.6 mm, of which 0.275 leave; or one a length of what most leave in
     assert trial().parts == pytest.approx(0.275 * 40.0 / 16.6)
     assert trial(lengths=(20e-3, 80e-3, 15e-3)).parts == pytest.approx(0.5)
+    # with 10 mm between them, which a camera needs: 149 a minute were told where feeder rate said 68
+    monkeypatch.setattr(result.stream, "needed_spacing", lambda *_: 10e-3)
+    assert trial().parts == pytest.approx(0.275 * 40.0 / 26.6)
     assert trial([(0, RETURNED, GONE, 0.04, 1, 0.0)]).parts == 0.0
 
 

@@ -290,7 +290,7 @@ def summary(study: TrialStudy) -> Iterator[str]:
     ------
     str
     """
-    yield f"orientations in the shares of {study.answer}"
+    yield f"Orientation shares: {study.answer}"
     for run in study.runs:
         rolling = run.roll_back_velocity / MM_S
         rolling_words = f" (those that roll back {rolling:.4g} mm/s)" if np.isfinite(rolling) else ""
