@@ -907,7 +907,7 @@ def history_figure(study: DesignStudy, ax: "style.Axes | None" = None) -> "style
     axes.set_xticks(places)
     axes.set_xlim(0.4, max(len(places), 8) + 0.6)  # a single one is a bar, not a block
     axes.set_ylim(0.0, 1.12 * highest)
-    axes.legend(handles, labels, ncols=3, **(style.LEGEND | {"loc": "lower left", "bbox_to_anchor": (0, 1)}))
+    axes.legend(handles, labels, ncols=2, **(style.LEGEND | {"loc": "lower left", "bbox_to_anchor": (0, 1)}))
     return figure
 
 

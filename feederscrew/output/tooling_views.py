@@ -32,6 +32,7 @@ CAPTION_LINE_PX = 24
 NAME_LETTERS, CAPTION_LETTERS = 46, 64  # of a line that is no wider than a view
 TO_VIEWER = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
 SENSOR_COLOUR, SENSOR_LINE = "#009e73", 1.15  # of sensor, nozzles; heights of the part a sensor is over it
+SENSOR_NOTE_EDGE = 0.04  # [1] of a view that stays free at its edges beside the word at a line of sight
 CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
 
 
@@ -143,6 +144,7 @@ def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation],
             box.plot(*project(np.column_stack([hull, np.zeros(len(hull))]), angle).T, color=colour, lw=1.6)
         weight = np.array([[*passage.weight, 0.0]])
         box.plot(*project(weight, angle).T, "o", ms=6.0, color=colour, mec="white", mew=0.8)
+    box.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
     _draw_air(
         box,
         passage,
@@ -150,7 +152,6 @@ def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation],
         size,
         lambda s, off, up: project(np.array([[0.0, off, up]]), (placed.begin + s) / radius)[0],
     )
-    box.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
     box.axis("off")
 
 
@@ -330,6 +331,18 @@ def camera_at(angle: float, turn: float = 0.0) -> Camera:
     return Camera(right=right, up=np.cross(to_viewer, right), towards_viewer=to_viewer)
 
 
+def _write_sensor(axes: Axes, ends: Floats) -> None:
+    """Write what a line of sight is of, near its end as far as the view shows it, and within the view."""
+    low, high = np.sort(np.column_stack([axes.get_xlim(), axes.get_ylim()]), axis=0)
+    points = ends[1] + np.linspace(0.0, 1.0, 101)[:, None] * (ends[0] - ends[1])
+    places = (points - low) / (high - low)
+    shown = np.flatnonzero(((places > SENSOR_NOTE_EDGE) & (places < 1.0 - SENSOR_NOTE_EDGE)).all(axis=1))
+    if not shown.size:
+        return
+    side, shift = ("right", -5) if places[shown[0], 0] > 0.5 else ("left", 5)
+    style.note(axes, "sensor", points[shown[0]], (shift, -4), color=SENSOR_COLOUR, fontsize=7.5, ha=side)
+
+
 def _draw_air(
     axes: Axes,
     passage: Passage,
@@ -347,7 +360,7 @@ def _draw_air(
             line = [(0.0, 0.5 * orientation.height), (reach, 0.5 * orientation.height)]
         ends = np.array([project(s, *end) for end in line])
         axes.plot(*ends.T, color=SENSOR_COLOUR, lw=1.4, ls=(0, (4, 2)))
-        style.note(axes, "sensor", ends[1], (5, -4), color=SENSOR_COLOUR, fontsize=7.5, annotation_clip=True)
+        _write_sensor(axes, ends)
     blows = passage.verdict.passes <= 0.0 or features.sensor is None
     for jet in features.jets:
         s, off, up = jet.at

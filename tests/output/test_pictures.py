@@ -508,6 +508,18 @@ def test_the_labels_of_bars_without_height_do_not_lie_on_each_other(rates):
     assert all(text.get_rotation() == (90.0 if len(rates) > 1 else 0.0) for text in low)
 
 
+def test_the_legend_of_a_history_of_both_kinds_of_trials_lies_within_the_picture():
+    """It ended in 'something else leaves, or parts sta', and the bars had three quarters of the width."""
+    attempts = [SimpleNamespace(rate=1.0, clean=clean, wanted="A@87") for clean in (True, False)]
+    figure = designs.history_figure(SimpleNamespace(attempts=attempts, request=SimpleNamespace(target=1.0)))
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    legend = axes.get_legend().get_window_extent()
+    assert len(axes.get_legend().get_texts()) == 3
+    assert figure.bbox.x0 <= legend.x0 and legend.x1 <= figure.bbox.x1 and legend.y1 <= figure.bbox.y1
+    assert axes.get_window_extent().width > 0.85 * figure.bbox.width
+
+
 def test_the_captions_of_views_side_by_side_stay_over_their_own(monkeypatch):
     """They ran into each other where a device has a long name."""
     words = ("A@188 is laid over at the narrowed track beside a height bar",

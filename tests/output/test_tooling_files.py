@@ -424,6 +424,20 @@ def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(ly
     assert [[text.get_text() for text in axes.texts] for axes in (passes, rejected)] == [["sensor"]] * 2
 
 
+def test_the_word_at_a_line_of_sight_across_the_track_is_not_cut_by_the_edge_of_its_view(lying):
+    """An angle: 's' at the right edge was all that could be read of 'sensor'."""
+    _, every = lying
+    like = every[0].aspect, every[0].heading, 0.5e-3
+    sorter = make_device("vision reject", "here", like=like, sees="side").rewritten()
+    figure = tooling_views.figure([sorter], every, np.full(len(every), 0.2), 0)
+    figure.canvas.draw()
+    for axes in figure.axes:
+        view, (text,) = axes.get_window_extent(), axes.texts
+        box = text.get_window_extent()
+        assert view.contains(*axes.transData.transform(text.xy))  # else it is not drawn
+        assert view.x0 <= box.x0 and box.x1 <= view.x1 and view.y0 <= box.y0 and box.y1 <= view.y1
+
+
 def test_air_at_a_blade_is_drawn_along_its_face_and_its_bore_has_its_angle(lying):
     """The side of the drawn jet lies on the face; the list says how to drill the bore, and the regulator."""
     bowl, every = lying
