@@ -196,7 +196,7 @@ def _list_alternatives(search: Search, proofs: Proofs, classes: list[int], best:
     """The design with every short trial, and beside the best of each cost class."""
     state = search.state
     studies = [study for study, _ in proofs] + ([best] if best.proof.queues else [])
-    rows = alternatives(studies, state.attempts, classes)
+    rows = alternatives(studies, state.attempts, classes, best)
     return replace(best, attempts=tuple(state.attempts), alternatives=rows)
 
 
@@ -642,7 +642,10 @@ def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
 
 
 def alternatives(
-    studies: Sequence[DesignStudy], attempts: Sequence[Attempt], classes: Collection[int]
+    studies: Sequence[DesignStudy],
+    attempts: Sequence[Attempt],
+    classes: Collection[int],
+    chosen: DesignStudy | None = None,
 ) -> tuple[Alternative, ...]:
     """Return the best of each cost class, the cheapest class first.
 
@@ -654,6 +657,8 @@ def alternatives(
         Every short trial.
     classes : collection of int
         Cost classes of which chains were looked for.
+    chosen : DesignStudy, optional
+        The answer: it stands for its class, whatever another of that class brings.
 
     Returns
     -------
@@ -665,7 +670,7 @@ def alternatives(
         own = [one for one in studies if one.bowl is not None and cost_class_of(one.devices) == number]
         tried = [attempt for attempt in attempts if attempt.cost_class == number]
         if own:
-            study = max(own, key=merit)
+            study = next((one for one in own if one is chosen), None) or max(own, key=merit)
             purity, share = study.proof.purity[0], study.proof.efficiency
             counts = bool(study.proof.queues) and not study.partial  # what was stopped is no evidence
             sensors: list[Any] = [device for device in study.devices if device.action is Action.SENSE]
