@@ -319,6 +319,22 @@ def counted(number: int, noun: str, several: str | None = None) -> str:
     return f"{number} {noun if number == 1 else several or f'{noun}s'}"
 
 
+def digits_text(value: float, digits: int = 3) -> str:
+    """Return a number of so many significant digits without an exponent: '3590' of 3594.9.
+
+    Parameters
+    ----------
+    value : float
+        From 0.0001 to 1e15, or 0.
+    digits : int, optional
+
+    Returns
+    -------
+    str
+    """
+    return f"{float(f'{value:.{digits}g}'):.15g}"
+
+
 def listed(names: Iterable[str]) -> str:
     """Return names for people: 'A', 'A and B', 'A, B and C'.
 

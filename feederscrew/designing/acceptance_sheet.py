@@ -153,7 +153,7 @@ class SheetLine:
         """Judge jams by the upper bound of their rate; ``high`` [1/h]."""
         measured, sample = self.measured or 0.0, self.sample
         if measured > high:
-            return Judgement.FAILS, f"{high:.4g} an hour at most are agreed"
+            return Judgement.FAILS, f"{units.digits_text(high, 4)} an hour at most are agreed"
         if sample is None:
             return Judgement.UNSHOWN, "write in 'sample' for how many seconds it ran"
         jams = math.ceil(measured * sample / HOUR - 1e-6)
@@ -161,8 +161,8 @@ class SheetLine:
             return Judgement.AGREES, ""
         minutes = math.ceil(evidence.time_to_run(high / HOUR, jams) / units.MINUTE)
         return Judgement.UNSHOWN, (
-            f"{counted(jams, 'jam')} in {sample / units.MINUTE:.3g} min: less than {high:.4g} an hour is "
-            f"shown by {minutes} min with {jams}"
+            f"{counted(jams, 'jam')} in {sample / units.MINUTE:.3g} min: less than "
+            f"{units.digits_text(high, 4)} an hour is shown by {minutes} min with {jams}"
         )
 
 

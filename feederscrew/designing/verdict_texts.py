@@ -2,13 +2,13 @@
 
 from typing import TYPE_CHECKING
 
-from feederscrew.base.units import HOUR, MINUTE, counted
+from feederscrew.base.units import HOUR, MINUTE, counted, digits_text
 from feederscrew.bowl.verified import HELD, PURE, RATE_KEPT, SHOWN_PURITY
 from feederscrew.designing import texts
 from feederscrew.designing.evidence import rate_at_most, rounded_down, share_at_least
 from feederscrew.designing.fill_verdicts import GOOD_PURITY, FillLack
 from feederscrew.designing.verdict import Blame, BlameGround, Shortage, Shortfall
-from feederscrew.trials.fills import FilledQueue
+from feederscrew.trials.fills import FilledQueue, PoseKind
 from feederscrew.trials.queue_counts import MAX_QUEUE_DEPTH_M
 
 if TYPE_CHECKING:
@@ -145,8 +145,8 @@ def _text_of_fill(study: "DesignStudy", kind: Shortage | FillLack, queue: Filled
             shown, agreed = HOUR * rate_at_most(queue.jams, queue.seconds), HOUR * study.request.agreed_jams
             return (
                 f"{at} {counted(queue.jams, 'jam')} in {queue.seconds / MINUTE:.3g} min: "
-                f"fewer than {shown:.3g} an hour are shown (upper bound, 95 %, one-sided), and "
-                f"{agreed:.3g} an hour are agreed"
+                f"fewer than {digits_text(shown)} an hour are shown (upper bound, 95 %, one-sided), and "
+                f"{digits_text(agreed)} an hour are agreed"
             )
     return f"{at} parts were followed for {queue.seconds:.3g} s only"
 
@@ -162,7 +162,7 @@ def _instead(study: "DesignStudy", queue: FilledQueue) -> str:
         through = f" (through the {device})" if device else ""
         lines.append(f"{pose.text}: {count} of {queue.left}{through}")
     own = study.wanted_aspect
-    is_off = own in study.proof.aspects_heading_off
+    is_off = any(pose.kind is PoseKind.HEADING_OFF and pose.aspect == own for pose, _ in queue.left_instead)
     offer = f" (--up {own} counts {own} at any heading)" if is_off else ""
     return f"; what left instead: {', '.join(lines)}{offer}"
 

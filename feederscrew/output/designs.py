@@ -521,7 +521,7 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Device]) -> list[tuple[str, 
             ("promised by the static rule [1/min]", f"{d['static_per_minute']:.4g}"),
             *zip(("purity of the worst fill, seen [%]", f"purity, {LOWER_BOUND} [%]"), shares, strict=True),
             ("jams that were seen", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue"),
-            (f"jams an hour, {UPPER_BOUND}", "-" if hourly is None else f"{hourly:.3g}"),
+            (f"jams an hour, {UPPER_BOUND}", "-" if hourly is None else units.digits_text(hourly)),
             ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
             *(("a fill that differs", item["text"]) for item in d["differences"]),
         ]

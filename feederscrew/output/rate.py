@@ -96,7 +96,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
         ("fill of the track [%]", f"{100.0 * d['fill']:.4g}"),
     ]
     if d["jams_per_hour"] > 0.0:
-        rows.append(("jams an hour", f"{d['jams_per_hour']:.4g}"))
+        rows.append(("jams an hour", units.digits_text(d["jams_per_hour"], 4)))
     if d["clearing_s"]:
         rows.append(("time a part swept off blocks the track [s]", f"{d['clearing_s']:.3g}"))
     rows += [

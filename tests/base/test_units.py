@@ -80,3 +80,10 @@ def test_any_text_is_a_finite_quantity_or_a_fault(text, dimension):
 def test_a_number_of_a_file_is_of_plain_digits(text):
     with pytest.raises(units.QuantityError):
         units.decimal(text)
+
+
+def test_a_number_for_people_has_no_exponent():
+    """The page of a short queue said 'jams an hour, upper bound: 3.59e+03'."""
+    said = [units.digits_text(value) for value in (3594.9, 85.62, 0.0, 0.00123, 1e6)]
+    assert said == ["3590", "85.6", "0", "0.00123", "1000000"]
+    assert units.digits_text(12345.6, 4) == "12350"

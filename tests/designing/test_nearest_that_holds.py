@@ -232,6 +232,11 @@ def test_what_left_instead_and_what_would_hold_are_said():
     assert designs.document(made)["queues"][0]["left_instead"] == "A, heading off: 11 of 11"
     other = study(40.0, queues=fills(right=0, left=11, instead=((orientation("B@0"), 11),)))
     assert "B@0: 11 of 11" in other.why and "--up" not in other.why
+    # only where the fill lost parts of that aspect: '--up A' stood behind 'C, heading off'
+    lost = [fills(right=0, left=11, instead=((heading_off(aspect), 11),)) for aspect in "CA"]
+    mixed = study(40.0, queues=(*lost[0][:2], *lost[1][2:]))
+    lines = [line for line in mixed.shortfalls if "heading off" in line]
+    assert len(lines) == 3 and all(("--up A" in line) == ("A, heading off" in line) for line in lines)
     # of 50 parts a minute a fifth leaves: 10/min, and for 40/min four fifths have to
     made = study_with(GAP, right=40, returned=160)
     assert made.cause == "arrival" and "80 % come so" in made.why
