@@ -74,8 +74,8 @@ def report(part: Values, request_options: Values, share_options: Values, bowl: V
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter
     with out.folder_of(solid, result.inputs, settings=result.settings) as folder:
         built_page = page(result, out.step)
-        out.warn(*(line for line in built_page.warnings if line not in solid.warnings))
-        out.warn(*proof.warnings(tried, *own))
+        lines = dict.fromkeys((*built_page.warnings, *proof.warnings(tried, *own)))  # each once
+        out.warn(*(line for line in lines if line not in solid.warnings))
         if folder:
             write(folder, built_page, out.format)
 

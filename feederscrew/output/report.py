@@ -3,7 +3,7 @@
 import os
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
 
@@ -163,7 +163,9 @@ class ReportStudy(ReadableRecord, view="report_page.REPORT_VIEW"):
                 as_tried=self.as_tried,
             )
         has_own_machine = has_machine({s.key.name for s in self.settings if s.is_own})
-        return machines.machine(self.settings) if has_own_machine else None
+        if not has_own_machine:
+            return None
+        return replace(machines.machine(self.settings), as_tried=self.as_tried)
 
     @cached_property
     def solid(self) -> BowlSolid | None:

@@ -155,7 +155,8 @@ def test_report_bowl_and_batch_lead_with_a_trial_that_delivers_less(designed, ru
     monkeypatch.setattr(report, "page", functools.partial(report.page, chapters=chapters))
     rewritten(folder, "slow.yaml", target=4, delivered=5, delivered_low=4, delivered_high=6)
     own = ("--config", "slow.yaml")
-    run("report", part, *own, "--format", "md", "-o", "paper")
+    done = run("report", part, *own, "--format", "md", "-o", "paper")
+    assert done.stderr.count("its trial delivers 5/min") == 1, "it was said twice"
     page = next(Path("paper").rglob("report.md")).read_text()
     assert "5.00 a minute" in page and "as its trial showed; the rule says" in page
     assert "its trial delivers 5/min (4 to 6)" in page
