@@ -92,7 +92,13 @@ def remarks(study: AdviceStudy) -> list[str]:
     if not best and study.changes:
         judged = "that was tried" if were_tried else "of its shape, by the static rule,"
         best = [f"no change {judged} makes it easier"]
-    return lines + best[:SHOWN]
+    told = [changed.is_tried for changed in study.changes if changed.gains or changed.is_tried]
+    if len(set(told)) == 2:
+        best = [
+            *best[:SHOWN],
+            "changes that were not tried stand beside the part by the same rule, untried too",
+        ]
+    return lines + best[: SHOWN + 1]
 
 
 def _reason_text(reason: Reason) -> str:

@@ -13,6 +13,7 @@ from feederscrew.designing import advice, tooling_trials
 from feederscrew.designing.advice import Grade, ReasonKind, Way, advise
 from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.designing.record import RiskKind
+from feederscrew.output import advise as advise_output
 from feederscrew.sorting.orientations import orientations
 
 
@@ -227,6 +228,20 @@ def test_the_same_way_is_no_gain_and_a_tenth_more_is(washer):
     none = replace(one.found, way=None)
     assert replace(one, found=found(1.11)).gains and not replace(one, found=found(1.09)).gains
     assert not replace(one, found=none).gains and replace(one, found_before=none).gains
+
+
+def test_a_table_of_tried_and_untried_changes_says_what_each_stands_beside(washer):
+    """Of two changes that gain, the one that was not tried has the part by the rule beside it."""
+    one = replace(washer.changes[0], found_before=replace(washer.changes[0].found, way=None))
+    own = way() if one.way is None else one.way
+    ruled = replace(one, found=replace(one.found, way=own))
+    tried = replace(one, found=replace(one.found, way=replace(own, is_tried=True), by_trial=True))
+
+    def lines(*changes):
+        return len(advise_output.remarks(replace(washer, changes=changes))) - 1 - len(washer.reasons)
+
+    assert (lines(tried), lines(ruled), lines(tried, ruled)) == (1, 1, 2)
+    assert lines(tried, tried, tried, tried, ruled) == advise_output.SHOWN + 1
 
 
 def test_a_study_says_itself_and_saves_the_files_of_the_command(washer, tmp_path):
