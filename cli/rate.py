@@ -1,6 +1,7 @@
 """``feeder rate`` and ``feeder tune``: parts per minute, and the drive for so many."""
 
 import math
+from dataclasses import replace
 
 import click
 
@@ -76,6 +77,7 @@ def rate(
         result = study(solid, record, aspect_shares=aspect_shares, sigma=sigma, **chain_options)
         tried = verified(bowl["path"])
         own = solid, record, fed(result.rate.orientations, result.rate.row).name
+        result = replace(result, as_tried=proof.holds(tried, *own))  # then none is sent to a trial
         document = proof.with_trial(rate_output.document(result), tried, *own)
         out.warn(*result.warnings, *rate_output.remarks(result), *proof.warnings(tried, *own))
         out.write(folder, rate_output.offers(result))

@@ -47,6 +47,7 @@ class RateStudy(ReadableRecord, view="rate.RATE_VIEW"):
     rate: well_oriented.Rate
     measured: profiles.CountFile | None = None  # the counts that are taken, if they are
     sigma: float = 0.0  # [m] of play and tolerance together
+    as_tried: bool = False  # whether a trial has run these devices at this drive
 
     @property
     def of_size(self) -> tuple[str, ...]:
@@ -82,7 +83,7 @@ class RateStudy(ReadableRecord, view="rate.RATE_VIEW"):
             *self.of_size,
             *other,
             *odd,
-            *(hop.remark(self.bowl) if self.devices else ()),
+            *(hop.remark(self.bowl) if self.devices and not self.as_tried else ()),
         )
 
 

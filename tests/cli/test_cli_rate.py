@@ -9,6 +9,7 @@ from command_lines import BRACKET, PARTS, names, rows
 from feederscrew import __version__ as VERSION
 from feederscrew import bowl as bowls
 from feederscrew.bowl.verified import body_fingerprint, fingerprint
+from feederscrew.motion import hop
 from feederscrew.part import load
 
 BOWL = """\
@@ -68,7 +69,7 @@ def test_a_setting_reaches_the_target(run_json, run):
     assert max(row["parts_per_minute"] for row in settings) > 6.5
 
 
-HANGING = """drive: {amplitude: 0.149 mm, frequency: 100 Hz, vibration_angle: 30 deg}
+HANGING = """drive: {amplitude: 0.2 mm, frequency: 100 Hz, vibration_angle: 30 deg}
 track: {width: 14.3 mm}
 devices:
   - narrowed_track: 6.65 mm
@@ -89,4 +90,6 @@ def test_a_trial_in_which_parts_hang_is_that_of_the_state_they_leave_in(run):
     done = run("rate", screw, "--config", path, "--rule", "csa", "--format", "json")
     answer = json.loads(done.stdout)
     assert "is void" not in done.stderr and answer["verified"]["wanted"] == "hanging"
+    hops = [remark for remark in hop.remark(bowls.read(path)) if remark in done.stderr]
+    assert hop.remark(bowls.read(path)) and not hops  # it was tried as it hops
     assert answer["parts_per_minute"] == pytest.approx(5.0)
