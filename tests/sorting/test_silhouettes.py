@@ -7,7 +7,7 @@ from on_track import device, lying, read
 
 from feederscrew.base.errors import Faults
 from feederscrew.bowl.devices.kinds import KINDS
-from feederscrew.bowl.devices.silhouettes import PLAY_M, nearest_above
+from feederscrew.bowl.devices.silhouettes import PLAY_M, BladeCandidate, choose_blades, nearest_above
 from feederscrew.sorting.isolating.chain import fewest
 from feederscrew.sorting.verdicts import DeviceEncounter, verdict
 
@@ -120,8 +120,25 @@ def test_of_a_tee_the_lowest_blade_is_in_front():
     heights = [one.limit for one in kind.proposals(*met, every, "test")]
     assert heights == sorted(heights) and heights[0] < 11e-3
     assert heights[-1] == pytest.approx(11.3e-3)  # 0.25 mm above what is wanted, and a step of the shop
-    # 2.75 mm above the plate, and half of the 3.25 mm up to the top of the web: no other clearance has more
+    # 2.75 mm above the plate, and half of the 3.25 mm up to the top of the web. At 6.8 mm there would be
+    # 1.8 mm, but with its web at the wall the tee has its upper 0.7 mm in the way there
     assert any(abs(height - 7.75e-3) < 1e-6 for height in heights)
+    cuts = [(one.reach, one.leaves) for one in kind.proposals(*met, every, "test")]
+    assert len(set(cuts)) == len(cuts)  # none is proposed at two clearances
+
+
+def test_a_blade_gives_way_to_one_with_more_room_that_returns_what_it_alone_does():
+    def candidate(height, returned, leaves=7.0):
+        return BladeCandidate(frozenset(returned), height, 3.5, leaves, room_of_edge=height)
+
+    low, high, tall = candidate(5.0, {0, 1, 2}), candidate(8.0, {0, 1}), candidate(9.0, {0})
+    assert choose_blades([low, high, tall], frozenset()) == [low]  # 2 is returned by it alone
+    assert choose_blades([low, high, tall], frozenset({2})) == [high]
+    assert choose_blades([low, high, candidate(9.0, {0, 1}, leaves=6.0)], frozenset({2})) == [high]
+    other = candidate(6.0, {2, 3})
+    assert choose_blades([low, high, other], frozenset()) == [high, other]  # the other one returns 2
+    assert choose_blades([low, high], frozenset({0, 1, 2})) == [low]  # it alone returns nothing
+    assert not choose_blades([], frozenset())
 
 
 def test_what_touches_a_blade_at_its_rim_alone_fails_by_that(angle):

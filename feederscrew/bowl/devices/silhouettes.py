@@ -45,7 +45,7 @@ SILHOUETTE_KEYS = ("clearance", "reach", "leaves")
 SILHOUETTE_EXAMPLE = "{clearance: 5 mm, reach: 3.5 mm, leaves: 8 mm, sweep: 30 deg}"
 MIN_SWEEP_RAD = math.radians(5.0)  # [rad] the least of a blade
 HIGHEST_M = 10.0  # [m] above any part
-MOST_LEFT = 6.0  # rooms beyond what carries the wanted ones, from which the width is taken at most
+MOST_LEFT = 6.0  # [1] rooms beyond what carries the wanted ones, from which the width is taken at most
 # [1] of the way from what carries the wanted ones to what the others need: with 100 push buttons in a full
 # track 4 others left at a half of it (reach 3 mm, 7.45 mm left), 1 at 3.25 and 7.2 mm, none at 3.6 and 7.2 mm
 KEPT_SHARE = 1.0 / 3.0
@@ -61,6 +61,10 @@ HEIGHT_ROOM_M = 2.5e-4
 # they hop. Push buttons, thrown 0.06 mm high, passed below edges 0.2 to 0.5 mm above them alike; no other
 # part was tried
 HEIGHT_WEIGHT = 2.0
+# [1] by which the way from a lower edge up to the tops of what it pushes counts, beside the way down to what
+# passes below. Chosen on the push button, which is 11 mm high: its lower blade comes to 7.75 mm for 5.8 mm,
+# where one that was wanted stood, and its higher one stays at 11.3 mm, where none did
+RIM_WEIGHT = 0.5
 # [m] rooms beside the play, of which a design tries the blades that return most
 ROOMS_M = (5e-4, 2.5e-4)
 
@@ -166,12 +170,14 @@ class SilhouetteBlade(StraightBlade):
     def judged(self, encounter: Encounter, sweep: float = 0.0) -> Verdict:
         """Return what it does with an orientation.
 
-        A part comes up to a play off the wall. With d the distance of the blade, longer by that play, from
-        the part's outline seen along the track, heights counting twice, b the width of track that carries the
-        part and w the width that is left, less the play, it passes by min(d, w - b). One that is not carried
-        fails by b - w. One with material in the way of the blade, up to h above the clearance and from n off
-        the wall on, is pushed by r - n, r being the reach. It fails by min(h, r - n, b + r - n - w): it has
-        to be in the way, and to lose its support. Where that is not positive it is not sure. What the blade
+        A part comes up to a play off the wall, ``PLAY_M``. Let d be the distance of the blade, longer by that
+        play, from the part's outline seen along the track, heights counting twice. Let b be the width that
+        carries the part, and w the width that is left. It passes by min(d, w - play - b); where w - b is
+        from 0 up to the play it is not sure. One that is not carried fails by b - w. One with material in the
+        way of the blade, up to h above the clearance and from n off the wall on, is pushed by r - n, r being
+        the reach. It fails by min(h, r - n, b + r - n - w): it has to be in the way, and to lose its support.
+        Where that is not positive it is not sure. One that is in the way and not carried either fails by the
+        greater of the two. What the blade
         lays over falls off too: there is no track beside it.
 
         Parameters
@@ -208,13 +214,15 @@ class SilhouetteBlade(StraightBlade):
     ) -> "list[SilhouetteBlade]":
         """Return blades that let some orientations pass, the lowest first.
 
-        At a clearance let n and b be those of the wanted orientations of which the least is left (see
-        ``judged``). A blade with the reach n - p gives them a room p beside the play. It pushes off another
-        one of n', b' up to a width b' + n - p - n' that is left, where n - p - n' >= p; it does not carry it
-        up to b'. The width that is left lies a third of the way from b to the least of those widths. Of each
+        At a clearance let n be the least distance of the wanted orientations' material from the wall, and b
+        the greatest width that carries one of them (see ``judged``). A blade with the reach r = n - p - play
+        gives them a room p beside the play. Another one of n', b' is pushed off every track narrower than
+        b' + r - n', if r - n' >= p; without a push it falls where the track is narrower than b'. The width
+        that is left lies a third of the way from b + play to the least of those widths, which counts up to
+        ``MOST_LEFT`` rooms at most. Reach and width are whole steps of the shop. Of each
         room p of ``ROOMS_M`` the blade that returns most by pushing alone is taken, and the one that returns
-        most of the rest. Then the same is done with what falls without a push as well. Of clearances that
-        do, the one is taken whose edge has most room, as ``_room_of_edge`` says.
+        most of the rest. Then the same is done, and what falls without a push counts as well. Where several
+        clearances return the same, that with the most room at its edge is taken (``_room_of_edge``).
 
         Parameters
         ----------
@@ -245,13 +253,11 @@ class SilhouetteBlade(StraightBlade):
                 (height, near, np.array([nearest_above(one, height + HEIGHT_ROOM_M) for one in others]))
             )
         proposed: dict[str, SilhouetteBlade] = {}
-        of_pushing: set[tuple[float, float]] = (
-            set()
-        )  # reach and leaves of blades that return by pushing alone
+        cuts_by_pushing: set[tuple[float, float]] = set()  # reach, and track that is left
         for room in ROOMS_M:
             falls_anyway = frozenset(np.flatnonzero(needed - carried >= 2.0 * room + PLAY_M).tolist())
             for by_pushing in (True, False):
-                made: list[_Candidate] = []
+                made: list[BladeCandidate] = []
                 for height, near, other in views:
                     farthest = min(near - room - PLAY_M, carried)  # it ends over the track that is left
                     reach = math.floor(farthest / SHOP_STEP_M + 1e-6) * SHOP_STEP_M
@@ -265,14 +271,16 @@ class SilhouetteBlade(StraightBlade):
                         met = [others[k] for k in np.flatnonzero(falls & (pushed >= room))]
                         room_of_edge = _room_of_edge(height, reach, lying, met)
                         returned = frozenset(np.flatnonzero(falls).tolist())
-                        made.append(_Candidate(returned, height, reach, leaves, room_of_edge))
-                for one in _choose_blades(made, falls_anyway):
-                    if not by_pushing and (one.reach, one.leaves) in of_pushing:
-                        continue  # the same cut, with less room at its edge
+                        made.append(BladeCandidate(returned, height, reach, leaves, room_of_edge))
+                for one in choose_blades(made, falls_anyway):
+                    cut = one.reach, one.leaves
                     if by_pushing:
-                        of_pushing.add((one.reach, one.leaves))
-                    limit, sweep = one.height, PROPOSED_SWEEP_RAD
-                    blade = cls(where, limit=limit, sweep=sweep, reach=one.reach, leaves=one.leaves)
+                        cuts_by_pushing.add(cut)
+                    elif cut in cuts_by_pushing:  # proposed already, at a clearance with more room
+                        continue
+                    blade = cls(
+                        where, limit=one.height, sweep=PROPOSED_SWEEP_RAD, reach=one.reach, leaves=one.leaves
+                    )
                     if not blade.misfits(lying[0].track.extent):
                         proposed.setdefault(blade.value_text(), blade.rewritten())
         return sorted(proposed.values(), key=lambda blade: blade.limit)
@@ -301,7 +309,7 @@ def nearest_above(orientation: LyingPart, height: float) -> float:
     return math.inf if above.is_empty else float(above.bounds[0])
 
 
-class _Candidate(NamedTuple):
+class BladeCandidate(NamedTuple):
     """A blade that may be proposed."""
 
     returned: frozenset[int]  # the other orientations that fall at it
@@ -311,24 +319,36 @@ class _Candidate(NamedTuple):
     room_of_edge: float  # [m] as of ``_room_of_edge``
 
 
-def _choose_blades(made: Sequence[_Candidate], falls_anyway: frozenset[int]) -> list[_Candidate]:
-    """Of candidates the one that returns most, and the one that returns most of the rest.
+def choose_blades(made: Sequence[BladeCandidate], falls_anyway: frozenset[int]) -> list[BladeCandidate]:
+    """Return of candidates the one that returns most, and the one that returns most of the rest.
 
-    Each then gives way to one of no less track whose edge has more room, where what it alone pushes off falls
-    there as well. What no such track carries falls anyway.
+    Each in turn then gives way to the one whose edge has the most room, among those that leave no less track
+    and return all that it alone returns. What falls without a push at both, ``falls_anyway``, is not asked of
+    either.
+
+    Parameters
+    ----------
+    made : sequence of BladeCandidate
+    falls_anyway : frozenset of int
+        Other orientations that no such track carries.
+
+    Returns
+    -------
+    list of BladeCandidate
+        ``BLADES`` at most; empty without candidates.
     """
-    chosen: list[_Candidate] = []
+    chosen: list[BladeCandidate] = []
     left = frozenset[int]().union(*(one.returned for one in made))
     while len(chosen) < BLADES and any(left & one.returned for one in made):
         best = max(made, key=lambda one: (len(left & one.returned), one.leaves, one.room_of_edge))
         chosen.append(best)
         left -= best.returned
     for k, one in enumerate(chosen):
-        alone = one.returned.difference(
-            falls_anyway, *(other.returned for other in chosen if other is not one)
-        )
-        alike = [other for other in made if other.returned >= alone and other.leaves >= one.leaves]
-        chosen[k] = max(alike, key=lambda other: other.room_of_edge)
+        rest = (other.returned for other in chosen if other is not one)  # the first as it was chosen by now
+        alone = one.returned.difference(falls_anyway, *rest)
+        if alone:
+            alike = [other for other in made if other.returned >= alone and other.leaves >= one.leaves]
+            chosen[k] = max(alike, key=lambda other: other.room_of_edge)
     return chosen
 
 
@@ -349,7 +369,7 @@ def _room_of_edge(
     """
     above = max(_top_within(one, reach) for one in wanted)
     tops = min((_top_within(one, reach) for one in met), default=HIGHEST_M)
-    return min(clearance - above, 0.5 * (tops - clearance))
+    return min(clearance - above, RIM_WEIGHT * (tops - clearance))
 
 
 def _clearances(wanted: Sequence[LyingPart], others: Sequence[LyingPart]) -> list[float]:
