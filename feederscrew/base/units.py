@@ -335,6 +335,24 @@ def digits_text(value: float, digits: int = 3) -> str:
     return f"{float(f'{value:.{digits}g}'):.15g}"
 
 
+def rounded_down(rate: float) -> float:
+    """Return a rate [1/min] of two digits that is not above another one.
+
+    Parameters
+    ----------
+    rate : float [1/min]
+
+    Returns
+    -------
+    float [1/min]
+        0 of 0.
+    """
+    if not rate > 0.0:
+        return 0.0
+    step = 10.0 ** (math.floor(math.log10(rate)) - 1)
+    return float(f"{math.floor(rate / step + 1e-9) * step:.6g}")
+
+
 def listed(names: Iterable[str]) -> str:
     """Return names for people: 'A', 'A and B', 'A, B and C'.
 

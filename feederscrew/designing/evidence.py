@@ -209,21 +209,3 @@ def time_to_run(demand: float, count: int, confidence: float = CONFIDENCE) -> fl
     As ``rate_at_most``.
     """
     return _mean_at_most(count, confidence) / demand
-
-
-def rounded_down(rate: float) -> float:
-    """Return a rate [1/min] of two digits that is not above another one.
-
-    Parameters
-    ----------
-    rate : float [1/min]
-
-    Returns
-    -------
-    float [1/min]
-        0 of 0.
-    """
-    if not rate > 0.0:
-        return 0.0
-    step = 10.0 ** (math.floor(math.log10(rate)) - 1)
-    return float(f"{math.floor(rate / step + 1e-9) * step:.6g}")

@@ -6,11 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from feederscrew.arrivals.plate_test import throw_number
-from feederscrew.base.units import MINUTE
+from feederscrew.base.units import MINUTE, rounded_down
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, HELD, PURE, RATE_KEPT
 from feederscrew.designing import calm_drive, exploring, proposals, queues, texts
-from feederscrew.designing.evidence import rounded_down
 from feederscrew.designing.fill_verdicts import longest_time
 from feederscrew.designing.findings import FaultKind, Move, MoveKind
 from feederscrew.designing.record import DesignStudy, NearestDesign

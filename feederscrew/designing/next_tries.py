@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from feederscrew.base.units import MINUTE, MM
+from feederscrew.base.units import MINUTE, MM, rounded_down
 from feederscrew.bowl.verified import HELD, Status
 from feederscrew.designing.calm_drive import (
     CALMER_SHARE,
@@ -16,7 +16,6 @@ from feederscrew.designing.calm_drive import (
     speed,
     velocity_kept,
 )
-from feederscrew.designing.evidence import rounded_down
 from feederscrew.designing.findings import Cause
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy
 from feederscrew.machine.drive_sizing import is_two_axis

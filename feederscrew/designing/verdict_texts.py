@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING
 
-from feederscrew.base.units import HOUR, MINUTE, counted, digits_text
+from feederscrew.base.units import HOUR, MINUTE, counted, digits_text, rounded_down
 from feederscrew.bowl.verified import HELD, PURE, RATE_KEPT, SHOWN_PURITY
 from feederscrew.designing import texts
-from feederscrew.designing.evidence import rate_at_most, rounded_down, share_at_least
+from feederscrew.designing.evidence import rate_at_most, share_at_least
 from feederscrew.designing.fill_verdicts import GOOD_PURITY, FillLack
 from feederscrew.designing.verdict import Blame, BlameGround, Shortage, Shortfall
 from feederscrew.trials.fills import FilledQueue, PoseKind

@@ -13,10 +13,10 @@ import shapes
 from command_lines import asked_by
 from design_counts import attempt, design_of_nothing, design_study, heading_off, queue
 
+from feederscrew.base.units import rounded_down
 from feederscrew.bowl.verified import Status
 from feederscrew.designing import calm_drive, texts, verdict_texts
 from feederscrew.designing.calls import call_of, call_words
-from feederscrew.designing.evidence import rounded_down
 from feederscrew.designing.findings import Fault, FaultKind
 from feederscrew.designing.next_tries import Evidence, TryKind, next_tries
 from feederscrew.designing.record import DesignRequest, NearestDesign
