@@ -217,6 +217,22 @@ def test_a_pulse_carries_a_part_as_far_as_its_motion_in_small_steps(push, press)
         assert DeviceEncounter(one).blown(force, down, 8e-3) == pytest.approx(left, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("thickness", "bore", "count"),
+    [(0.5, 2e-3, 4), (0.9, 2e-3, 2), (1.2, 1.5e-3, 3), (6.0, 2e-3, 4), (0.5, 2e-3, 1)],
+)
+def test_bores_stand_upon_the_track_with_a_web_between_them(thickness, bore, count):
+    """However thin a part is: a drill cannot make two bores that overlap, nor half a bore."""
+    angle = [(0, 0), (25, 0), (25, thickness), (thickness, thickness), (thickness, 12), (0, 12)]
+    every = lying(shapes.prism(angle, 10.0), BOWL.track)
+    nozzles = Nozzles(bore, 3e5, count=count)
+    heights = nozzles.heights(every)
+    assert len(heights) == count and heights[0] >= 0.5 * bore * (1.0 - 1e-9)
+    assert np.all(np.diff(heights) >= 1.25 * bore * (1.0 - 1e-9))
+    if count > 1:  # the thinnest, flat, still offers its edge to the half of the jet
+        assert min(nozzles.push(one, every)[0] for one in every) > 0.05 * nozzles.thrust
+
+
 def test_nozzles_meet_every_orientation_and_press_a_slope_down_or_lift_what_overhangs():
     every = lying(load("lbracket_30x20x15"), bowls.default().track)
     nozzles = Nozzles(2e-3, 3e5, count=4)

@@ -50,6 +50,7 @@ RAYS, GOLDEN = 24, math.pi * (3.0 - math.sqrt(5.0))  # of a jet; [rad] from one 
 TRIED, ENOUGH = 12, 0.5  # heights at which an orientation is blown at, and the least share of the thrust
 JET_REACH_M = 0.5  # [m] no track is wider
 ACROSS = (0.0, 1.0, 0.0)  # straight across the track
+NOZZLE_WEB = 0.25  # of a bore, left between two bores one above the other (assumption)
 # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
 PULSE_BORE_M = 2e-3
 PULSE_PRESSURE_PA = 3e5
@@ -131,12 +132,37 @@ class Nozzles:
     def thrust(self) -> float:
         return thrust(self.diameter, self.pressure)
 
+    @property
+    def lowest(self) -> float:
+        """The least height [m]: a bore stands upon the track, it does not cut into it."""
+        return 0.5 * self.diameter
+
+    @property
+    def pitch(self) -> float:
+        """The least distance [m] of two bores one above the other: they leave a web between them."""
+        return (1.0 + NOZZLE_WEB) * self.diameter
+
+    def has_room(self, height: float, others: Sequence[float]) -> bool:
+        """Return whether a bore at a height leaves a web to the others.
+
+        Parameters
+        ----------
+        height : float [m]
+        others : sequence of float [m]
+
+        Returns
+        -------
+        bool
+        """
+        return all(abs(height - other) >= self.pitch * (1.0 - 1e-9) for other in others)
+
     def heights(self, orientations: Sequence[LyingPart]) -> Floats:
         """Return their heights over the track, upwards.
 
         Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
         orientation has something before its centre of mass that is not a mere slope, as far as they are
-        enough for that; the others are spread between those and the top of the tallest.
+        enough for that; the others are spread between those and the top of the tallest. No bore cuts into
+        the track, and two of them leave a web between them: over a thin part the upper ones blow past it.
 
         Parameters
         ----------
@@ -197,7 +223,7 @@ class Nozzles:
 
 @functools.lru_cache(maxsize=256)
 def _heights(nozzles: Nozzles, orientations: Sequence[LyingPart]) -> tuple[float, ...]:
-    low, count = nozzles.height, nozzles.count
+    low, count, lowest = nozzles.height, nozzles.count, nozzles.lowest
     top = max(orientation.height for orientation in orientations)
     if low is None and count > 1:
         # the fewest heights so that each orientation has one in its lowest solid span at the centre of mass
@@ -208,26 +234,35 @@ def _heights(nozzles: Nozzles, orientations: Sequence[LyingPart]) -> tuple[float
             pieces = [piece.bounds for piece in shapely.get_parts(orientation.aside.intersection(upright))]
             spans.append(min(((box[1], box[3]) for box in pieces), default=(0.0, orientation.height)))
         for bottom, end in sorted(spans, key=lambda span: span[1]):
-            if not any(bottom <= height <= end for height in heights):
-                heights.append(max(end - 0.5 * nozzles.diameter, 0.5 * (bottom + end)))
+            best = max(end - 0.5 * nozzles.diameter, 0.5 * (bottom + end), lowest)
+            if not any(bottom <= height <= end for height in heights) and nozzles.has_room(best, heights):
+                heights.append(best)
         if len(heights) <= count:
             # where they blow at slopes, those at which these are pushed most
             for orientation in orientations:
                 if len(heights) < count and nozzles.moves(orientation, heights) < ENOUGH:
                     tried = orientation.height * (np.arange(TRIED) + 0.5) / TRIED
-                    best = max(tried, key=lambda height: nozzles.moves(orientation, [height]))
-                    if nozzles.moves(orientation, [best]) > nozzles.moves(orientation, heights):
-                        heights.append(float(best))
+                    free = [h for h in map(float, tried) if h >= lowest and nozzles.has_room(h, heights)]
+                    best = max(
+                        free, key=lambda height: nozzles.moves(orientation, [height]), default=math.nan
+                    )
+                    if free and nozzles.moves(orientation, [best]) > nozzles.moves(orientation, heights):
+                        heights.append(best)
             heights = sorted(heights)
             while len(heights) < count:  # the others amid the widest space up to the top
                 spaces = np.diff([*heights, top])
                 k = int(np.argmax(np.round(spaces, 9)))
-                heights.insert(k + 1, heights[k] + 0.5 * float(spaces[k]))
+                # or over the highest, where that is none
+                amid = heights[k] + 0.5 * float(spaces[k])
+                if nozzles.has_room(amid, heights):
+                    heights.insert(k + 1, amid)
+                else:
+                    heights.append(heights[-1] + nozzles.pitch)
             return tuple(heights)
     if low is None:
-        low = max(min(orientation.posture.height for orientation in orientations), 0.5 * nozzles.diameter)
-    high = max(top - low, low)
-    return tuple(np.linspace(low, high, count) if high > low else np.full(count, low))
+        low = max(min(orientation.posture.height for orientation in orientations), lowest)
+    high = max(top - low, low + nozzles.pitch * (count - 1))
+    return tuple(np.linspace(low, high, count))
 
 
 def _share(orientation: LyingPart, diameter: float, height: float, ahead: float = 0.0) -> tuple[float, float]:
@@ -608,7 +643,9 @@ class AirJet(Device):
         list of AirJet
         """
         jets, top = [], max(orientation.height for orientation in orientations)
-        for height in np.round(top * (np.arange(NOZZLE_HEIGHTS) + 0.5) / NOZZLE_HEIGHTS, 4):
+        # no bore cuts into the track
+        tried = np.maximum(top * (np.arange(NOZZLE_HEIGHTS) + 0.5) / NOZZLE_HEIGHTS, 0.5 * JET_BORE_M)
+        for height in np.unique(np.round(tried, 4)):
             jet = cls(where, height=float(height))
             own, full, bore = jet.jet.thrust, thrust(jet.nozzle, MAX_JET_PRESSURE_PA), jet.nozzle
             ratio, most = SURE_FORCE_RATIO * FORCE_RESERVE, max(map(jet.most, wanted)) / own
