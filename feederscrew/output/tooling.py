@@ -429,7 +429,12 @@ def isolation_words(study: ToolingStudy, efficiency: float = 0.0) -> str:
     good = [study.isolates(k) and design.efficiency >= efficiency for k, design in designs]
     least = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
     rarer = len(study.designs) - len(often)
-    left_out = f" ({rarer} rarer not counted)" if rarer else ""
+    unsearched = len(often) - len(designs) if study.partial else 0
+    apart = (
+        f"{rarer} rarer not counted" if rarer else "",
+        f"{unsearched} not searched" if unsearched else "",
+    )
+    left_out = f" ({', '.join(filter(None, apart))})" if any(apart) else ""
     come = f"in which {100.0 * LEAST_SHARE:g} % or more of the parts come"
     return f"{sum(good)} of {len(good)} orientations {come} can be isolated{least}{left_out}"
 

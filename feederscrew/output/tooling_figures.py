@@ -217,7 +217,7 @@ def limits(study: ToolingStudy, words: str) -> Figure:
         # what isolates it, or why nothing does: the trial's word first
         design, tried = study.designs[k], study.trial_of(k)
         if design is None:
-            lines = ["not asked for"]
+            lines = ["not searched: stopped before" if study.partial else "not asked for"]
         elif study.isolates(k):
             named = " and ".join(cut.device.kind for cut in design.cuts) or "no device"
             leave = 100.0 * (design.least if tried is None else tried.efficiency)

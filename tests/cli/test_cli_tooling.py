@@ -107,10 +107,12 @@ def test_orientations_that_hardly_come_are_not_counted():
     good, bad = (SimpleNamespace(isolated=isolated, efficiency=0.3) for isolated in (True, False))
     designs = good, bad, good, good
     shares, isolates = np.array([0.6, 0.395, 0.005, 0.0]), lambda k: designs[k].isolated
-    study = SimpleNamespace(shares=shares, designs=designs, isolates=isolates)
+    study = SimpleNamespace(shares=shares, designs=designs, isolates=isolates, partial=False)
     said = "orientations in which 0.5 % or more of the parts come can be isolated"
     for least, words in ((), f"2 of 3 {said}"), ((0.5,), f"0 of 3 {said} with an efficiency of 50 % or more"):
         assert tables.isolation_words(study, *least) == f"{words} (1 rarer not counted)"
+    study.designs, study.partial = (good, None, None, good), True  # stopped at the second
+    assert tables.isolation_words(study) == f"1 of 1 {said} (1 rarer not counted, 2 not searched)"
 
 
 def test_the_nearest_that_a_cut_returns_is_the_one_its_margin_is_of():
