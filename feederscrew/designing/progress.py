@@ -35,6 +35,10 @@ USUAL_S = {
 # [1] of a stage that is done, from which its own pace is what counts: the fill that is followed first is the
 # slowest by far, so that queues show theirs late
 OWN_PACE_SHARE = {SearchStage.DRAWS: 0.1, SearchStage.QUEUE: 0.1, SearchStage.LONG_PROOF: 0.0}
+# part-seconds of all queues of a design that holds, as ``queues.cost`` counts them: the median of those of
+# docs/designs.csv. What denied queues say of a whole one counts from OWN_PACE_SHARE of it on: two wrong parts
+# among the first four ask for hours
+USUAL_QUEUE_WORK = 2000
 # [s] of a machine of usual speed, from the last queue to the last file: the median of ten designs, 2.8 to 19
 WRITING_S = 10.0
 LONGER_SHARE = 0.25  # [1] of the time gone, that a stage which takes longer than usual goes on
@@ -116,7 +120,8 @@ class Clock:
     def each(self, stage: SearchStage) -> float:
         """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine.
 
-        Queues that were denied ended early: the next one counts to its end, at their pace.
+        Queues that were denied ended early: the next one counts to its end, at their pace; to that of a usual
+        one, where they ended too early to tell.
 
         Parameters
         ----------
@@ -128,8 +133,10 @@ class Clock:
         """
         if stage in self.durations:
             seconds, number = self.durations[stage]
-            is_paced = stage is SearchStage.QUEUE and self.queued > 0
-            return seconds * self.queue_total / self.queued if is_paced else seconds / number
+            if stage is not SearchStage.QUEUE or not self.queued:
+                return seconds / number
+            is_known = self.queued >= OWN_PACE_SHARE[stage] * self.queue_total
+            return seconds * (self.queue_total if is_known else USUAL_QUEUE_WORK) / self.queued
         return USUAL_S[stage] * self.slowness
 
     @property
@@ -223,11 +230,17 @@ class SearchProgress:
         Returns
         -------
         RunSettings
+            A total that grows, as a queue takes longer than it looked, is told as soon as the share that is
+            done has come back to what was told before: what is done is not undone.
         """
+        told, before = 0.0, 0  # share, and count, that were told
 
         def reach(done: int, total: int) -> None:
+            nonlocal told, before
             if self.clock.reach(stage, done, total):
-                self._report(stage, done, total, budget)
+                told = max(told if done >= before else 0.0, done / max(total, 1))
+                before = done
+                self._report(stage, done, min(total, round(done / told)) if told > 0.0 else total, budget)
 
         return replace(run, progress=reach)
 

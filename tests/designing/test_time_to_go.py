@@ -7,8 +7,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from feederscrew.base.running import RunSettings
 from feederscrew.designing import progress
-from feederscrew.designing.progress import USUAL_S, WRITING_S, Clock, SearchStage
+from feederscrew.designing.progress import (
+    USUAL_QUEUE_WORK,
+    USUAL_S,
+    WRITING_S,
+    Clock,
+    SearchProgress,
+    SearchStage,
+    TrialBudget,
+)
 
 
 @pytest.fixture
@@ -68,6 +77,15 @@ def test_a_queue_counts_to_its_end_at_the_pace_of_those_that_were_denied(at):
     assert clock.rest(3, 16) == pytest.approx(WRITING_S * slow)
 
 
+def test_a_queue_that_is_denied_by_its_first_parts_does_not_say_how_long_a_whole_one_is(at):
+    """Of caps two of the first four were wrong: 2,450 s to go were said, and 760 s were right."""
+    clock = Clock()
+    run(clock, at, SearchStage.QUEUE, 30.0, 300, 24_000)  # by 4 parts, 97 % of 600 s at each fill
+    assert clock.each(SearchStage.QUEUE) == pytest.approx(30.0 * USUAL_QUEUE_WORK / 300)
+    run(clock, at, SearchStage.QUEUE, 300.0, 3_000, 24_000)  # an eighth of both: counted to its end
+    assert clock.each(SearchStage.QUEUE) == pytest.approx(330.0 * 24_000 / 3_300)
+
+
 def test_one_that_takes_longer_than_usual_goes_on_for_a_quarter_as_long(at):
     clock = Clock()
     clock.begin(SearchStage.QUEUE)
@@ -96,6 +114,20 @@ def test_the_guess_is_of_the_case_that_the_next_proof_holds(at):
     at(150.0)
     clock.reach(SearchStage.LONG_PROOF, 2, 4)
     assert clock.rest(9, 16) == pytest.approx(clock.rest_of_stage(SearchStage.LONG_PROOF))
+
+
+def test_a_share_that_was_told_does_not_go_back(at):
+    """A queue of eyelets was at 61 % after 851 s and at 54 % after 867 s: it had become longer."""
+    told = []
+    said = SearchProgress(report=lambda stage, done, total, gone, rest: told.append((done, done / total)))
+    run_settings = said.watch(RunSettings(), SearchStage.QUEUE, TrialBudget([], 16, 20))
+    looks = [(100, 400), (200, 400), (210, 600), (360, 600), (600, 600), (20, 400)]
+    for second, (done, total) in enumerate(looks):
+        at(10.0 * (second + 1))
+        run_settings.progress(done, total)
+    counts, shares = zip(*told)
+    assert counts == tuple(done for done, _ in looks)
+    assert shares == pytest.approx([0.25, 0.5, 0.5, 0.6, 1.0, 0.05])  # another queue begins anew
 
 
 TRACES = Path(__file__).parents[1] / "data" / "design_times.csv"
