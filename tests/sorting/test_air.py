@@ -228,7 +228,7 @@ def test_bores_stand_upon_the_track_with_a_web_between_them(thickness, bore, cou
     nozzles = Nozzles(bore, 3e5, count=count)
     heights = nozzles.heights(every)
     assert len(heights) == count and heights[0] >= 0.5 * bore * (1.0 - 1e-9)
-    assert np.all(np.diff(heights) >= 1.25 * bore * (1.0 - 1e-9))
+    assert np.all(np.diff(heights) >= 1.1 * bore * (1.0 - 1e-9))
     if count > 1:  # the thinnest, flat, still offers its edge to the half of the jet
         assert min(nozzles.push(one, every)[0] for one in every) > 0.05 * nozzles.thrust
 

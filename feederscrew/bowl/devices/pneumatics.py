@@ -50,7 +50,7 @@ RAYS, GOLDEN = 24, math.pi * (3.0 - math.sqrt(5.0))  # of a jet; [rad] from one 
 TRIED, ENOUGH = 12, 0.5  # heights at which an orientation is blown at, and the least share of the thrust
 JET_REACH_M = 0.5  # [m] no track is wider
 ACROSS = (0.0, 1.0, 0.0)  # straight across the track
-NOZZLE_WEB = 0.25  # of a bore, left between two bores one above the other (assumption)
+NOZZLE_WEB = 0.1  # of a bore, left between two bores one above the other (assumption: a shop staggers them)
 # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
 PULSE_BORE_M = 2e-3
 PULSE_PRESSURE_PA = 3e5
@@ -162,7 +162,8 @@ class Nozzles:
         Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
         orientation has something before its centre of mass that is not a mere slope, as far as they are
         enough for that; the others are spread between those and the top of the tallest. No bore cuts into
-        the track, and two of them leave a web between them: over a thin part the upper ones blow past it.
+        the track, and two of them leave a web between them. Where so many do not fit below the top of the
+        tallest, they stand one above the other from the track on, and the upper ones blow past it.
 
         Parameters
         ----------
@@ -225,6 +226,9 @@ class Nozzles:
 def _heights(nozzles: Nozzles, orientations: Sequence[LyingPart]) -> tuple[float, ...]:
     low, count, lowest = nozzles.height, nozzles.count, nozzles.lowest
     top = max(orientation.height for orientation in orientations)
+    stack = lowest + nozzles.pitch * np.arange(count)
+    if low is None and count > 1 and stack[-1] > top:
+        return tuple(stack.tolist())  # so thin a part is met by more of them than spread over it
     if low is None and count > 1:
         # the fewest heights so that each orientation has one in its lowest solid span at the centre of mass
         heights: list[float] = []
@@ -248,21 +252,31 @@ def _heights(nozzles: Nozzles, orientations: Sequence[LyingPart]) -> tuple[float
                     )
                     if free and nozzles.moves(orientation, [best]) > nozzles.moves(orientation, heights):
                         heights.append(best)
-            heights = sorted(heights)
-            while len(heights) < count:  # the others amid the widest space up to the top
-                spaces = np.diff([*heights, top])
-                k = int(np.argmax(np.round(spaces, 9)))
-                # or over the highest, where that is none
-                amid = heights[k] + 0.5 * float(spaces[k])
-                if nozzles.has_room(amid, heights):
-                    heights.insert(k + 1, amid)
-                else:
-                    heights.append(heights[-1] + nozzles.pitch)
-            return tuple(heights)
+            return _spread(nozzles, heights, top)
     if low is None:
         low = max(min(orientation.posture.height for orientation in orientations), lowest)
     high = max(top - low, low + nozzles.pitch * (count - 1))
     return tuple(np.linspace(low, high, count))
+
+
+def _spread(nozzles: Nozzles, heights: Sequence[float], top: float) -> tuple[float, ...]:
+    """Return heights, and further ones of so many nozzles amid the widest space up to the ``top`` [m].
+
+    Where that has no room they stand above the highest, below the lowest, or over the top, where they blow
+    past.
+    """
+    placed, pitch = sorted(heights), nozzles.pitch
+    while len(placed) < nozzles.count:
+        spaces = np.diff([*placed, top])
+        k = int(np.argmax(np.round(spaces, 9)))
+        amid = placed[k] + 0.5 * float(spaces[k])
+        if nozzles.has_room(amid, placed):
+            placed.insert(k + 1, amid)
+        elif placed[-1] + pitch > top and placed[0] - pitch >= nozzles.lowest:
+            placed.insert(0, placed[0] - pitch)
+        else:
+            placed.append(placed[-1] + pitch)
+    return tuple(placed)
 
 
 def _share(orientation: LyingPart, diameter: float, height: float, ahead: float = 0.0) -> tuple[float, float]:
