@@ -35,10 +35,10 @@ USUAL_S = {
 # [1] of a stage that is done, from which its own pace is what counts: the fill that is followed first is the
 # slowest by far, so that queues show theirs late
 OWN_PACE_SHARE = {SearchStage.DRAWS: 0.1, SearchStage.QUEUE: 0.1, SearchStage.LONG_PROOF: 0.0}
-# part-seconds of all queues of a design that holds, as ``queues.cost`` counts them: the median of those of
-# docs/designs.csv. What denied queues say of a whole one counts from OWN_PACE_SHARE of it on: two wrong parts
-# among the first four ask for hours
-USUAL_QUEUE_WORK = 2000
+# part-seconds of all queues of a design that holds, as ``queues.cost`` counts them: 662 to 6,276 of eleven of
+# docs/designs.csv, 1,730 in the median. What denied queues say of a whole one counts from OWN_PACE_SHARE of
+# it on: two wrong parts among the first four ask for hours
+USUAL_QUEUE_WORK = 1700
 # [s] of a machine of usual speed, from the last queue to the last file: the median of ten designs, 2.8 to 19
 WRITING_S = 10.0
 LONGER_SHARE = 0.25  # [1] of the time gone, that a stage which takes longer than usual goes on
