@@ -80,9 +80,11 @@ def test_a_queue_counts_to_its_end_at_the_pace_of_those_that_were_denied(at):
 def test_a_queue_that_is_denied_by_its_first_parts_does_not_say_how_long_a_whole_one_is(at):
     """Of caps two of the first four were wrong: 2,450 s to go were said, and 760 s were right."""
     clock = Clock()
-    run(clock, at, SearchStage.QUEUE, 30.0, 300, 24_000)  # by 4 parts, 97 % of 600 s at each fill
+    run(
+        clock, at, SearchStage.QUEUE, 30.0, 300, 24_000
+    )  # by 4 parts: some 600 s at each fill seemed to be left
     assert clock.each(SearchStage.QUEUE) == pytest.approx(30.0 * USUAL_QUEUE_WORK / 300)
-    run(clock, at, SearchStage.QUEUE, 300.0, 3_000, 24_000)  # an eighth of both: counted to its end
+    run(clock, at, SearchStage.QUEUE, 300.0, 3_000, 24_000)  # of both 3,300: enough to count to the end
     assert clock.each(SearchStage.QUEUE) == pytest.approx(330.0 * 24_000 / 3_300)
 
 
