@@ -241,7 +241,8 @@ def test_so_thin_a_part_that_its_nozzles_do_not_fit_gets_a_stack_from_the_track_
     every = lying(shapes.box(20.0, 12.0, 4.0), BOWL.track)
     flat = [one for one in every if one.height < 5e-3]
     assert Nozzles(2e-3, 3e5, count=6).heights(flat) == pytest.approx(1e-3 * (1.0 + 2.2 * np.arange(6)))
-    assert Nozzles(2e-3, 3e5, count=2).heights(flat)[0] > 1e-3  # two fit below its top, and are spread
+    assert Nozzles(2e-3, 3e5, count=3).heights(flat) == pytest.approx([1e-3, 3.2e-3, 5.4e-3])
+    assert Nozzles(2e-3, 3e5, count=2).heights(flat)[0] > 1e-3  # the middles of two are below its top
 
 
 @pytest.mark.parametrize(
@@ -255,6 +256,19 @@ def test_so_thin_a_part_that_its_nozzles_do_not_fit_gets_a_stack_from_the_track_
 def test_further_nozzles_fill_the_space_there_is(own, top, filled):
     placed = pneumatics._spread(Nozzles(2e-3, 3e5, count=4), [1e-3 * one for one in own], 1e-3 * top)
     assert placed == pytest.approx([1e-3 * one for one in filled])
+
+
+def test_no_air_jet_is_proposed_that_cuts_into_the_track():
+    """Of an angle 3.6 mm high the second of six heights is 0.9 mm: there a bore of 2 mm is below the track."""
+    angle = [(0.0, 0.0), (3.6, 0.0), (3.6, 0.4), (0.4, 0.4), (0.4, 1.2), (0.0, 1.2)]
+    every = lying(shapes.prism(angle, 2.4), BOWL.track)
+    encounters = [DeviceEncounter(one, every) for one in every]
+    heights = [
+        jet.height
+        for n, own in enumerate(encounters)
+        for jet in KINDS["air jet"].proposals([own], encounters[:n] + encounters[n + 1 :], every, "test")
+    ]
+    assert min(heights) == pytest.approx(1e-3)
 
 
 def test_nozzles_meet_every_orientation_and_press_a_slope_down_or_lift_what_overhangs():
