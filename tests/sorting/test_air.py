@@ -259,7 +259,7 @@ def test_further_nozzles_fill_the_space_there_is(own, top, filled):
 
 
 def test_no_air_jet_is_proposed_that_cuts_into_the_track():
-    """Of an angle 3.6 mm high the second of six heights is 0.9 mm: there a bore of 2 mm is below the track."""
+    """Of an angle 3.6 mm high the second of six heights is 0.9 mm: there the track cuts a bore of 2 mm."""
     angle = [(0.0, 0.0), (3.6, 0.0), (3.6, 0.4), (0.4, 0.4), (0.4, 1.2), (0.0, 1.2)]
     every = lying(shapes.prism(angle, 2.4), BOWL.track)
     encounters = [DeviceEncounter(one, every) for one in every]
